@@ -1,0 +1,74 @@
+#!/bin/sh
+# Chooses the Python that .venv is made with, and checks everything that a build needs.
+# Prints the path of that Python; or one line that says what to install, and fails.
+#
+#   PYTHON      the Python to take; without it the first that fits
+#   ROS_DISTRO  set where ROS is sourced: then nothing is compiled
+
+fail() {
+    echo "Cannot install: $*" >&2
+    exit 1
+}
+
+wanted="Python 3.11, 3.12 or 3.13"
+
+# "3.12" when the command $1 is a Python that starts
+version_of() {
+    "$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null
+}
+
+fits() {
+    case "$(version_of "$1")" in 3.11 | 3.12 | 3.13) return 0 ;; esac
+    return 1
+}
+
+system="$(uname -s) $(uname -m)"
+if [ -n "${ROS_DISTRO:-}" ]; then
+    [ "$ROS_DISTRO" = jazzy ] ||
+        fail "ROS 2 $ROS_DISTRO is sourced, needed is Jazzy: source that, or use a shell without any ROS."
+elif [ "$system" != "Linux x86_64" ]; then
+    fail "this is $system, but ROS 2 is on PyPI for Linux x86_64 only: install ROS 2 Jazzy and source it, or use a Linux x86_64 container."
+fi
+
+if [ -n "${PYTHON:-}" ]; then
+    command -v "$PYTHON" >/dev/null 2>&1 || fail "PYTHON=$PYTHON: no such command; needed is $wanted."
+    # a command of pyenv exists even where the version that it stands for is not chosen
+    [ -n "$(version_of "$PYTHON")" ] ||
+        fail "PYTHON=$PYTHON does not start: give the full path of $wanted (with pyenv: ~/.pyenv/versions/*/bin/python3)."
+    fits "$PYTHON" || fail "PYTHON=$PYTHON is Python $(version_of "$PYTHON"), needed is $wanted."
+    python=$PYTHON
+else
+    python=
+    for candidate in python3 python3.12 python3.13 python3.11; do
+        if fits "$candidate"; then
+            python=$candidate
+            break
+        fi
+    done
+    found="$(version_of python3)"
+    [ -n "$python" ] ||
+        fail "no $wanted found (python3 is ${found:-missing}): install one (Ubuntu 24.04: sudo apt install python3 python3-venv python3-dev), or name it: make install PYTHON=/path/to/python3."
+fi
+
+# the Python behind a pyenv shim or an active virtual environment
+python=$("$python" -c 'import os, sys; print(os.path.realpath(getattr(sys, "_base_executable", sys.executable)))')
+version=$(version_of "$python")
+"$python" -c 'import ensurepip, venv' 2>/dev/null ||
+    fail "$python cannot make virtual environments (no venv or ensurepip): sudo apt install python$version-venv."
+
+if [ -n "${ROS_DISTRO:-}" ]; then
+    "$python" -c 'import rclpy' 2>/dev/null ||
+        fail "ROS 2 $ROS_DISTRO is sourced, but $python cannot import its rclpy: take the Python that ROS was built for (Ubuntu 24.04: PYTHON=/usr/bin/python3)."
+else
+    missing=
+    config() { "$python" -c "import sysconfig; print(sysconfig.get_config_var('$1') or '$2')"; }
+    for compiler in "${CC:-$(config CC gcc)}" "${CXX:-$(config CXX g++)}"; do
+        command -v "${compiler%% *}" >/dev/null 2>&1 || missing="$missing, ${compiler%% *}"
+    done
+    headers=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
+    [ -f "$headers/Python.h" ] || missing="$missing, Python.h of Python $version"
+    [ -z "$missing" ] ||
+        fail "missing: ${missing#, } (Debian, Ubuntu: sudo apt install build-essential python$version-dev; Fedora: sudo dnf install gcc gcc-c++ python$version-devel)."
+fi
+
+echo "$python"

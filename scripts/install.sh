@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# Makes .venv and installs the project into it, with everything that its tests need. Does only what
+# is not done yet, so it may be called before every test.
+#
+# The project goes in without pip's own build environment: .venv has all that a build needs, and
+# need not download it a second time. `pip install .` works as well, elsewhere.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+# a shell that some Python with the ROS wheels has started: its libraries are not ours
+if [ -n "${_ROS_WHEELS_BOOTSTRAP_COMPLETE:-}" ]; then
+    unset LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
+fi
+
+# one at a time: two `make` in one folder wait for each other
+exec 9<Makefile
+flock 9
+
+venv=.venv
+log=$venv/install.log
+
+say() { echo "== $*"; }
+
+# is "$2" what the stamp file "$1" holds?
+stamped() { [ "$(cat "$venv/$1" 2>/dev/null)" = "$2" ]; }
+stamp() { printf '%s\n' "$2" >"$venv/$1"; }
+
+# pip with its hundreds of lines in a log; the large downloads and every 20th package are shown
+pip_install() {
+    local packages=0 line
+    if "$venv/bin/python" -u -m pip --disable-pip-version-check install --no-input --retries 2 \
+        --progress-bar off "$@" 2>&1 | tee "$log" | while IFS= read -r line; do
+        case "$line" in
+        Collecting*)
+            packages=$((packages + 1))
+            [ $((packages % 20)) -ne 0 ] || echo "   $packages packages found ..."
+            ;;
+        *Downloading*" MB)") echo "   ${line#"${line%%[! ]*}"}" ;;
+        "Installing collected"*) echo "   unpacking ..." ;;
+        esac
+    done; then
+        return
+    fi
+    # its warnings about single tries stay in the log when what failed in the end is a compiler
+    if ! grep -q subprocess-exited "$log" && grep -qE \
+        'NewConnectionError|NameResolutionError|ConnectTimeout|ReadTimeout|ProxyError|SSLError|Connection(Reset|Refused)' "$log"; then
+        echo "Cannot install: pip does not reach the package index: check the network (or proxy), then try again. Details: $log" >&2
+    else
+        grep -E '^ *(ERROR|error):|error:' "$log" | tail -5 >&2 || true
+        echo "Cannot install: pip failed, see above and $log" >&2
+    fi
+    exit 1
+}
+
+place="$PWD ${ROS_DISTRO:-no ROS}"
+if [ -n "${PYTHON:-}" ] || ! stamped made-in "$place" || ! "$venv/bin/python" -c '' 2>/dev/null; then
+    python=$(scripts/check_setup.sh)
+    if ! stamped made-in "$place" || ! stamped made-with "$python" || ! "$venv/bin/python" -c ''; then
+        say "making $venv with $python"
+        rm -rf "$venv"
+        # only there can .venv see the rclpy of a sourced ROS and what apt has installed for it
+        "$python" -m venv ${ROS_DISTRO:+--system-site-packages} "$venv"
+        stamp made-in "$place"
+        stamp made-with "$python"
+    fi
+fi
+
+requirements=$("$venv/bin/python" scripts/requirements.py)
+if ! stamped installed-requirements "$requirements"; then
+    say "installing what it needs into $venv (half a minute, more where the network is slow)"
+    pip_install -r <(echo "$requirements")
+    stamp installed-requirements "$requirements"
+fi
+
+# content, not dates: git changes dates, and a deleted file has none
+sources=$(find turtlesim_py turtlesim_challenge grader interfaces launch ros2run LICENSE MANIFEST.in \
+    README.md package.xml pyproject.toml setup.py -type f ! -name '*.pyc' -print0 |
+    LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
+if ! stamped installed-sources "$sources"; then
+    say "installing the project (seconds; up to a minute where turtlesim's interfaces are to be compiled)"
+    pip_install --no-build-isolation --no-deps --force-reinstall .
+    stamp installed-sources "$sources"
+fi

@@ -1,0 +1,95 @@
+"""Installs the three packages and, where ROS 2 is not sourced, builds their interface package.
+
+A sourced ROS (`ROS_DISTRO` is set) has rclpy and the interfaces of turtlesim already: then nothing
+of ROS is required and nothing compiled. What is required stands in pyproject.toml.
+"""
+
+import os
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from setuptools import find_packages, setup
+from setuptools.command.build_py import build_py
+
+# resolved: `colcon build --symlink-install` runs a link to this file, in a folder that lacks most
+# of the tree, pyproject.toml too. So the metadata is also given below.
+ROOT = Path(__file__).resolve().parent
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT = PYPROJECT["project"]
+REQUIREMENTS = PYPROJECT["tool"]["turtlesim-py"]
+ROS_IS_SOURCED = bool(os.environ.get("ROS_DISTRO"))
+
+# Each is a ROS package of its own, with the files that it launches. turtlesim_py stands last:
+# of several destinations of one file, colcon sees the last.
+ROS_PACKAGES: dict[str, list[str]] = {
+    "grader": [],
+    "turtlesim_challenge": ["launch/turtlesim_challenge.launch.py"],
+    "turtlesim_py": [],
+}
+
+
+class BuildPy(build_py):
+    """`build_py` that starts empty: pip keeps build/, and a deleted module would be installed."""
+
+    def run(self) -> None:
+        """Remove what an earlier build left, then build."""
+        for package in ROS_PACKAGES:
+            shutil.rmtree(Path(self.build_lib) / package, ignore_errors=True)
+        super().run()
+
+
+def data_files() -> list[tuple[str, list[str]]]:
+    """What `ros2 run`, `ros2 launch` and the ament index look for, below the prefix."""
+    programs: dict[str, list[str]] = {package: [] for package in ROS_PACKAGES}
+    for name, function in PROJECT["scripts"].items():
+        programs[function.split(".")[0]].append(f"ros2run/{name}")
+    files = []
+    for package, launch_files in ROS_PACKAGES.items():
+        manifest = "package.xml" if package == PROJECT["name"] else f"{package}/package.xml"
+        files += [
+            ("share/ament_index/resource_index/packages", [f"ros2run/index/{package}"]),
+            (f"share/{package}", [manifest]),
+            (f"share/{package}/launch", launch_files),
+            (f"lib/{package}", programs[package]),
+        ]
+    return [(folder, names) for folder, names in files if names]
+
+
+def ros_dependent() -> dict[str, Any]:
+    """The arguments of setup() that differ where ROS is sourced."""
+    if ROS_IS_SOURCED:
+        return {"install_requires": REQUIREMENTS["dependencies"], "cmdclass": {"build_py": BuildPy}}
+    sys.path.insert(0, str(ROOT))
+    from interfaces.build import BuildInterfaces, extensions
+
+    return {
+        "install_requires": REQUIREMENTS["dependencies"] + REQUIREMENTS["ros"],
+        "setup_requires": REQUIREMENTS["ros-build"],
+        "ext_modules": extensions(),
+        "cmdclass": {"build_py": BuildPy, "build_ext": BuildInterfaces},
+    }
+
+
+setup(
+    name=PROJECT["name"],
+    version=PROJECT["version"],
+    license="BSD-3-Clause",
+    python_requires=">=3.11",
+    packages=find_packages(
+        str(ROOT), include=[name for package in ROS_PACKAGES for name in (package, f"{package}.*")]
+    ),
+    # Everything in the three packages. Not by MANIFEST.in (include_package_data): setuptools then
+    # warns about the starter, a package that is not to be imported
+    package_data={package: ["**/*", "**/.*"] for package in ROS_PACKAGES},
+    exclude_package_data={package: ["*.py[cod]"] for package in ROS_PACKAGES},
+    include_package_data=False,
+    data_files=data_files(),
+    entry_points={
+        "console_scripts": [f"{name} = {where}" for name, where in PROJECT["scripts"].items()]
+    },
+    zip_safe=False,
+    **ros_dependent(),
+)

@@ -1,0 +1,158 @@
+"""The interface package turtlesim: the original's types, and they really travel.
+
+Where ROS is sourced this checks apt's package in the same way.
+"""
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rclpy
+from ament_index_python.packages import get_package_share_directory
+from rclpy.action import ActionClient, ActionServer
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+from turtlesim.action import RotateAbsolute
+from turtlesim.msg import Color, Pose
+from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+from type_description_interfaces.srv import GetTypeDescription
+
+# Measured on turtlesim 1.8.2. Two programs talk only where these are equal.
+TYPE_HASHES = {
+    "action/RotateAbsolute": "08ba6dd83d976f1cb548edd1f75f16cf30cca624ce1410b6ce77f44b8a3c2895",
+    "msg/Color": "74492579ec0d734707aede0e742ab76c55ac50d3ff917381e5163624cb657fe5",
+    "msg/Pose": "739beba26bcba6920404ba722b7b8321348512f92ea5be235c47251940dd8aa9",
+    "srv/Kill": "81c7c9131a0802f384e515fbd04867f8da57abaa83ee3a0ec76e39091e54bbc3",
+    "srv/SetPen": "45ca246c7258172a89a58856037d6b4489eb46a18f1d8ee1988c018ef46fcfce",
+    "srv/Spawn": "a71be24836f772debd6187dc8618cc47700d2602c7a3e2228bad67a8f5fd27b4",
+    "srv/TeleportAbsolute": "139aa0f215e25dc085067f070adb3ef65cf3c92d201f5cb750d51ca9322166b6",
+    "srv/TeleportRelative": "6e9e54cb05e1a789f982bf8c93d27fc899cee099746c4ea8c7cb64e8a90297d6",
+}
+
+MESSAGES = [
+    Pose(x=1.5, y=-2.25, theta=0.5, linear_velocity=2.0, angular_velocity=-1.0),
+    Color(r=0, g=128, b=255),
+]
+
+CALLS = [
+    (Kill, Kill.Request(name="Schildkröte"), Kill.Response()),
+    (SetPen, SetPen.Request(r=1, g=2, b=3, width=4, off=5), SetPen.Response()),
+    (Spawn, Spawn.Request(x=1.0, y=2.0, theta=3.0, name="a"), Spawn.Response(name="b")),
+    (TeleportAbsolute, TeleportAbsolute.Request(x=1.0, theta=0.25), TeleportAbsolute.Response()),
+    (TeleportRelative, TeleportRelative.Request(linear=2.0), TeleportRelative.Response()),
+]
+
+DEADLINE_S = 30.0  # only a failing test waits for it
+
+
+class Peer:
+    """A node and what spins it, alone in a context of its own."""
+
+    def __init__(self) -> None:
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=os.getpid() % 100 + 1)
+        self.node = Node("peer", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+
+    def wait_for(self, future: Future) -> Any:
+        """Spin until `future` is done, and return its result."""
+        self._executor.spin_until_future_complete(future, timeout_sec=DEADLINE_S)
+        assert future.done(), f"nothing came within {DEADLINE_S} s"
+        return future.result()
+
+    def close(self) -> None:
+        """Take everything down again."""
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self._context.shutdown()
+
+
+@pytest.fixture
+def peer() -> Iterator[Peer]:
+    peer = Peer()
+    yield peer
+    peer.close()
+
+
+@pytest.mark.parametrize("name", TYPE_HASHES)
+def test_type_hash_is_that_of_the_original(name: str) -> None:
+    description = Path(get_package_share_directory("turtlesim"), f"{name}.json")
+    hashes = {
+        entry["type_name"]: entry["hash_string"]
+        for entry in json.loads(description.read_text())["type_hashes"]
+    }
+    assert hashes[f"turtlesim/{name}"] == f"RIHS01_{TYPE_HASHES[name]}"
+
+
+@pytest.mark.parametrize("message", MESSAGES, ids=lambda message: type(message).__name__)
+def test_message_arrives_as_it_was_sent(peer: Peer, message: Any) -> None:
+    received: Future = Future()
+    topic = f"turtle1/{type(message).__name__.lower()}"
+    peer.node.create_subscription(type(message), topic, received.set_result, 7)
+    publisher = peer.node.create_publisher(type(message), topic, 7)
+    peer.node.create_timer(0.01, lambda: publisher.publish(message))  # until it is known
+    assert peer.wait_for(received) == message
+    (endpoint,) = peer.node.get_publishers_info_by_topic(topic)
+    assert str(endpoint.topic_type_hash) == (
+        f"RIHS01_{TYPE_HASHES[f'msg/{type(message).__name__}']}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "request_", "response"), CALLS, ids=[kind.__name__ for kind, _, _ in CALLS]
+)
+def test_service_is_called_and_answers(peer: Peer, kind: Any, request_: Any, response: Any) -> None:
+    requests = []
+
+    def answer(incoming: Any, _: Any) -> Any:
+        requests.append(incoming)
+        return response
+
+    peer.node.create_service(kind, f"turtle1/{kind.__name__.lower()}", answer)
+    client = peer.node.create_client(kind, f"turtle1/{kind.__name__.lower()}")
+    assert client.wait_for_service(DEADLINE_S)
+    assert peer.wait_for(client.call_async(request_)) == response
+    assert requests == [request_]
+
+
+def test_action_gives_feedback_and_a_result(peer: Peer) -> None:
+    def execute(goal: Any) -> Any:
+        goal.publish_feedback(RotateAbsolute.Feedback(remaining=goal.request.theta))
+        goal.succeed()
+        return RotateAbsolute.Result(delta=-goal.request.theta)
+
+    feedback: Future = Future()
+    ActionServer(peer.node, RotateAbsolute, "turtle1/rotate_absolute", execute)
+    client = ActionClient(peer.node, RotateAbsolute, "turtle1/rotate_absolute")
+    assert client.wait_for_server(DEADLINE_S)
+    goal = peer.wait_for(
+        client.send_goal_async(
+            RotateAbsolute.Goal(theta=1.5),
+            lambda message: feedback.set_result(message.feedback),
+        )
+    )
+    assert peer.wait_for(goal.get_result_async()).result == RotateAbsolute.Result(delta=-1.5)
+    assert peer.wait_for(feedback) == RotateAbsolute.Feedback(remaining=1.5)
+
+
+def test_a_node_describes_the_type_to_others(peer: Peer) -> None:
+    peer.node.create_publisher(Pose, "described", 7)
+    client = peer.node.create_client(GetTypeDescription, "/peer/get_type_description")
+    assert client.wait_for_service(DEADLINE_S)
+    answer = peer.wait_for(
+        client.call_async(
+            GetTypeDescription.Request(
+                type_name="turtlesim/msg/Pose", type_hash=f"RIHS01_{TYPE_HASHES['msg/Pose']}"
+            )
+        )
+    )
+    assert answer.successful, answer.failure_reason
+    fields = [field.name for field in answer.type_description.type_description.fields]
+    assert fields == ["x", "y", "theta", "linear_velocity", "angular_velocity"]
+    assert [source.type_name for source in answer.type_sources] == ["turtlesim/msg/Pose"]
