@@ -1,0 +1,98 @@
+"""Laws of the world that hold for any input."""
+
+from __future__ import annotations
+
+import math
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.floats import PI, float32, normalize_angle, printf_f
+from turtlesim_py.world.turtle import SIZE_M
+
+finite = st.floats(-1e6, 1e6)
+anything = st.floats(width=32)
+commands = st.lists(st.tuples(finite, finite, finite), min_size=1, max_size=20)
+
+
+def driven(steps, holonomic=False, name="turtle1"):
+    arena = Arena(sprite="rolling")
+    arena.holonomic = holonomic
+    if name != "turtle1":
+        arena.kill("turtle1")
+        arena.spawn(SIZE_M / 2, SIZE_M / 2, 0.0, name)
+    poses = []
+    for x, y, turn in steps:
+        arena.command(name, (x, y, 0.0), (0.0, 0.0, turn))
+        poses += [arena.tick()[name].pose for _ in range(3)]
+    return arena, poses
+
+
+@settings(max_examples=60, deadline=None)
+@given(commands, st.booleans())
+def test_finite_commands_keep_the_turtle_inside_and_its_heading_normalised(steps, holonomic):
+    for pose in driven(steps, holonomic)[1]:
+        assert 0.0 <= pose.x <= SIZE_M and 0.0 <= pose.y <= SIZE_M
+        assert -PI - 1e-6 <= pose.theta <= PI + 1e-6
+        assert pose.linear_velocity >= 0.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(commands)
+def test_published_values_are_float32(steps):
+    for pose in driven(steps)[1]:
+        assert all(value == float32(value) for value in pose)
+
+
+@settings(max_examples=30, deadline=None)
+@given(commands)
+def test_a_turtles_name_does_not_change_its_motion(steps):
+    assert driven(steps)[1] == driven(steps, name="zoe")[1]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(anything, anything, anything), max_size=8))
+def test_no_input_whatever_stops_the_world(values):
+    arena = Arena(sprite="rolling")
+    for x, y, theta in values:
+        arena.teleport_absolute("turtle1", x, y, theta)
+        arena.teleport_relative("turtle1", x, theta)
+        arena.command("turtle1", (x, y, 0.0), (0.0, 0.0, theta))
+        arena.rotate_absolute("turtle1", theta, "goal")
+        arena.spawn(x, y, theta)
+        arena.tick()
+    assert arena.tick()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.permutations(["Zoe", "alice", "bob", "turtle10"]))
+def test_the_order_of_spawning_does_not_change_the_order_of_updates(names):
+    arena = Arena(sprite="rolling")
+    for name in names:
+        arena.spawn(1.0, 1.0, 0.0, name)
+    assert list(arena.tick()) == ["Zoe", "alice", "bob", "turtle1", "turtle10"]
+
+
+@settings(max_examples=40, deadline=None)
+@given(commands)
+def test_a_lifted_pen_leaves_the_canvas_empty(steps):
+    arena = Arena(sprite="rolling")
+    arena.set_pen("turtle1", 1, 2, 3, 4, 1)
+    for x, _, turn in steps:
+        arena.command("turtle1", (x, 0.0, 0.0), (0.0, 0.0, turn))
+        arena.tick()
+    assert not arena.canvas.rgba()[..., 3].any()
+
+
+@given(finite)
+def test_a_normalised_angle_differs_by_whole_turns(angle):
+    turns = (angle - normalize_angle(angle)) / (2 * PI)
+    assert math.isclose(turns, round(turns), abs_tol=1e-6)
+
+
+@given(st.floats())
+def test_a_number_is_printed_as_c_prints_it(value):
+    text = printf_f(value)
+    assert math.isnan(value) == text.endswith("nan")
+    assert (math.copysign(1.0, value) < 0) == text.startswith("-")

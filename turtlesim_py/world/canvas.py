@@ -1,0 +1,114 @@
+"""The canvas that the pens draw on: strokes in, pixels and the colour under a point out."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass
+from functools import cached_property
+from math import floor
+from pathlib import Path
+from sys import byteorder
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from turtlesim_py.world.stroke import spans
+
+#: Edge of the original's window [px].
+SIZE_PX = 500
+#: Red, green, blue, alpha of a pixel without paint: the original clears to transparent white.
+UNPAINTED = (255, 255, 255, 0)
+
+
+@dataclass(frozen=True)
+class Pen:
+    """What a turtle draws with. Each value is from 0 to 255, as in the SetPen service.
+
+    Attributes:
+        r, g, b: colour; the default is the original's.
+        width: [px]. Width 0 draws like 1: the original makes a new QPen for each SetPen and does
+            not set the width if it is 0, and a new QPen is 1 px wide. A pen keeps its 0 all the
+            same, so that it tells what was asked for; the stroke takes care.
+    """
+
+    r: int = 0xB3
+    g: int = 0xB8
+    b: int = 0xFF
+    width: int = 3
+
+    def __post_init__(self) -> None:
+        for name in ("r", "g", "b", "width"):
+            if not 0 <= getattr(self, name) <= 255:
+                raise ValueError(f"pen {name} is {getattr(self, name)}, expected 0 to 255")
+
+    @cached_property
+    def _pixel(self) -> array[int]:
+        """One opaque pixel as it lies in the canvas."""
+        return array("I", bytes((self.r, self.g, self.b, 255)))
+
+
+class Canvas:
+    """An image that starts transparent and takes strokes; x to the right, y down, both in pixels.
+
+    A pixel is painted wholly or not at all, and later strokes cover earlier ones. The turtles and
+    the background are not in it: see `picture`.
+    """
+
+    def __init__(self, width: int = SIZE_PX, height: int = SIZE_PX) -> None:
+        self.width = width
+        self.height = height
+        # One 32-bit item a pixel, row after row, with the bytes r, g, b, a in memory: painting a
+        # run is one slice assignment, and numpy reads the same bytes without conversion.
+        self._blank = array("I", bytes(UNPAINTED)) * (width * height)
+        self._pixels = self._blank[:]
+
+    def clear(self) -> None:
+        """Remove all paint."""
+        self._pixels = self._blank[:]
+
+    def copy(self) -> Self:
+        """Return a canvas with the same pixels that later strokes do not change."""
+        twin = type(self)(self.width, self.height)
+        twin._pixels = self._pixels[:]
+        return twin
+
+    def draw_line(self, ax: float, ay: float, bx: float, by: float, pen: Pen) -> None:
+        """Draw a line from a to b [px], or a dot where they are equal.
+
+        For a turtle, a is the new position and b the old one: the order decides some pixels.
+        Coordinates may be far outside; with one that is not finite nothing is drawn.
+        """
+        pixels, width, pixel = self._pixels, self.width, pen._pixel
+        for row, first, last in spans(ax, ay, bx, by, pen.width, width, self.height):
+            start = row * width
+            pixels[start + first : start + last + 1] = pixel * (last - first + 1)
+
+    def color_at(self, x: float, y: float) -> tuple[int, int, int]:
+        """Read the colour (r, g, b) under a point [px]: what the colour sensor publishes.
+
+        A coordinate is rounded to a pixel number like the original's, halves up, and counts as 0 if
+        it is not a number. White where nothing is painted and outside of the canvas.
+        """
+        column, row = _pixel_number(x, self.width), _pixel_number(y, self.height)
+        if column is None or row is None:
+            return UNPAINTED[:3]
+        r, g, b, _ = self._pixels[row * self.width + column].to_bytes(4, byteorder)
+        return r, g, b
+
+    def rgba(self) -> NDArray[np.uint8]:
+        """Return a copy of the pixels, shape (height, width, 4); unpainted is 255, 255, 255, 0."""
+        pixels = np.frombuffer(self._pixels, dtype=np.uint8)
+        return pixels.reshape(self.height, self.width, 4).copy()
+
+    def save_png(self, path: Path | str) -> None:
+        """Write the pixels as an RGBA picture."""
+        Image.fromarray(self.rgba()).save(path, format="PNG")
+
+
+def _pixel_number(coordinate: float, size: int) -> int | None:
+    if coordinate != coordinate:
+        return 0
+    # Compared before rounding, because infinity cannot be rounded.
+    return floor(coordinate + 0.5) if 0.0 <= coordinate + 0.5 < size else None
