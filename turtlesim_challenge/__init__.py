@@ -1,0 +1,1 @@
+"""The challenge: draw a four-coloured spiral. This package holds the reference solution."""
