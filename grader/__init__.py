@@ -1,0 +1,1 @@
+"""Run a submission, record what its turtle really did, judge it, explain the verdict."""

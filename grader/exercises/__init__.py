@@ -1,0 +1,1 @@
+"""The exercises, a folder each: exercise.yaml and checks.py."""

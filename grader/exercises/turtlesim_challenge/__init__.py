@@ -1,0 +1,1 @@
+"""The challenge: a spiral in four colours that stops near the edge."""

@@ -1,0 +1,39 @@
+"""Sentences about how a submission's process ended, for verdicts and reports."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePath
+
+from grader.recording import Recording
+
+_FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+_ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
+
+
+def how_it_ended(recording: Recording) -> str:
+    """A sentence (with a space before it) about an end that matters; '' where there is none."""
+    run = recording.run
+    if run.outcome == "crashed":
+        return f" The node ended with an error: {last_error(recording.output) or run.exit_code}."
+    if run.outcome == "exited":
+        return " The node ended by itself, without an error."
+    if run.outcome == "killed":
+        return f" The node was killed (signal {-(run.exit_code or 0)})."
+    return ""
+
+
+def last_error(output: str) -> str:
+    """The last line of the last traceback with file and line: 'NameError: ... (a.py, line 3)'."""
+    start = output.rfind("Traceback (most recent call last)")
+    if start < 0:
+        # A SyntaxError in the file that was started has no traceback of its own.
+        start = max(output.rfind('  File "'), 0)
+    part = output[start:]
+    frames = list(_FRAME.finditer(part))
+    lines = part[frames[-1].end() :].splitlines() if frames else []
+    error = next((line for line in lines if line[:1].strip() and _ERROR.match(line)), "")
+    if not error:
+        return ""
+    where = frames[-1]
+    return f"{error.rstrip('.')} ({PurePath(where['file']).name}, line {where['line']})"

@@ -1,0 +1,1 @@
+"""One graded run: the simulator and the submission, each in a process of its own."""

@@ -1,0 +1,242 @@
+"""`grader run` on real submissions: real processes, real ROS, real time.
+
+All runs of this module go on at once; they mostly wait.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import jsonschema
+import psutil
+import pytest
+import yaml
+
+from grader import result as results
+
+SUBMISSIONS = Path(__file__).parents[2] / "submissions"
+ROOT = Path(__file__).parents[3]
+
+SHORT_LIMITS = {"first_motion_s": 4, "rest_s": 1, "total_s": 30}
+
+NODE = """
+import rclpy
+from geometry_msgs.msg import Twist
+rclpy.init()
+node = rclpy.create_node("node")
+pub = node.create_publisher(Twist, {topic!r}, 10)
+twist = Twist()
+twist.linear.x = 1.0
+"""
+
+#: name -> what the file turtle_controller.py holds
+FILES = {
+    "syntax_error": "import rclpy\ndef main()\n    pass\n",
+    "missing_import": "import rclpy\nimport turtlesim_messages\n\ndef main():\n    pass\n",
+    "exits_at_once": "print('nothing to do')\n",
+    "never_ends": "while True:\n    pass\n",
+    "wrong_topic": NODE.format(topic="/turtle/cmd_vel")
+    + "node.create_timer(0.1, lambda: pub.publish(twist))\nrclpy.spin(node)\n",
+    "forks_away": "import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(1000)\n",
+    "forges": "import json, pathlib\n"
+    "pathlib.Path('result.json').write_text(json.dumps({'score': 100}))\n"
+    "print(json.dumps({'say': 'done', 'reason': 'rest'}))\n",
+}
+
+
+@dataclass
+class Graded:
+    """A finished `grader run`."""
+
+    code: int
+    stdout: str
+    stderr: str
+    out: Path
+
+    @property
+    def result(self):
+        return json.loads((self.out / "result.json").read_text())
+
+
+def start(submission: Path, out: Path, *more: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "grader", "run", submission, "--out", out, *more]
+    return subprocess.Popen(
+        [str(word) for word in command],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200"},
+        cwd=out.parent,
+    )
+
+
+def finish(process: subprocess.Popen[str], out: Path) -> Graded:
+    stdout, stderr = process.communicate(timeout=100)
+    return Graded(process.returncode, stdout, stderr, out)
+
+
+@pytest.fixture(scope="module")
+def exercise(tmp_path_factory) -> Path:
+    """The challenge with short limits: real time is precious."""
+    source = ROOT / "grader/exercises/turtlesim_challenge/exercise.yaml"
+    data = yaml.safe_load(source.read_text()) | {"limits": SHORT_LIMITS}
+    path = tmp_path_factory.mktemp("exercise") / "short.yaml"
+    path.write_text(yaml.safe_dump(data))
+    return path
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory, exercise):
+    """Every submission of this module, graded at the same time."""
+    folder = tmp_path_factory.mktemp("graded")
+    paths = {"quick_spiral": SUBMISSIONS / "quick_spiral.py"}
+    for name, text in FILES.items():
+        paths[name] = folder / name / "turtle_controller.py"
+        paths[name].parent.mkdir()
+        paths[name].write_text(text)
+    paths["starter"] = folder / "starter"
+    new = [sys.executable, "-m", "grader", "new", str(paths["starter"])]
+    subprocess.run(new, check=True, capture_output=True, cwd=ROOT)
+    outs = {name: folder / f"out_{name}" for name in paths}
+    running = {
+        name: start(path, outs[name], "--exercise", str(exercise)) for name, path in paths.items()
+    }
+    return {name: finish(process, outs[name]) for name, process in running.items()}
+
+
+def test_a_right_solution_gets_full_marks(graded):
+    run = graded["quick_spiral"]
+    assert run.code == 0, run.stderr
+    assert (run.result["score"], run.result["max_score"]) == (100, 100)
+    assert run.result["run"]["outcome"] == "finished"
+
+
+def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(graded):
+    run = graded["starter"]
+    assert (run.code, run.result["score"]) == (0, 0)
+    assert run.stdout.startswith(
+        "Your node published no velocity command on /turtle1/cmd_vel in 4.0 s"
+    )
+    assert run.result["run"]["outcome"] == "time_limit"
+
+
+@pytest.mark.parametrize(
+    ("name", "outcome", "words"),
+    [
+        ("syntax_error", "crashed", "SyntaxError: expected ':' (turtle_controller.py, line 2)"),
+        ("missing_import", "crashed", "No module named 'turtlesim_messages' (turtle_controller.py"),
+        ("exits_at_once", "exited", "ended by itself"),
+        ("never_ends", "time_limit", "no velocity command"),
+        ("wrong_topic", "time_limit", "/turtle/cmd_vel"),
+    ],
+)
+def test_a_submission_that_cannot_draw_gets_zero_and_is_told_why(graded, name, outcome, words):
+    run = graded[name]
+    assert (run.code, run.result["score"], run.result["run"]["outcome"]) == (0, 0, outcome)
+    assert words in run.stdout
+    assert "Traceback" not in run.stdout + run.stderr
+
+
+def test_what_a_submission_writes_and_prints_is_no_result(graded):
+    assert graded["forges"].result["score"] == 0
+
+
+def test_every_result_follows_the_schema_and_its_files_exist(graded):
+    for run in graded.values():
+        jsonschema.validate(run.result, results.schema())
+        assert all((run.out / path).exists() for path in run.result["artifacts"].values())
+
+
+def test_no_process_is_left_behind(graded):
+    lines = [" ".join(p.info["cmdline"] or []) for p in psutil.process_iter(["cmdline"])]
+    folders = [str(run.out.parent) for run in graded.values()]
+    assert not [line for line in lines if any(folder in line for folder in folders)]
+
+
+def test_a_score_below_the_mark_exits_with_1(graded, tmp_path):
+    recording = graded["starter"].out / "recording"
+    words = [sys.executable, "-m", "grader", "check", str(recording), "--fail-under", "1"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.returncode == 1
+
+
+def test_a_recording_judged_again_gets_the_same_verdicts(graded, tmp_path, exercise):
+    for name in ("quick_spiral", "starter"):
+        file = tmp_path / f"{name}.json"
+        words = ["check", graded[name].out / "recording", "--json", file, "--exercise", exercise]
+        subprocess.run(
+            [sys.executable, "-m", "grader", *map(str, words)],
+            check=True,
+            capture_output=True,
+            cwd=ROOT,
+        )
+        assert json.loads(file.read_text())["verdicts"] == graded[name].result["verdicts"]
+
+
+def empty_zip(folder):
+    path = folder / "empty.zip"
+    zipfile.ZipFile(path, "w").close()
+    return path
+
+
+@pytest.mark.parametrize(
+    ("make", "word"),
+    [
+        (lambda folder: folder / "nothing.py", "nothing.py"),
+        (empty_zip, "empty"),
+        (lambda folder: folder, "folder"),
+    ],
+)
+def test_what_cannot_be_graded_gives_one_message_exit_code_2_and_no_files(tmp_path, make, word):
+    handed_in = tmp_path / "handed_in"
+    handed_in.mkdir()
+    out = tmp_path / "out"
+    run = finish(start(make(handed_in), out), out)
+    assert run.code == 2
+    assert word in run.stderr
+    assert "Traceback" not in run.stderr
+    assert not out.exists()
+
+
+def test_a_simulator_that_dies_is_the_graders_failure_and_leaves_no_result(tmp_path, exercise):
+    out = tmp_path / "out"
+    slow = tmp_path / "slow.py"
+    slow.write_text("import pathlib, time\npathlib.Path('up').touch()\ntime.sleep(1000)\n")
+    process = start(slow, out, "--exercise", str(exercise))
+    grader = psutil.Process(process.pid)
+    simulator = wait_for(grader, "grader.run.simulator", tmp_path / "up")
+    simulator.send_signal(signal.SIGKILL)
+    run = finish(process, out)
+    assert run.code == 3
+    assert "not the submission's fault" in run.stderr
+    assert not (out / "result.json").exists()
+
+
+def test_a_killed_grader_takes_both_processes_along(tmp_path, exercise):
+    out = tmp_path / "out"
+    slow = tmp_path / "slow.py"
+    slow.write_text("import pathlib, time\npathlib.Path('up').touch()\ntime.sleep(1000)\n")
+    process = start(slow, out, "--exercise", str(exercise))
+    grader = psutil.Process(process.pid)
+    wait_for(grader, "grader.run.simulator", tmp_path / "up")
+    family = grader.children(recursive=True)
+    process.kill()
+    process.communicate()
+    gone, alive = psutil.wait_procs(family, timeout=20)
+    assert len(gone) >= 2
+    assert not alive
+
+
+def wait_for(grader: psutil.Process, name: str, sign: Path) -> psutil.Process:
+    """Wait until the submission has made its sign of life; return the named process."""
+    while not sign.exists():
+        assert grader.is_running()
+        assert grader.status() != psutil.STATUS_ZOMBIE
+    return next(p for p in grader.children() if name in p.cmdline())

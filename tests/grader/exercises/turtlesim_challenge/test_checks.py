@@ -1,0 +1,180 @@
+"""Right and spoiled behaviour, driven through the real world, gets the verdicts it deserves."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader import exercise as exercises
+from grader.check import judge
+from grader.recording import Recording
+from tests.grader.driving import CENTRE, RED, WHITE, Spiral, drive, pen, twist
+
+FULL = {
+    "moves": 5,
+    "spiral": 30,
+    "steady_rate": 5,
+    "edge_stop": 25,
+    "pen_per_quadrant": 20,
+    "picture": 5,
+    "no_redundant_calls": 10,
+}
+
+
+def scores(recording: Recording) -> dict[str, float]:
+    exercise = exercises.load("turtlesim_challenge")
+    verdicts = judge(recording, exercise.checks, exercise.points, exercise.tolerances)
+    return {verdict.check: verdict.score for verdict in verdicts}
+
+
+class Clockwise(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.05
+        twist(arena, self.speed, -1.0)
+
+
+class OtherColoursAndWidth(Spiral):
+    colors = {1: (10, 20, 30), 2: (0, 0, 0), 3: (250, 250, 0), 4: (0, 250, 250)}
+
+    def entered(self, quadrant, arena):
+        pen(arena, self.colors[quadrant], 7)
+
+
+class NeverStops(Spiral):
+    def near_edge(self, tick, pose):
+        return False
+
+
+class StopsInTheMiddle(Spiral):
+    def near_edge(self, tick, pose):
+        return tick > 1800
+
+
+class FallsSilentAtTheEdge(Spiral):
+    def stop(self, arena):
+        self.stopped = True
+
+
+class Circle(Spiral):
+    def drive(self, tick, arena):
+        if tick > 1500:
+            self.stop(arena)
+        else:
+            twist(arena, 2.0)
+
+
+class NoPen(Spiral):
+    def entered(self, quadrant, arena):
+        pass
+
+
+class TwoColours(Spiral):
+    colors = {1: WHITE, 2: RED, 3: WHITE, 4: RED}
+
+
+class PenOnEveryPose(Spiral):
+    def watch(self, tick, pose, arena):
+        super().watch(tick, pose, arena)
+        if not self.stopped:
+            pen(arena, self.colors[self.quadrant_of(pose)])
+
+
+class PenALongTimeLate(Spiral):
+    def __init__(self):
+        super().__init__()
+        self.due = {}
+
+    def watch(self, tick, pose, arena):
+        super().watch(tick, pose, arena)
+        for when in [t for t in self.due if t <= tick]:
+            pen(arena, self.due.pop(when))
+
+    def entered(self, quadrant, arena):
+        self.due[len(self.due) + self.tick_now + 62] = self.colors[quadrant]
+
+    def __call__(self, tick, pose, arena):
+        self.tick_now = tick
+        super().__call__(tick, pose, arena)
+
+
+class StandsStill(Spiral):
+    def drive(self, tick, arena):
+        twist(arena, 0.0, 0.0)
+
+
+class PausesOnItsWay(Spiral):
+    def __call__(self, tick, pose, arena):
+        if not 1000 < tick < 1100:
+            super().__call__(tick, pose, arena)
+
+
+@pytest.mark.parametrize("controller", [Spiral, Clockwise, OtherColoursAndWidth])
+def test_a_right_solution_gets_every_point(controller):
+    assert scores(drive(controller())) == FULL
+
+
+@pytest.mark.parametrize(
+    ("controller", "lost"),
+    [
+        (NeverStops, {"edge_stop"}),
+        (StopsInTheMiddle, {"edge_stop"}),
+        (FallsSilentAtTheEdge, {"edge_stop"}),
+        (NoPen, {"pen_per_quadrant", "picture", "no_redundant_calls"}),
+        (TwoColours, {"pen_per_quadrant", "picture"}),
+        (PenOnEveryPose, {"no_redundant_calls"}),
+        (PausesOnItsWay, {"steady_rate"}),
+    ],
+)
+def test_a_spoiled_solution_loses_points_where_it_is_spoiled_and_nowhere_else(controller, lost):
+    found = scores(drive(controller()))
+    assert {name for name in FULL if found[name] < FULL[name]} == lost
+
+
+def test_a_circle_keeps_the_points_for_start_and_turns_only():
+    found = scores(drive(Circle()))
+    assert 0 < found["spiral"] < FULL["spiral"]
+    assert found["edge_stop"] == 0
+
+
+def test_late_colours_lose_pen_points():
+    found = scores(drive(PenALongTimeLate()))
+    assert found["pen_per_quadrant"] < FULL["pen_per_quadrant"]
+    assert found["spiral"] == FULL["spiral"]
+
+
+def test_half_the_colours_earn_half_the_pen_points():
+    assert scores(drive(TwoColours()))["pen_per_quadrant"] == pytest.approx(10, abs=0.5)
+
+
+def test_a_turtle_that_never_moves_earns_nothing():
+    assert set(scores(drive(StandsStill(), ticks=900)).values()) == {0}
+
+
+def test_an_empty_recording_says_that_no_command_came():
+    exercise = exercises.load("turtlesim_challenge")
+    recording = drive(lambda *_: None, ticks=900)
+    first = judge(recording, exercise.checks, exercise.points, exercise.tolerances)[0]
+    assert first.rationale.startswith(
+        "Your node published no velocity command on /turtle1/cmd_vel in 14.4 s"
+    )
+
+
+def test_a_path_that_starts_elsewhere_loses_the_start_only():
+    spiral = Spiral()
+
+    def controller(tick, pose, arena):
+        if tick == 1:
+            arena.teleport_absolute("turtle1", CENTRE + 1.0, CENTRE, 0.0)
+        elif tick > 2:
+            spiral(tick, pose, arena)
+
+    found = scores(drive(controller))
+    assert found["spiral"] == pytest.approx(25, abs=0.1)
+
+
+def test_the_evidence_of_a_needless_call_names_tick_and_place():
+    exercise = exercises.load("turtlesim_challenge")
+    recording = drive(PenOnEveryPose())
+    verdicts = judge(recording, exercise.checks, exercise.points, exercise.tolerances)
+    evidence = verdicts[-1].evidence[0]
+    assert evidence.tick > 0
+    assert evidence.time_s == pytest.approx(evidence.tick * 0.016)
