@@ -1,0 +1,95 @@
+"""What a user's shell and `ros2 run` do, for the tests of installations."""
+
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from ament_index_python.packages import get_package_prefix
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Everything that an installation is made of.
+SOURCES = (
+    "LICENSE",
+    "MANIFEST.in",
+    "README.md",
+    "grader",
+    "interfaces",
+    "launch",
+    "package.xml",
+    "pyproject.toml",
+    "ros2run",
+    "setup.py",
+    "turtlesim_challenge",
+    "turtlesim_py",
+)
+
+Environment = dict[str, str]
+FindProgram = Callable[[str, str, Environment], Path]
+RunNode = Callable[[Path, Environment], str]
+
+
+@pytest.fixture
+def shell() -> Environment:
+    """A user's environment: not that of this Python, and on no one else's ROS graph."""
+    env = dict(os.environ)
+    if env.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None):
+        env.pop("LD_LIBRARY_PATH", None)
+    return env | {"ROS_DOMAIN_ID": str(os.getpid() % 100 + 1)}
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """A copy of the sources: a build writes beside them."""
+    copy = tmp_path / "checkout"
+    copy.mkdir()
+    for name in SOURCES:
+        if (ROOT / name).is_dir():
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(ROOT / name, copy / name, ignore=ignored, symlinks=True)
+        else:
+            shutil.copy(ROOT / name, copy)
+    return copy
+
+
+@pytest.fixture
+def ros2_run(monkeypatch: pytest.MonkeyPatch) -> FindProgram:
+    """Find a program as `ros2 run PACKAGE PROGRAM` does, which is not on PyPI."""
+
+    def find(package: str, program: str, env: Environment) -> Path:
+        monkeypatch.setenv("AMENT_PREFIX_PATH", env["AMENT_PREFIX_PATH"])
+        path = Path(get_package_prefix(package), "lib", package, program)
+        assert path.is_file(), f"ros2 run finds no {path}"
+        assert os.access(path, os.X_OK), f"ros2 run leaves out {path}: not executable"
+        return path
+
+    return find
+
+
+@pytest.fixture
+def run_until_started() -> RunNode:
+    """Start the simulator, stop it as Ctrl-C does once it is there, and return what it said."""
+
+    def run(program: Path, env: Environment) -> str:
+        process = subprocess.Popen(
+            [program], env=env, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
+        said = ""
+        assert process.stderr is not None
+        try:
+            for line in process.stderr:
+                said += line
+                if "Starting turtlesim with node name /turtlesim" in line:
+                    process.send_signal(signal.SIGINT)
+            assert process.wait() == 0, said
+        finally:
+            process.kill()
+            process.wait()
+            process.stderr.close()
+        return said
+
+    return run

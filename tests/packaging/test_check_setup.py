@@ -1,0 +1,156 @@
+"""scripts/check_setup.sh: one line says what to install, and the build does not start."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from .conftest import ROOT
+
+PYTHON = str(Path(sys.executable).resolve())
+
+
+class System:
+    """A machine with few commands; `add` gives it more, or replaces one."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.env = {"PATH": str(folder), "CC": "cc", "CXX": "c++"}
+
+    def add(self, name: str, script: str = "") -> None:
+        path = self.folder / name
+        path.write_text(f"#!/bin/sh\n{script}\n")
+        path.chmod(0o755)
+
+    def check(self) -> subprocess.CompletedProcess[str]:
+        script = ROOT / "scripts" / "check_setup.sh"
+        return subprocess.run(["/bin/sh", script], env=self.env, capture_output=True, text=True)
+
+    def complaint(self) -> str:
+        result = self.check()
+        assert result.returncode == 1
+        assert result.stdout == ""
+        (line,) = result.stderr.splitlines()
+        return line
+
+
+@pytest.fixture
+def system(tmp_path: Path) -> System:
+    """A machine on which everything is there."""
+    system = System(tmp_path)
+    system.add("uname", '[ "$1" = -s ] && echo Linux || echo x86_64')
+    system.add("python3", f'exec {PYTHON} "$@"')
+    system.add("cc")
+    system.add("c++")
+    return system
+
+
+def without(name: str) -> str:
+    """A Python that behaves as if code with `name` in it failed."""
+    cases = [
+        '*_base_executable*) echo "$0" ;;',
+        f"*{name}*) exit 1 ;;",
+        f'*) exec {PYTHON} "$@" ;;',
+    ]
+    return "\n".join(['case "$2" in', *cases, "esac"])
+
+
+def test_prints_the_python_that_it_chose(system: System) -> None:
+    result = system.check()
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.strip() == PYTHON
+
+
+def test_the_python_that_is_asked_for_goes_first(system: System) -> None:
+    system.add("python3", "exit 1")
+    system.env["PYTHON"] = PYTHON
+    assert system.check().stdout.strip() == PYTHON
+
+
+def test_names_missing_compilers(system: System) -> None:
+    (system.folder / "cc").unlink()
+    (system.folder / "c++").unlink()
+    line = system.complaint()
+    assert "missing: cc, c++ " in line
+    assert "apt install build-essential" in line
+
+
+def test_names_missing_python_headers(system: System) -> None:
+    system.add("python3", without("get_path"))
+    line = system.complaint()
+    assert "missing: Python.h" in line
+    assert f"python3.{sys.version_info.minor}-dev" in line
+
+
+def test_a_python_without_venv_is_no_use(system: System) -> None:
+    system.add("python3", without("ensurepip"))
+    assert f"apt install python3.{sys.version_info.minor}-venv" in system.complaint()
+
+
+@pytest.mark.parametrize("version", ["3.10", "3.14", ""])
+def test_no_python_fits(system: System, version: str) -> None:
+    system.add("python3", f"echo {version}")
+    line = system.complaint()
+    assert "no Python 3.11, 3.12 or 3.13 found" in line
+    assert f"python3 is {version or 'missing'}" in line
+
+
+def test_the_python_that_is_asked_for_is_too_old(system: System) -> None:
+    system.add("python3.8", "echo 3.8")
+    system.env["PYTHON"] = "python3.8"
+    assert "PYTHON=python3.8 is Python 3.8, needed is" in system.complaint()
+
+
+def test_the_python_that_is_asked_for_is_not_there(system: System) -> None:
+    system.env["PYTHON"] = "python4"
+    assert "PYTHON=python4: no such command" in system.complaint()
+
+
+def test_a_command_of_pyenv_without_its_version_does_not_count(system: System) -> None:
+    system.add("python3.12", "echo 'pyenv: python3.12: command not found' >&2; exit 127")
+    system.env["PYTHON"] = "python3.12"
+    assert "PYTHON=python3.12 does not start" in system.complaint()
+
+
+def test_ros_is_on_pypi_for_one_system_only(system: System) -> None:
+    system.add("uname", '[ "$1" = -s ] && echo Darwin || echo arm64')
+    line = system.complaint()
+    assert "this is Darwin arm64" in line
+    assert "install ROS 2 Jazzy" in line
+
+
+def test_with_ros_sourced_no_compiler_is_needed(system: System) -> None:
+    (system.folder / "cc").unlink()
+    system.add("python3", without("get_path").replace("*get_path*) exit 1", "*rclpy*) exit 0"))
+    system.env["ROS_DISTRO"] = "jazzy"
+    assert system.check().returncode == 0
+
+
+def test_the_python_has_to_be_that_of_the_sourced_ros(system: System) -> None:
+    system.add("python3", without("rclpy"))
+    system.env["ROS_DISTRO"] = "jazzy"
+    assert "cannot import its rclpy" in system.complaint()
+
+
+def test_another_release_of_ros_is_refused(system: System) -> None:
+    system.env["ROS_DISTRO"] = "humble"
+    assert "ROS 2 humble is sourced, needed is Jazzy" in system.complaint()
+
+
+def test_says_it_through_make(system: System) -> None:
+    make, bash = shutil.which("make"), shutil.which("bash")
+    assert make and bash
+    system.env["ROS_DISTRO"] = "humble"
+    for name in ("dirname", "flock", "cat", "bash", "env"):
+        (system.folder / name).symlink_to(shutil.which(name) or name)
+    copy = system.folder / "project"
+    shutil.copytree(ROOT / "scripts", copy / "scripts")
+    shutil.copy(ROOT / "Makefile", copy)
+    result = subprocess.run(
+        [make, "-C", copy, "demo", f"SHELL={bash}"], env=system.env, capture_output=True, text=True
+    )
+    assert result.returncode != 0
+    assert "Cannot install: ROS 2 humble is sourced" in result.stderr
+    assert not (copy / ".venv").exists()

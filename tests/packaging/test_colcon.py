@@ -1,0 +1,105 @@
+"""`colcon build` with ROS sourced: nothing is compiled, and nothing of ROS comes from PyPI.
+
+No ROS is needed for it: `ROS_DISTRO` is what tells, and rclpy comes from this Python's packages.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from .conftest import ROOT, Environment, FindProgram, RunNode
+
+
+@dataclass(frozen=True)
+class Workspace:
+    install: Path
+    env: Environment  # as after `source install/setup.bash`
+
+    @property
+    def installed(self) -> list[Path]:
+        return [path for path in self.install.rglob("*") if path.is_file()]
+
+
+@pytest.fixture(params=["", "--merge-install", "--symlink-install"], scope="module")
+def workspace(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Workspace:
+    folder = tmp_path_factory.mktemp("workspace")
+    colcon = shutil.which("colcon", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
+    assert colcon, "colcon is one of the `test` requirements"
+    env = os.environ | {
+        "ROS_DISTRO": "jazzy",
+        "COLCON_HOME": str(folder),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        # whoever asks for a package from somewhere fails
+        "PIP_NO_INDEX": "1",
+        "http_proxy": "http://127.0.0.1:9",
+        "https_proxy": "http://127.0.0.1:9",
+    }
+    env.pop("ROS_DOMAIN_ID", None)
+    build = subprocess.run(
+        [colcon, "build", "--base-paths", ROOT, *filter(None, [request.param])],
+        cwd=folder,
+        env=env,
+        capture_output=True,
+        text=True,
+    )
+    assert build.returncode == 0, build.stdout + build.stderr
+    return Workspace(folder / "install", sourced(folder / "install" / "setup.bash"))
+
+
+def sourced(script: Path) -> Environment:
+    """The environment of a shell that has sourced `script`."""
+    env = {name: value for name, value in os.environ.items() if name != "AMENT_PREFIX_PATH"}
+    lines = subprocess.run(
+        ["bash", "-c", 'source "$1" && env -0', "-", script],
+        env=env,
+        capture_output=True,
+        text=True,
+    )
+    assert lines.returncode == 0, lines.stderr
+    return dict(line.split("=", 1) for line in lines.stdout.split("\0") if line)
+
+
+def test_programs_run_from_the_workspace(
+    workspace: Workspace, ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
+) -> None:
+    env = workspace.env | {"ROS_DOMAIN_ID": shell["ROS_DOMAIN_ID"]}
+    for package, program in (
+        ("turtlesim_challenge", "turtle_controller"),
+        ("grader", "grader"),
+        ("turtlesim_py", "turtlesim_node"),
+    ):
+        assert ros2_run(package, program, env).is_relative_to(workspace.install)
+    assert "Starting turtlesim" in run_until_started(
+        ros2_run("turtlesim_py", "turtlesim_node", env), env
+    )
+
+
+def test_python_imports_from_the_workspace(workspace: Workspace) -> None:
+    code = "import turtlesim_py, turtlesim; print(turtlesim_py.__file__, turtlesim.__file__)"
+    files = subprocess.run(
+        [sys.executable, "-P", "-c", code], env=workspace.env, capture_output=True, text=True
+    )
+    ours, interfaces = map(Path, files.stdout.split())
+    assert ours.is_relative_to(workspace.install.parent)
+    assert not interfaces.is_relative_to(workspace.install.parent)
+
+
+def test_launch_file_is_where_ros2_launch_looks(workspace: Workspace) -> None:
+    names = [path.name for path in workspace.installed if path.parent.name == "launch"]
+    assert names == ["turtlesim_challenge.launch.py"]
+
+
+def test_nothing_of_ros_is_built_or_required(workspace: Workspace) -> None:
+    assert [path for path in workspace.installed if path.suffix in (".so", ".pth")] == []
+    requirements = [path for path in workspace.installed if path.name == "requires.txt"]
+    # an --symlink-install leaves them in the build folder
+    for path in requirements or workspace.install.parent.rglob("requires.txt"):
+        assert "numpy" in path.read_text()
+        assert "ros-" not in path.read_text()

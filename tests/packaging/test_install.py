@@ -1,0 +1,67 @@
+"""What stands in the environment that `make install` or `pip install .` has made."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from .conftest import Environment, FindProgram, RunNode
+
+PROGRAMS = [
+    ("turtlesim_py", "turtlesim_node"),
+    ("turtlesim_challenge", "turtle_controller"),
+    ("grader", "grader"),
+]
+
+
+@pytest.fixture
+def shell(shell: Environment) -> Environment:
+    others = shell.get("AMENT_PREFIX_PATH", "")
+    return shell | {"AMENT_PREFIX_PATH": os.pathsep.join([sys.prefix, others])}
+
+
+@pytest.mark.parametrize(("package", "program"), PROGRAMS)
+def test_ros2_run_finds_each_program(
+    ros2_run: FindProgram, shell: Environment, package: str, program: str
+) -> None:
+    path = ros2_run(package, program, shell)
+    assert path.is_relative_to(sys.prefix)
+    assert os.access(Path(sys.prefix, "bin", program), os.X_OK)
+
+
+def test_ros2_run_starts_the_simulator(
+    ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
+) -> None:
+    path = ros2_run("turtlesim_py", "turtlesim_node", shell)
+    assert "Starting turtlesim" in run_until_started(path, shell)
+
+
+def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment) -> None:
+    path = ros2_run("grader", "grader", shell)
+    help_ = subprocess.run([path, "run", "--help"], env=shell, capture_output=True, text=True)
+    assert help_.returncode == 0, help_.stderr
+    assert "SUBMISSION" in help_.stdout
+
+
+@pytest.mark.parametrize("package", ["turtlesim_py", "turtlesim_challenge", "grader"])
+def test_each_package_has_a_manifest_of_its_own_name(package: str) -> None:
+    manifest = Path(sys.prefix, "share", package, "package.xml").read_text()
+    assert f"<name>{package}</name>" in manifest
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")
+def test_python_finds_installed_packages_without_any_setup(shell: Environment) -> None:
+    code = "from ament_index_python import get_package_prefix as g; print(g('turtlesim'))"
+    env = {name: value for name, value in shell.items() if name != "AMENT_PREFIX_PATH"}
+    prefix = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    assert prefix.stdout.strip() == sys.prefix, prefix.stderr
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")
+def test_a_sourced_workspace_goes_before_the_environment(shell: Environment) -> None:
+    code = "import os; print(os.environ['AMENT_PREFIX_PATH'])"
+    env = shell | {"AMENT_PREFIX_PATH": "/workspace/install"}
+    path = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    assert path.stdout.strip() == f"/workspace/install{os.pathsep}{sys.prefix}"
