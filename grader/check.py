@@ -1,8 +1,8 @@
 """The decorator that makes a function a check, and the loop that runs an exercise's checks.
 
-A check is a function of a recording and the exercise's tolerances; the first line of its docstring
-is the title that a student reads. Checks run in the order of their definition. One that depends
-on a failed check is not judged, and says for which it waited.
+A check is a function of a submission's recordings and the exercise's tolerances; the first line of
+its docstring is the title that a student reads. Checks run in the order of their definition. One
+that depends on a failed check is not judged, and says for which it waited.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from grader.recording import Recording
+from grader.recording import Recordings
 from grader.verdict import Finding, Verdict
 
 Tolerances = Mapping[str, Any]
-CheckFunction = Callable[[Recording, Tolerances], Finding]
+CheckFunction = Callable[[Recordings, Tolerances], Finding]
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Checks:
 
 
 def judge(
-    recording: Recording,
+    recordings: Recordings,
     checks: Checks,
     points: Mapping[str, float],
     tolerances: Tolerances,
@@ -68,7 +68,7 @@ def judge(
     for check in known.values():
         if check.name in points:
             verdicts[check.name] = _judge_one(
-                check, float(points[check.name]), recording, tolerances, verdicts
+                check, float(points[check.name]), recordings, tolerances, verdicts
             )
     return [verdicts[name] for name in points]
 
@@ -76,7 +76,7 @@ def judge(
 def _judge_one(
     check: Check,
     max_score: float,
-    recording: Recording,
+    recordings: Recordings,
     tolerances: Tolerances,
     earlier: Mapping[str, Verdict],
 ) -> Verdict:
@@ -93,7 +93,7 @@ def _judge_one(
             (),
             check.depends_on,
         )
-    finding = check.function(recording, tolerances)
+    finding = check.function(recordings, tolerances)
     passed = finding.share >= 1.0
     return Verdict(
         check.name,

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -45,6 +46,7 @@ class Run:
         trace_sha256: of every pose and every input; equal hashes mean equal runs.
         isolation: what kept the run apart from others.
         flags: remarks on the run that a reader of the result should know.
+        seed: chose where the varied runs start; None where there are none.
     """
 
     time: Literal["virtual", "real"] = "real"
@@ -56,6 +58,16 @@ class Run:
     trace_sha256: str = ""
     isolation: str = ""
     flags: tuple[str, ...] = ()
+    seed: int | None = None
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where turtle1 stands when a run begins: x, y [m], theta [rad]."""
+
+    x: float
+    y: float
+    theta: float
 
 
 @dataclass(frozen=True)
@@ -71,6 +83,7 @@ class Recording:
         topics: what the submission published on: {"topic", "type"}.
         output: what the submission printed (start and end of it, if it was much).
         run: how the run went.
+        start: where the turtle was put before the run; None for its usual place.
     """
 
     events: tuple[dict[str, Any], ...]
@@ -81,6 +94,7 @@ class Recording:
     topics: tuple[dict[str, str], ...] = ()
     output: str = ""
     run: Run = field(default_factory=Run)
+    start: Start | None = None
 
     def calls(self, op: str, turtle: str = "turtle1") -> list[dict[str, Any]]:
         """The inputs of one kind that went to one turtle."""
@@ -125,6 +139,7 @@ class Recording:
             "topics": self.topics,
             "output": self.output,
             "run": asdict(self.run),
+            "start": asdict(self.start) if self.start else None,
         }
         (folder / FILE).write_text(json.dumps(data), encoding="utf-8")
 
@@ -152,11 +167,44 @@ def load(folder: Path) -> Recording:
             topics=tuple(data["topics"]),
             output=data["output"],
             run=Run(**run),
+            start=Start(**data["start"]) if data.get("start") else None,
         )
     except OSError as error:
         raise RecordingError(f"cannot read the recording: {error}") from None
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise RecordingError(f"{path} is damaged: {error!r}") from None
+
+
+@dataclass(frozen=True)
+class Recordings:
+    """What is judged: the nominal run, and the varied ones, which start elsewhere.
+
+    On disk the varied ones lie in folders `varied_1`, `varied_2`, ... inside the nominal one's.
+    """
+
+    nominal: Recording
+    varied: tuple[Recording, ...] = ()
+
+    def __iter__(self) -> Iterator[Recording]:
+        yield self.nominal
+        yield from self.varied
+
+    def save(self, folder: Path) -> None:
+        """Write all recordings."""
+        self.nominal.save(folder)
+        for index, recording in enumerate(self.varied, 1):
+            recording.save(folder / f"varied_{index}")
+
+
+def load_all(folder: Path) -> Recordings:
+    """Read a nominal recording and the varied ones in it.
+
+    Raises:
+        RecordingError: one of them cannot be judged.
+    """
+    nominal = load(folder)
+    base = folder if folder.is_dir() else folder.parent
+    return Recordings(nominal, tuple(load(path) for path in sorted(base.glob("varied_*"))))
 
 
 def _pixels(path: Path, mode: str) -> npt.NDArray[np.uint8]:

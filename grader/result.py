@@ -17,7 +17,7 @@ import jsonschema
 
 from grader.errors import UsageError
 from grader.exercise import Exercise
-from grader.recording import Recording
+from grader.recording import Recording, Recordings
 from grader.verdict import Verdict
 
 SCHEMA = "turtlesim-grader/result/v1"
@@ -27,13 +27,11 @@ Result = dict[str, Any]
 def build(
     submission: str,
     exercise: Exercise,
-    recording: Recording,
+    recordings: Recordings,
     verdicts: Sequence[Verdict],
     artifacts: Mapping[str, str],
 ) -> Result:
     """Put a result together; `artifacts` are paths relative to the result file."""
-    run = asdict(recording.run)
-    run["flags"] = list(recording.run.flags)
     return {
         "schema": SCHEMA,
         "exercise": exercise.name,
@@ -41,9 +39,18 @@ def build(
         "score": round(sum(v.score for v in verdicts), 2),
         "max_score": round(sum(v.max_score for v in verdicts), 2),
         "verdicts": [v.as_json() for v in verdicts],
-        "run": run,
+        "run": _run(recordings.nominal),
+        "varied_runs": [_run(recording) for recording in recordings.varied],
         "artifacts": dict(artifacts),
     }
+
+
+def _run(recording: Recording) -> dict[str, Any]:
+    run = asdict(recording.run)
+    run["flags"] = list(recording.run.flags)
+    if recording.start is not None:
+        run["start"] = asdict(recording.start)
+    return run
 
 
 def schema() -> dict[str, Any]:

@@ -17,6 +17,7 @@ class Evidence:
         time_s: the same moment in simulated seconds.
         x, y: where the turtle was [m].
         note: what happened there.
+        run: 0 for the nominal run, 1, 2, ... for the varied ones.
     """
 
     tick: int
@@ -24,6 +25,7 @@ class Evidence:
     x: float
     y: float
     note: str
+    run: int = 0
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from pathlib import Path
 from rich.console import Console
 
 from grader import exercise as exercises
-from grader import recording as recordings
 from grader import result as results
 from grader.check import judge
+from grader.recording import load_all
 from grader.reports import terminal
 
 
@@ -27,9 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
     exercise = exercises.load(args.exercise)
-    recording = recordings.load(args.recording)
-    verdicts = judge(recording, exercise.checks, exercise.points, exercise.tolerances)
-    result = results.build(args.recording.name, exercise, recording, verdicts, {})
+    recordings = load_all(args.recording)
+    verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
+    result = results.build(args.recording.name, exercise, recordings, verdicts, {})
     if args.json:
         results.write(result, args.json)
     terminal.show(result, Console())

@@ -11,7 +11,11 @@ from rich.console import Console
 from grader import exercise as exercises
 from grader import result as results
 from grader.check import judge
+from grader.cli import progress
+from grader.errors import UsageError
+from grader.recording import Recordings
 from grader.reports import terminal
+from grader.result import Result
 from grader.run import real_time
 from grader.submission import opened
 
@@ -34,30 +38,55 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
     exercise = exercises.load(args.exercise)
-    console = Console()
-    progress = Console(stderr=True, highlight=False)
     out: Path = args.out or Path("graded") / args.submission.resolve().stem
+    console, messages = Console(), Console(stderr=True, highlight=False)
     with opened(args.submission, args.executable) as submission:
-        progress.print(f"Found: {submission.found}", markup=False)
-        progress.print("Running it beside a simulator, in real time: this takes about a minute.")
-        # An older result must not outlive a run that fails.
-        (out / "result.json").unlink(missing_ok=True)
-        with progress.status("starting the simulator ...") as status:
-            recording = real_time.run(
-                submission,
-                exercise.limits,
-                lambda seconds: status.update(f"{seconds:.0f} s simulated"),
-            )
-        verdicts = judge(recording, exercise.checks, exercise.points, exercise.tolerances)
+        messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
+        _prepare(out, args.json)
+        messages.print("Running it beside a simulator, in real time; this can take a minute.")
+        with progress.shown(messages, "running") as show:
+            recordings = Recordings(real_time.run(submission, exercise.limits, show))
         name = submission.name
-    recording.save(out / "recording")
-    Image.fromarray(recording.window).save(out / "canvas.png")
-    (out / "output.txt").write_text(recording.output, encoding="utf-8")
-    artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
-    result = results.build(name, exercise, recording, verdicts, artifacts)
-    results.write(result, out / "result.json")
-    if args.json:
-        results.write(result, args.json)
+    verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
+    artifacts = _write(recordings, out)
+    result = results.build(name, exercise, recordings, verdicts, artifacts)
+    _write_result(result, out, args.json)
     terminal.show(result, console)
     console.print(f"Picture, recording and result: {out}", highlight=False, soft_wrap=True)
     return int(args.fail_under is not None and result["score"] < args.fail_under)
+
+
+def _prepare(out: Path, copy: Path | None) -> None:
+    """Find out before the run whether its result can be written.
+
+    An older result goes now: it must not outlive a run that fails.
+
+    Raises:
+        UsageError: one of the places cannot be written.
+    """
+    for folder in (out, *([copy.parent] if copy else [])):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            probe = folder / ".grader-can-write"
+            probe.touch()
+            probe.unlink()
+        except OSError as error:
+            raise UsageError(f"cannot write into {folder}: {error.strerror}") from None
+    for path in (out / "result.json", *([copy] if copy else [])):
+        if path.is_dir():
+            raise UsageError(f"{path} is a folder; expected the name of a file to write")
+        path.unlink(missing_ok=True)
+
+
+def _write(recordings: Recordings, out: Path) -> dict[str, str]:
+    """Write everything but the result; name -> path relative to it."""
+    recordings.save(out / "recording")
+    Image.fromarray(recordings.nominal.window).save(out / "canvas.png")
+    (out / "output.txt").write_text(recordings.nominal.output, encoding="utf-8")
+    return {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
+
+
+def _write_result(result: Result, out: Path, copy: Path | None) -> None:
+    results.write(result, out / "result.json")
+    if copy:
+        results.write(result, copy)

@@ -5,20 +5,21 @@ from __future__ import annotations
 import pytest
 
 from grader.check import Checks, judge
+from grader.recording import Recordings
 from grader.verdict import Finding
 from tests.grader.driving import drive
 
 
 def verdicts(checks, points):
     recording = drive(lambda *_: None, ticks=2)
-    return {v.check: v for v in judge(recording, checks, points, {"limit": 3})}
+    return {v.check: v for v in judge(Recordings(recording), checks, points, {"limit": 3})}
 
 
 def an_exercise(share):
     checks = Checks()
 
     @checks()
-    def first(recording, tolerances):
+    def first(recordings, tolerances):
         """The first thing.
 
         More about it.
@@ -26,7 +27,7 @@ def an_exercise(share):
         return Finding(share, "seen", "look", ())
 
     @checks(after=("first",))
-    def second(recording, tolerances):
+    def second(recordings, tolerances):
         """The second thing."""
         return Finding(1, f"the limit is {tolerances['limit']}")
 

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -46,9 +47,10 @@ def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment)
 
 
 @pytest.mark.parametrize("package", ["turtlesim_py", "turtlesim_challenge", "grader"])
-def test_each_package_has_a_manifest_of_its_own_name(package: str) -> None:
+def test_each_package_has_a_manifest_with_its_name_and_version(package: str) -> None:
     manifest = Path(sys.prefix, "share", package, "package.xml").read_text()
     assert f"<name>{package}</name>" in manifest
+    assert f"<version>{version('turtlesim_py')}</version>" in manifest
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")

@@ -80,9 +80,7 @@ class Turtle:
     ) -> None:
         self.name = name
         self.sprite = sprite
-        self.x_m = x
-        self.y_down_m = float32(SIZE_M - y)
-        self.heading_rad = theta
+        self.place(x, y, theta)
         self.lin_x = 0.0
         self.lin_y = 0.0
         self.ang = 0.0
@@ -92,6 +90,12 @@ class Turtle:
         self._emit = emit
         self._teleports: list[Teleport] = []
         self._last_command_ns = now_ns
+
+    def place(self, x: float, y: float, theta: float) -> None:
+        """Stand at (x, y) [m, y up] with heading theta [rad], as if spawned there; draws nothing."""
+        self.x_m = float32(x)
+        self.y_down_m = float32(SIZE_M - float32(y))
+        self.heading_rad = float32(theta)
 
     # Inputs -----------------------------------------------------------------------------------
 

@@ -2,230 +2,211 @@
 
 from __future__ import annotations
 
-from typing import Any
+from itertools import pairwise
 
 import numpy as np
 
 from grader.check import Checks, Tolerances
-from grader.exercises.turtlesim_challenge import ink, pens
-from grader.exercises.turtlesim_challenge.path import NAMES, Path
+from grader.exercises.turtlesim_challenge import ink, pens, shape
+from grader.exercises.turtlesim_challenge.path import CENTRE_M, NAMES, Path
+from grader.exercises.turtlesim_challenge.stops import judge_stop
 from grader.messages import how_it_ended
-from grader.recording import Recording
+from grader.recording import Recording, Recordings
 from grader.verdict import Evidence, Finding
-from turtlesim_py.world.turtle import TICK_S
+from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
 
 checks = Checks()
 
-
-def _is_zero(command: dict[str, Any]) -> bool:
-    return not command["linear"][0] and not command["angular"][2]
+#: Ticks after which a command moves the turtle no more.
+WATCHDOG_TICKS = int(COMMAND_TIMEOUT_NS / 1e9 / TICK_S) + 1
 
 
 @checks()
-def moves(recording: Recording, _: Tolerances) -> Finding:
-    """The node starts, and its velocity commands move turtle1."""
+def moves(recordings: Recordings, _: Tolerances) -> Finding:
+    """The node starts and moves turtle1."""
+    recording = recordings.nominal
     path = Path(recording)
     commands = recording.calls("cmd_vel")
     seconds = f"{recording.run.simulated_s:.1f} s"
     ending = how_it_ended(recording)
     if not commands:
-        return Finding(
-            0,
-            f"Your node published no velocity command on /turtle1/cmd_vel in {seconds}.{ending}",
-            _where_it_published(recording),
-        )
-    if not path.moving.any():
+        rationale = f"Your node published no velocity command on /turtle1/cmd_vel in {seconds}."
+        return Finding(0, rationale + ending, _where_it_published(recording))
+    foreign = _foreign(path)
+    if not (path.moving & (path.speed > 0)).any():
         return Finding(
             0,
             f"Your node published {len(commands)} velocity commands in {seconds}, "
-            f"but turtle1 never moved.{ending}",
+            f"but they never moved turtle1.{foreign}{ending}",
             "Is linear.x of the Twist different from zero?",
             (path.at(commands[0]["tick"], "the first command"),),
         )
-    start = path.at(path.first + 1, "here it starts to move")
-    return Finding(1, f"{len(commands)} velocity commands moved turtle1.", evidence=(start,))
+    start = path.at(int(path.ticks[path.first]), "here it starts to move")
+    return Finding(
+        1, f"{len(commands)} velocity commands moved turtle1.{foreign}", evidence=(start,)
+    )
+
+
+def _foreign(path: Path) -> str:
+    """A sentence about motion that was no driving."""
+    if not path.foreign:
+        return ""
+    names = ", ".join(sorted({event["op"] for event in path.foreign}))
+    first = path.foreign[0]["tick"] * TICK_S
+    return (
+        f" It was also moved by {names} ({len(path.foreign)} calls, the first at {first:.2f} s); "
+        "only the longest stretch without them is judged."
+    )
 
 
 def _where_it_published(recording: Recording) -> str:
-    others = [t for t in recording.topics if t["topic"] != "/turtle1/cmd_vel"]
-    twists = [t["topic"] for t in others if t["type"].endswith("/Twist")]
-    wrong_type = [t for t in recording.topics if t["topic"] == "/turtle1/cmd_vel"]
-    if twists:
-        return f"It publishes velocities on {', '.join(twists)}: compare the topic's name."
-    if wrong_type and wrong_type[0]["type"] != "geometry_msgs/msg/Twist":
+    twists = [t["topic"] for t in recording.topics if t["type"].endswith("/Twist")]
+    others = [topic for topic in twists if topic != "/turtle1/cmd_vel"]
+    types = [t["type"] for t in recording.topics if t["topic"] == "/turtle1/cmd_vel"]
+    if others:
+        return f"It publishes velocities on {', '.join(others)}: compare the topic's name."
+    if types and types[0] != "geometry_msgs/msg/Twist":
         return (
-            f"It publishes {wrong_type[0]['type']} on /turtle1/cmd_vel; "
-            "the turtle listens to geometry_msgs/msg/Twist."
+            f"It publishes {types[0]} on /turtle1/cmd_vel; the turtle listens to "
+            "geometry_msgs/msg/Twist."
         )
-    if wrong_type:
+    if types:
         return "It has a publisher on /turtle1/cmd_vel: is publish() ever called?"
     return "Does it create a publisher on /turtle1/cmd_vel, and does it spin?"
 
 
 @checks(after=("moves",))
-def spiral(recording: Recording, tolerances: Tolerances) -> Finding:
-    """It draws a spiral from the centre: one way round, and gently wider with each turn."""
-    path = Path(recording)
-    seen: list[str] = []
+def spiral(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """A spiral from the centre, wider with each turn."""
+    path = Path(recordings.nominal)
+    missed: list[str] = []
     evidence: list[Evidence] = []
     share = 0.0
     start_m = float(path.distance[path.first])
     if start_m <= tolerances["start_m"]:
-        share += 1 / 6
+        share += tolerances["share_start"]
     else:
-        seen.append(f"The path starts {start_m:.2f} m from the centre.")
-        evidence.append(path.at(path.first + 1, "the start"))
-    rows = slice(path.first + 1, path.last + 1)
-    turning = path.turning[rows]
-    way = np.sign(np.sum(turning))
-    turns = abs(float(np.sum(turning))) * TICK_S / (2 * np.pi)
-    wrong_way = float(np.mean(turning * way < 0)) if len(turning) else 0.0
-    if turns >= tolerances["turns"] and wrong_way <= tolerances["wrong_way_share"]:
-        share += 2 / 6
+        missed.append(f"The path starts {start_m:.2f} m from the centre.")
+        evidence.append(path.at(int(path.ticks[path.first]), "the start"))
+    turns, other_way = shape.turns(path)
+    if turns >= tolerances["turns"] and other_way <= tolerances["wrong_way_share"]:
+        share += tolerances["share_turns"]
     else:
-        seen.append(
-            f"It made {turns:.1f} turns, {100 * wrong_way:.0f} % of the time the other way round; "
-            f"{tolerances['turns']} turns one way are asked for."
+        missed.append(
+            f"It made {turns:.1f} turns, with {100 * other_way:.0f} % of the turning the other "
+            f"way; at least {tolerances['turns']:g} turns in one direction are asked for."
         )
-    growth = _growth(path, rows)
-    if len(growth) and growth.min() >= tolerances["growth_m"]:
-        share += 2 / 6
-        if growth.max() <= tolerances["gentle_m"]:
-            share += 1 / 6
-        else:
-            seen.append(f"Its distance from the centre jumped by {growth.max():.2f} m in one turn.")
-    else:
-        least = f"{growth.min():.2f} m in one turn" if len(growth) else "not known in under 2 turns"
-        seen.append(f"Its distance from the centre must grow with each turn; it grew {least}.")
-    if not seen:
-        return Finding(
-            1,
-            f"{turns:.1f} turns from the centre, wider by {growth.min():.2f} to "
-            f"{growth.max():.2f} m with each.",
+    growth = shape.growth(path)
+    grows = len(growth) > 0 and growth.min() >= tolerances["growth_m"]
+    if grows and growth.max() <= tolerances["gentle_m"]:
+        share += 1 - tolerances["share_start"] - tolerances["share_turns"]
+    elif grows:
+        missed.append(f"Its distance from the centre jumped by {growth.max():.2f} m in one turn.")
+    elif len(growth):
+        missed.append(
+            f"Its mean distance from the centre must grow with each turn; from one turn to the "
+            f"next it changed by {growth.min():+.2f} m."
         )
+    else:
+        missed.append("With fewer than two turns nobody can tell whether they grow.")
+    if not missed:
+        sizes = f"{growth.min():.2f} to {growth.max():.2f} m"
+        return Finding(1, f"{turns:.1f} turns from the centre, each wider by {sizes}.")
     help_ = "A constant angular velocity with a slowly growing linear velocity makes a spiral."
-    return Finding(share, " ".join(seen), help_, tuple(evidence))
-
-
-def _growth(path: Path, rows: slice) -> Any:
-    """By how much the mean distance from the centre grows from each full turn to the next [m]."""
-    angle = np.cumsum(np.abs(path.turning[rows])) * TICK_S
-    turn = np.floor(angle / (2 * np.pi)).astype(int)
-    whole = int(turn[-1]) if len(turn) else 0
-    means = [float(path.distance[rows][turn == k].mean()) for k in range(whole)]
-    return np.diff(means)
+    return Finding(share, " ".join(missed), help_, tuple(evidence))
 
 
 @checks(after=("moves",))
-def steady_rate(recording: Recording, tolerances: Tolerances) -> Finding:
-    """Commands come at a fixed rate, and often enough that the turtle never pauses."""
-    path = Path(recording)
-    stop = path.last + 1
-    ticks = [c["tick"] for c in recording.calls("cmd_vel") if c["tick"] <= stop]
+def steady_rate(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """Commands come at a fixed rate, without pauses."""
+    path = Path(recordings.nominal)
+    ticks = np.array([c["tick"] for c in path.calls("cmd_vel") if c["tick"] <= path.stop_tick + 1])
     if len(ticks) < 3:
         return Finding(0, f"{len(ticks)} commands are too few to have a rate.", "Use a timer.")
-    intervals = np.diff(ticks) * TICK_S
-    median = float(np.median(intervals))
-    near = np.abs(intervals - median) <= tolerances["rate_deviation"] * max(median, TICK_S)
-    pauses = np.flatnonzero(~path.moving[path.first + 1 : path.last + 1])
-    if len(pauses):
-        tick = int(path.first + 2 + pauses[0])
+    gaps = np.diff(ticks)
+    if gaps.max() > WATCHDOG_TICKS:
+        row = int(np.argmax(gaps > WATCHDOG_TICKS))
         return Finding(
             0,
-            "The turtle paused on its way: a command moves it for one second only.",
+            f"No command came for {gaps[row] * TICK_S:.2f} s, and the turtle paused on its way: "
+            "a command moves it for one second only.",
             "Publish at a fixed rate, faster than once a second.",
-            (path.at(tick, "it stands still here"),),
+            (path.at(int(ticks[row]) + WATCHDOG_TICKS, "it stands still here"),),
         )
-    if near.mean() < tolerances["rate_share"]:
+    median = float(np.median(gaps))
+    allowed = max(tolerances["rate_deviation"] * median, 1.5)
+    regular = float(np.mean(np.abs(gaps - median) <= allowed))
+    if regular < tolerances["rate_share"]:
         return Finding(
             0,
-            f"The intervals between commands vary: half of them are over {median:.2f} s, and only "
-            f"{100 * near.mean():.0f} % are near that.",
+            f"The time between commands varies: usually it is {median * TICK_S:.2f} s, but only "
+            f"{100 * regular:.0f} % of the intervals are near that.",
             "A timer keeps the rate fixed.",
         )
-    return Finding(1, f"One command every {median:.2f} s.")
+    return Finding(1, f"A command every {median * TICK_S:.2f} s.")
 
 
 @checks(after=("moves",))
-def edge_stop(recording: Recording, tolerances: Tolerances) -> Finding:
-    """It stops near an edge by its own command, without touching a wall."""
-    path = Path(recording)
-    end = path.at(path.last + 1, "the last place it moved to")
-    walls = [log for log in recording.logs if "I hit the wall" in log[3]]
-    if walls:
-        return Finding(
-            0,
-            f"The turtle ran into the wall {len(walls)} times.",
-            "Watch the pose, and stop before a wall is reached.",
-            (path.at(walls[0][0], "it hits the wall here"),),
-        )
-    if recording.run.outcome == "time_limit" and path.last >= len(path) - 2:
-        return Finding(
-            0,
-            f"The turtle was still moving after {recording.run.simulated_s:.0f} s.",
-            "Compare x and y of the pose with the size of the window, and publish a zero Twist.",
-            (end,),
-        )
-    gap = float(path.wall_distance[path.last])
-    if gap > tolerances["edge_m"]:
-        return Finding(
-            0,
-            f"The turtle came to rest {gap:.2f} m from the nearest wall; "
-            f"{tolerances['edge_m']} m or less is near.{how_it_ended(recording)}",
-            "What should make it stop is the pose, near an edge.",
-            (end,),
-        )
-    last_commands = [c for c in recording.calls("cmd_vel") if c["tick"] <= path.last + 2]
-    if not last_commands or not _is_zero(last_commands[-1]):
-        return Finding(
-            0,
-            f"The turtle came to rest {gap:.2f} m from the wall because no command came any "
-            f"more, not because it was told to stop.{how_it_ended(recording)}",
-            "Publish a Twist of zeros to stop.",
-            (end,),
-        )
-    return Finding(1, f"It stopped by a command, {gap:.2f} m from the wall.", evidence=(end,))
+def edge_stop(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """Stops by a command near an edge, wherever it starts."""
+    findings = [
+        judge_stop(Path(recording, n), tolerances) for n, recording in enumerate(recordings)
+    ]
+    failed = [(n, finding) for n, finding in enumerate(findings) if finding.share < 1]
+    if not failed:
+        rationale = f"It {findings[0].rationale}{_in_varied_runs_too(recordings)}."
+        return Finding(1, rationale, evidence=findings[0].evidence)
+    number, worst = failed[0]
+    if number == 0:
+        return worst
+    return Finding(
+        0,
+        f"From the centre it {findings[0].rationale}, but not when it started elsewhere: "
+        f"{worst.rationale}",
+        "The stop must depend on the pose, not on the time or on how often something was done.",
+        worst.evidence,
+    )
 
 
 @checks(after=("moves",))
-def pen_per_quadrant(recording: Recording, tolerances: Tolerances) -> Finding:
-    """On entering a quadrant the pen takes that quadrant's colour, four different ones."""
-    path = Path(recording)
-    entries = path.entries(tolerances["band_m"])
-    colors = pens.colors_by_tick(recording)
-    own = pens.own_colors(path, entries, colors)
-    if not recording.calls("set_pen"):
+def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """Each quadrant entered gets its own pen colour."""
+    path = Path(recordings.nominal)
+    if not path.calls("set_pen"):
         return Finding(
             0,
             "The pen was never changed.",
             "Call the service /turtle1/set_pen when the turtle enters another quadrant.",
         )
-    late_ticks = round(tolerances["late_s"] / TICK_S)
-    # After its last command the turtle is not on its way any more, and a last-moment entry
-    # leaves no time for an answer.
-    end = min(path.last + 1, recording.calls("cmd_vel")[-1]["tick"])
-    judged = [e for e in entries if e.tick + (late_ticks if e is entries[-1] else 0) <= end]
-    bad = [e for e in judged if not pens.in_time(e, own, colors, late_ticks)]
-    different = len(set(own.values()))
-    good_share = 1 - len(bad) / len(judged) if judged else 0.0
-    share = good_share * different / 4
-    if share >= 1:
-        return Finding(1, f"All {len(judged)} entries changed the pen to the quadrant's colour.")
-    text = f"{len(judged) - len(bad)} of {len(judged)} entries into a quadrant changed the pen to "
-    text += f"that quadrant's colour in time; the quadrants have {different} different colours."
-    evidence = tuple(path.at(e.tick, f"quadrant {NAMES[e.quadrant]}") for e in bad[:5])
-    return Finding(
-        share,
-        text,
-        "Compare the new quadrant with the one before, and look how long the answer takes.",
-        evidence,
+    paths = [Path(recording, number) for number, recording in enumerate(recordings)]
+    colorings = [pens.coloring(path, tolerances) for path in paths]
+    worst = min(range(len(paths)), key=lambda n: colorings[n].share)
+    found, path = colorings[worst], paths[worst]
+    if found.share >= 1:
+        entries = len(colorings[0].judged)
+        rationale = f"All {entries} entries gave the pen its quadrant's colour"
+        return Finding(1, f"{rationale}{_in_varied_runs_too(recordings)}.")
+    text = (
+        f"{len(found.judged) - len(found.bad)} of {len(found.judged)} entries into a quadrant "
+        f"gave the pen that quadrant's colour in time; the {len(found.own)} quadrants that were "
+        f"entered have {len(set(found.own.values()))} different colours."
     )
+    if worst:
+        text = f"When the turtle started elsewhere (run {worst}): {text}"
+    evidence = tuple(path.at(e.tick, f"enters quadrant {NAMES[e.quadrant]}") for e in found.bad[:5])
+    help_ = "Compare the quadrant of each pose with the one before. Which is where?"
+    return Finding(found.share, text, help_, evidence)
+
+
+def _in_varied_runs_too(recordings: Recordings) -> str:
+    count = len(recordings.varied)
+    return f", and in the {count} runs that start elsewhere too" if count else ""
 
 
 @checks(after=("moves",))
-def picture(recording: Recording, tolerances: Tolerances) -> Finding:
-    """The picture has four quarters, each in a colour of its own."""
-    quarters = ink.quarters(recording.canvas)
+def picture(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """Four quarters, each in a colour of its own."""
+    quarters = ink.quarters(ink.own_drawing(recordings.nominal))
     empty = [NAMES[q] for q, quarter in quarters.items() if quarter.pixels < ink.LEAST_PIXELS]
     if empty:
         return Finding(
@@ -234,18 +215,18 @@ def picture(recording: Recording, tolerances: Tolerances) -> Finding:
             "Draw on until the spiral fills the window.",
         )
     mixed = [q for q, quarter in quarters.items() if quarter.share < tolerances["own_ink"]]
-    same = len({quarter.color for quarter in quarters.values()})
     if mixed:
-        shares = ", ".join(f"{NAMES[q]}: {100 * quarters[q].share:.0f} %" for q in mixed)
+        shares = ", ".join(f"{NAMES[q]} {100 * quarters[q].share:.0f} %" for q in mixed)
         return Finding(
             0,
-            f"Quarters with a mixture of colours; the main one covers {shares}.",
+            f"Some quarters mix colours; their main colour covers only: {shares}.",
             "The colour should change where the turtle enters a quadrant.",
         )
-    if same < 4:
+    different = len({quarter.color for quarter in quarters.values()})
+    if different < 4:
         return Finding(
             0,
-            f"The four quarters show {same} different colours.",
+            f"The four quarters show {different} different colours.",
             "Give each quadrant a colour of its own.",
         )
     total = sum(quarter.pixels for quarter in quarters.values())
@@ -253,20 +234,27 @@ def picture(recording: Recording, tolerances: Tolerances) -> Finding:
 
 
 @checks(after=("moves",))
-def no_redundant_calls(recording: Recording, tolerances: Tolerances) -> Finding:
-    """The pen service is called on entering a quadrant only."""
-    path = Path(recording)
-    calls = recording.calls("set_pen")
-    needed = len(path.entries(0.0))
+def no_redundant_calls(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """set_pen is called on entering a quadrant only."""
+    path = Path(recordings.nominal)
+    calls = path.calls("set_pen")
     if not calls:
         return Finding(0, "set_pen was never called.", "Call it once for each quadrant entered.")
-    useless = pens.repeated(calls)
+    # Near the start the count of entries depends on where exactly the centre is taken to be.
+    counts = [len(path.entries(0.0, centre)) for centre in (CENTRE_M, *tolerances["centres_m"])]
+    needed = max(counts)
     if len(calls) <= needed + tolerances["spare_calls"]:
-        return Finding(1, f"{len(calls)} calls for {needed} entries.")
+        return Finding(1, f"{len(calls)} calls for {counts[0]} entries.")
+    useless = [b for a, b in pairwise(calls) if _same_pen(a, b)]
     first = (useless or calls[needed:])[0]
     return Finding(
         0,
-        f"set_pen was called {len(calls)} times; {needed} were needed.",
+        f"set_pen was called {len(calls)} times; {counts[0]} were needed. The first needless call "
+        f"came at {first['tick'] * TICK_S:.2f} s.",
         "Remember the quadrant of the last call, and call only when it changes.",
         (path.at(first["tick"], "a call that was not needed"),),
     )
+
+
+def _same_pen(earlier: dict[str, int], later: dict[str, int]) -> bool:
+    return all(earlier[key] == later[key] for key in ("r", "g", "b", "width", "off"))

@@ -7,10 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from grader.exercises.turtlesim_challenge.path import Path
+from grader.exercises.turtlesim_challenge.pens import colors_by_tick
+from grader.recording import Recording
+from turtlesim_py.world.canvas import Canvas, Pen
+from turtlesim_py.world.turtle import METER_PX, SIZE_M
+
 #: A band around the dividing lines in which colours may mix [px]: a late answer and a pen's width.
 BAND_PX = 20
 #: A quarter with less ink than this shows no spiral [px].
 LEAST_PIXELS = 100
+
+Pixels = npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -22,7 +30,26 @@ class Quarter:
     share: float
 
 
-def quarters(canvas: npt.NDArray[np.uint8]) -> dict[int, Quarter]:
+def own_drawing(recording: Recording) -> Pixels:
+    """The canvas, (500, 500, 4); without what turtle1 did not draw by driving, if there is such.
+
+    Other turtles, teleports and a wiped canvas leave a picture that is not the path's. Then the
+    path is drawn again, from the recorded poses.
+    """
+    path = Path(recording)
+    wiped = any(event["op"] == "clear" for event in recording.events)
+    if not path.foreign and not wiped and set(recording.published) == {"turtle1"}:
+        return recording.canvas
+    canvas = Canvas()
+    colors = colors_by_tick(recording)
+    x, y = path.x * METER_PX, (SIZE_M - path.y) * METER_PX
+    for row in range(1, len(path)):
+        pen = Pen(*colors[int(path.ticks[row])])
+        canvas.draw_line(float(x[row]), float(y[row]), float(x[row - 1]), float(y[row - 1]), pen)
+    return canvas.rgba()
+
+
+def quarters(canvas: Pixels) -> dict[int, Quarter]:
     """Look at the four quarters of a canvas (height, width, 4); quadrant -> ink."""
     height, width = canvas.shape[:2]
     top, bottom = slice(0, height // 2 - BAND_PX), slice(height // 2 + BAND_PX, height)
@@ -31,7 +58,7 @@ def quarters(canvas: npt.NDArray[np.uint8]) -> dict[int, Quarter]:
     return {quadrant: _look(canvas[rows, columns]) for quadrant, (rows, columns) in parts.items()}
 
 
-def _look(part: npt.NDArray[np.uint8]) -> Quarter:
+def _look(part: Pixels) -> Quarter:
     ink = part[part[..., 3] > 0][:, :3]
     if not len(ink):
         return Quarter(0, (), 0.0)

@@ -2,49 +2,78 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from itertools import pairwise
-from typing import Any
+from collections import Counter
+from dataclasses import dataclass
 
+import numpy as np
+
+from grader.check import Tolerances
 from grader.exercises.turtlesim_challenge.path import Entry, Path
 from grader.recording import Recording
 from turtlesim_py.world.canvas import Pen
+from turtlesim_py.world.turtle import TICK_S
 
 Color = tuple[int, int, int]
 
 
+@dataclass(frozen=True)
+class Coloring:
+    """How the entries of one run were coloured.
+
+    Attributes:
+        judged: the entries that left time for an answer.
+        bad: those of them after which the pen did not take the quadrant's colour in time.
+        own: quadrant -> the colour that it ended with most often.
+    """
+
+    judged: list[Entry]
+    bad: list[Entry]
+    own: dict[int, Color]
+
+    @property
+    def share(self) -> float:
+        """The part of the entries that are right, less if quadrants share a colour."""
+        if len(self.own) < 2 or not self.judged:
+            return 0.0
+        different = len(set(self.own.values())) / len(self.own)
+        return (1 - len(self.bad) / len(self.judged)) * different
+
+
+def coloring(path: Path, tolerances: Tolerances) -> Coloring:
+    """Judge the colours of one run's entries.
+
+    An entry has until `late_s` after it, or half of a usual stay in a quadrant where stays are
+    shorter. Entries with a shorter stay than that, or after the last command, are not judged.
+    """
+    entries = path.entries(tolerances["band_m"])
+    colors = colors_by_tick(path.recording)
+    commands = path.calls("cmd_vel")
+    end = min(path.stop_tick, commands[-1]["tick"]) if commands else 0
+    if path.wall is not None:
+        end = min(end, int(path.ticks[path.wall]))
+    stays = [entry.last_tick - entry.tick + 1 for entry in entries]
+    usual = float(np.median(stays)) if stays else 0.0
+    patience = max(1, round(min(tolerances["late_s"] / TICK_S, usual / 2)))
+    judged = [e for e in entries if e.tick + patience <= min(e.last_tick, end)]
+    own = _own_colors(judged, colors)
+    bad = [e for e in judged if colors[e.tick + patience] != own[e.quadrant]]
+    return Coloring(judged, bad, own)
+
+
 def colors_by_tick(recording: Recording) -> list[Color]:
     """The pen's colour in each tick; index 0 is before the first tick."""
-    default = Pen()
-    color = (default.r, default.g, default.b)
-    changes = {
-        c["tick"]: (c["r"], c["g"], c["b"]) for c in recording.calls("set_pen") if not c["off"]
-    }
-    colors = [color]
-    for tick in range(1, recording.run.ticks + 1):
+    color = (Pen().r, Pen().g, Pen().b)
+    calls = [call for call in recording.calls("set_pen") if not call["off"]]
+    changes = {call["tick"]: (call["r"], call["g"], call["b"]) for call in calls}
+    colors = []
+    for tick in range(recording.run.ticks + 1):
         color = changes.get(tick, color)
         colors.append(color)
     return colors
 
 
-def own_colors(path: Path, entries: list[Entry], colors: list[Color]) -> dict[int, Color]:
-    """The colour with which most of the way through each quadrant was drawn."""
-    counts: dict[int, defaultdict[Color, float]] = {}
+def _own_colors(entries: list[Entry], colors: list[Color]) -> dict[int, Color]:
+    counts: dict[int, Counter[Color]] = {}
     for entry in entries:
-        count = counts.setdefault(entry.quadrant, defaultdict(float))
-        for tick in range(entry.tick, entry.last_tick + 1):
-            count[colors[tick]] += float(path.speed[tick - 1])
-    return {quadrant: max(count, key=count.__getitem__) for quadrant, count in counts.items()}
-
-
-def in_time(entry: Entry, own: dict[int, Color], colors: list[Color], late_ticks: int) -> bool:
-    """Whether the pen has the quadrant's colour soon after the entry."""
-    deadline = min(entry.tick + late_ticks, entry.last_tick)
-    return colors[deadline] == own.get(entry.quadrant)
-
-
-def repeated(calls: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The calls that asked for what was already so."""
-    keys = ("r", "g", "b", "width", "off")
-    pairs = pairwise(calls)
-    return [later for earlier, later in pairs if all(earlier[k] == later[k] for k in keys)]
+        counts.setdefault(entry.quadrant, Counter())[colors[entry.last_tick]] += 1
+    return {quadrant: count.most_common(1)[0][0] for quadrant, count in counts.items()}
