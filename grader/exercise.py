@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import math
+import random
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -13,6 +15,8 @@ import yaml
 
 from grader.check import Checks
 from grader.errors import UsageError
+from grader.recording import Start
+from turtlesim_py.world.turtle import SIZE_M
 
 DEFAULT = "turtlesim_challenge"
 
@@ -27,6 +31,28 @@ class Limits:
 
 
 @dataclass(frozen=True)
+class VariedRuns:
+    """Further runs that start elsewhere: how many, and how far from the centre [m]."""
+
+    count: int = 0
+    seed: int = 0
+    nearest_m: float = 0.0
+    farthest_m: float = 0.0
+
+    def starts(self, seed: int | None = None) -> list[Start]:
+        """Where they start; the same for the same seed."""
+        chance = random.Random(self.seed if seed is None else seed)
+        starts = []
+        for _ in range(self.count):
+            distance = chance.uniform(self.nearest_m, self.farthest_m)
+            angle = chance.uniform(-math.pi, math.pi)
+            x, y = (SIZE_M / 2 + distance * f(angle) for f in (math.cos, math.sin))
+            theta = chance.uniform(-math.pi, math.pi)
+            starts.append(Start(round(x, 3), round(y, 3), round(theta, 3)))
+        return starts
+
+
+@dataclass(frozen=True)
 class Exercise:
     """What is asked and how it is weighed.
 
@@ -34,6 +60,7 @@ class Exercise:
         name: the folder's name, as `--exercise` takes it.
         title: what a student reads.
         limits: when a run ends.
+        varied: further runs that start elsewhere.
         points: check name -> points, in the order of the report.
         tolerances: what the checks may read; their names are the checks' own business.
         checks: the exercise's check functions.
@@ -42,6 +69,7 @@ class Exercise:
     name: str
     title: str
     limits: Limits
+    varied: VariedRuns
     points: Mapping[str, float]
     tolerances: Mapping[str, Any]
     checks: Checks
@@ -91,7 +119,8 @@ def _parse(data: dict[str, Any]) -> Exercise:
         name=name,
         title=data["title"],
         limits=Limits(**{key: float(value) for key, value in data["limits"].items()}),
+        varied=VariedRuns(**data.get("varied_runs", {})),
         points=points,
-        tolerances=data["tolerances"],
+        tolerances=data.get("tolerances", {}),
         checks=checks,
     )

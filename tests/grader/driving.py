@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.recording import Recording
+from grader.recording import Recording, Start
 from grader.run.recorder import Recorder
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import SIZE_M, Pose
@@ -18,9 +18,11 @@ WHITE, RED, GREEN, BLUE = (255, 255, 255), (255, 0, 0), (0, 255, 0), (0, 0, 255)
 Controller = Callable[[int, Pose | None, Arena], None]
 
 
-def drive(controller: Controller, ticks: int = 4000) -> Recording:
+def drive(controller: Controller, ticks: int = 4000, start: Start | None = None) -> Recording:
     """Let a controller drive until the turtle has rested for three seconds, or for `ticks`."""
     arena = Arena(sprite="rolling")
+    if start is not None:
+        arena.turtles["turtle1"].place(start.x, start.y, start.theta)
     recorder = Recorder(arena)
     pose: Pose | None = None
     still = 0
@@ -34,7 +36,7 @@ def drive(controller: Controller, ticks: int = 4000) -> Recording:
             break
     recording = recorder.recording()
     outcome = "finished" if still >= REST_TICKS else "time_limit"
-    return replace(recording, output="").finished(outcome=outcome)
+    return replace(recording, start=start).finished(outcome=outcome)
 
 
 def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:

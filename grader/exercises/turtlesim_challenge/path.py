@@ -26,13 +26,25 @@ class Entry:
 
     Attributes:
         quadrant: 1 to 4, as in mathematics.
-        tick: the first tick at which it was clearly in it.
-        last_tick: the last tick at which it was clearly in it.
+        ticks: those at which it was clearly in it until it was clearly in another.
     """
 
     quadrant: int
-    tick: int
-    last_tick: int
+    ticks: tuple[int, ...]
+
+    @property
+    def tick(self) -> int:
+        """The first tick at which it was clearly in the quadrant."""
+        return self.ticks[0]
+
+    @property
+    def last_tick(self) -> int:
+        """The last tick at which it was clearly in the quadrant."""
+        return self.ticks[-1]
+
+    def settled(self, patience: int) -> int:
+        """The first tick clearly in the quadrant so many ticks after the entry, or later."""
+        return next((t for t in self.ticks if t >= self.tick + patience), self.last_tick)
 
 
 class Path:
@@ -122,10 +134,10 @@ class Path:
             return []
         quadrant = np.where(dy > 0, np.where(dx > 0, 1, 2), np.where(dx > 0, 4, 3))[clear]
         changes = np.flatnonzero(np.diff(quadrant, prepend=0))
-        ends = [*(changes[1:] - 1), len(clear) - 1]
+        stays = np.split(ticks[clear], changes[1:])
         return [
-            Entry(int(quadrant[start]), int(ticks[clear[start]]), int(ticks[clear[end]]))
-            for start, end in zip(changes, ends, strict=True)
+            Entry(int(quadrant[start]), tuple(stay.tolist()))
+            for start, stay in zip(changes, stays, strict=True)
         ]
 
     def at(self, tick: int, note: str) -> Evidence:

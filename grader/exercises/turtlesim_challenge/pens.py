@@ -56,7 +56,7 @@ def coloring(path: Path, tolerances: Tolerances) -> Coloring:
     patience = max(1, round(min(tolerances["late_s"] / TICK_S, usual / 2)))
     judged = [e for e in entries if e.tick + patience <= min(e.last_tick, end)]
     own = _own_colors(judged, colors)
-    bad = [e for e in judged if colors[e.tick + patience] != own[e.quadrant]]
+    bad = [e for e in judged if colors[e.settled(patience)] != own[e.quadrant]]
     return Coloring(judged, bad, own)
 
 
