@@ -1,9 +1,7 @@
 """What really happened in a run, taken inside the simulator; judged and re-judged from disk.
 
-On disk a recording is a folder: `recording.json`, `path.png` (what the pens drew, RGBA) and
-`window.png` (what the original's window would show at the end). The JSON holds the same `scenario`
-and `published` as the files that `turtlesim_py.scenario` reads and writes, so a run can be replayed
-without ROS.
+How a recording lies on disk is told by `grader.storage` and `grader.bag`. They are imported where
+they are needed: they know this module, and rosbags takes a tenth of a second to import.
 """
 
 from __future__ import annotations
@@ -11,19 +9,15 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
 
-from turtlesim_py.replay import COLUMNS, number
 from turtlesim_py.world.turtle import TICK_S
 
-SCHEMA = "turtlesim-grader/recording/v1"
-FILE, PATH_FILE, WINDOW_FILE = "recording.json", "path.png", "window.png"
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed"]
 
 
@@ -75,8 +69,9 @@ class Recording:
     """A run.
 
     Attributes:
-        events: every input to the arena, as scenario events `{tick, op, ...}`, in order.
-        published: turtle -> float64 array (rows, 9) of `COLUMNS`; float32 values.
+        events: every input to the arena, as scenario events `{tick, op, ...}`, as they came.
+        published: turtle -> float64 array (rows, 9) of `turtlesim_py.replay.COLUMNS`;
+            float32 values, whole ticks and colours.
         logs: [tick, severity, logger, text].
         canvas: the drawn path at the end, uint8 array (500, 500, 4), alpha 0 where unpainted.
         window: path, background and turtles at the end, uint8 array (500, 500, 3).
@@ -120,59 +115,10 @@ class Recording:
         )
 
     def save(self, folder: Path) -> None:
-        """Write the recording into a folder, which is made if need be."""
-        folder.mkdir(parents=True, exist_ok=True)
-        Image.fromarray(self.canvas).save(folder / PATH_FILE)
-        Image.fromarray(self.window).save(folder / WINDOW_FILE)
-        data = {
-            "schema": SCHEMA,
-            "scenario": {
-                "name": "recording",
-                "description": "a graded run",
-                "ticks": self.run.ticks,
-                "events": self.events,
-            },
-            "tick_seconds": TICK_S,
-            "columns": COLUMNS,
-            "published": {name: _rows(array) for name, array in self.published.items()},
-            "logs": self.logs,
-            "topics": self.topics,
-            "output": self.output,
-            "run": asdict(self.run),
-            "start": asdict(self.start) if self.start else None,
-        }
-        (folder / FILE).write_text(json.dumps(data), encoding="utf-8")
+        """Write the recording into a folder, which is made if need be; see `grader.storage`."""
+        from grader import storage
 
-
-def load(folder: Path) -> Recording:
-    """Read a recording back.
-
-    Raises:
-        RecordingError: the folder or one of its files is missing or is something else.
-    """
-    path = folder / FILE if folder.is_dir() else folder
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        if data.get("schema") != SCHEMA:
-            raise RecordingError(
-                f"{path} is no recording: expected schema {SCHEMA!r}, found {data.get('schema')!r}"
-            )
-        run = {**data["run"], "flags": tuple(data["run"]["flags"])}
-        return Recording(
-            events=tuple(data["scenario"]["events"]),
-            published={name: _array(rows) for name, rows in data["published"].items()},
-            logs=tuple(data["logs"]),
-            canvas=_pixels(path.parent / PATH_FILE, "RGBA"),
-            window=_pixels(path.parent / WINDOW_FILE, "RGB"),
-            topics=tuple(data["topics"]),
-            output=data["output"],
-            run=Run(**run),
-            start=Start(**data["start"]) if data.get("start") else None,
-        )
-    except OSError as error:
-        raise RecordingError(f"cannot read the recording: {error}") from None
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise RecordingError(f"{path} is damaged: {error!r}") from None
+        storage.save(self, folder)
 
 
 @dataclass(frozen=True)
@@ -191,9 +137,20 @@ class Recordings:
 
     def save(self, folder: Path) -> None:
         """Write all recordings."""
-        self.nominal.save(folder)
-        for index, recording in enumerate(self.varied, 1):
-            recording.save(folder / f"varied_{index}")
+        from grader import storage
+
+        storage.save_all(self, folder)
+
+
+def load(folder: Path) -> Recording:
+    """Read a recording back.
+
+    Raises:
+        RecordingError: the folder or one of its files is missing or is something else.
+    """
+    from grader import storage
+
+    return storage.load(folder)
 
 
 def load_all(folder: Path) -> Recordings:
@@ -202,22 +159,6 @@ def load_all(folder: Path) -> Recordings:
     Raises:
         RecordingError: one of them cannot be judged.
     """
-    nominal = load(folder)
-    base = folder if folder.is_dir() else folder.parent
-    return Recordings(nominal, tuple(load(path) for path in sorted(base.glob("varied_*"))))
+    from grader import storage
 
-
-def _pixels(path: Path, mode: str) -> npt.NDArray[np.uint8]:
-    with Image.open(path) as image:
-        return np.asarray(image.convert(mode))
-
-
-def _rows(array: npt.NDArray[np.float64]) -> list[list[Any]]:
-    return [[number(value) for value in row] for row in array.tolist()]
-
-
-def _array(rows: list[list[Any]]) -> npt.NDArray[np.float64]:
-    array = np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS))
-    # Nine digits name a float32 without doubt; give it back its exact value.
-    array[:, 1:6] = array[:, 1:6].astype(np.float32)
-    return array
+    return storage.load_all(folder)
