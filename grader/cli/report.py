@@ -3,23 +3,77 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
 from pathlib import Path
 
 from rich.console import Console
 
-from grader import result as results
-from grader.reports import terminal
-
-FORMATS = {"terminal": terminal.show}
+from grader import reports
+from grader.errors import UsageError
+from grader.reports import FORMATS, Report, markdown, terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.add_argument("result", type=Path, metavar="RESULT.json")
-    parser.add_argument("--format", choices=sorted(FORMATS), default="terminal")
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    width = max(map(len, FORMATS))
+    parser.epilog = "formats:\n" + "\n".join(
+        f"  {name:{width}}  {form.summary}" for name, form in FORMATS.items()
+    )
+    parser.add_argument(
+        "result", type=Path, nargs="+", metavar="RESULT.json", help="several only with csv"
+    )
+    parser.add_argument("--format", choices=FORMATS, default="terminal", metavar="NAME")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="write there, not to standard output"
+    )
+    parser.add_argument(
+        "--github-summary",
+        action="store_true",
+        help="append the result as Markdown to $GITHUB_STEP_SUMMARY as well",
+    )
 
 
 def main(args: argparse.Namespace) -> int:
-    """Print the report on standard output."""
-    FORMATS[args.format](results.read(args.result), Console())
+    """Show the results; see `grader.cli` for the exit codes."""
+    shown = [Report.read(path) for path in args.result]
+    summary = _summary_file() if args.github_summary else None
+    if args.format == "terminal" and args.out is None and len(shown) == 1:
+        terminal.show(shown[0].result, Console())
+    else:
+        content = reports.render(args.format, shown)
+        if args.out is not None:
+            reports.write(content, args.out)
+        else:
+            _print(content)
+    if summary is not None:
+        _append(summary, "".join(markdown.render(report) for report in shown))
     return 0
+
+
+def _print(content: str) -> None:
+    """Write to standard output as UTF-8, whatever the terminal's encoding."""
+    try:
+        sys.stdout.buffer.write(content.encode("utf-8"))
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:  # the reader has seen enough: `grader report ... | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _append(path: Path, content: str) -> None:
+    try:
+        with path.open("a", encoding="utf-8") as file:
+            file.write(content)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
+def _summary_file() -> Path:
+    name = os.environ.get("GITHUB_STEP_SUMMARY")
+    if not name:
+        raise UsageError(
+            "--github-summary works in a step of GitHub Actions only: "
+            "GITHUB_STEP_SUMMARY is not set"
+        )
+    return Path(name)

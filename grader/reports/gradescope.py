@@ -1,0 +1,53 @@
+"""Gradescope's `/autograder/results/results.json`. It knows passed and failed only."""
+
+from __future__ import annotations
+
+import html
+import json
+from typing import Any
+
+from grader.reports import pictures, text
+from grader.reports.report import Report, ShownVerdict
+
+_OUTPUT_LIMIT = 20_000
+
+
+def render(report: Report) -> str:
+    """The JSON document; students see the picture and what their node printed above the tests."""
+    document = {
+        "score": text.number(report.score),
+        "execution_time": text.number(report.run["wall_s"]),
+        "output": _overview(report),
+        "output_format": "html",
+        "test_output_format": "text",
+        "test_name_format": "text",
+        "tests": [_test(verdict) for verdict in report.verdicts],
+    }
+    return json.dumps(document, indent=2) + "\n"
+
+
+def _test(verdict: ShownVerdict) -> dict[str, Any]:
+    lines = verdict.lines()
+    if verdict.status == "not_judged":
+        lines.insert(0, "Not judged.")
+    elif verdict.is_partial:
+        lines.insert(0, "Partial credit.")
+    return {
+        "name": f"{verdict.name}: {verdict.title}",
+        "number": str(verdict.index + 1),
+        "score": text.number(verdict.score),
+        "max_score": text.number(verdict.max_score),
+        "status": "passed" if verdict.passed else "failed",
+        "output": "\n".join(lines),
+    }
+
+
+def _overview(report: Report) -> str:
+    parts = [f"<p><strong>{html.escape(report.headline)}</strong></p>"]
+    picture = pictures.canvas_uri(report)
+    if picture:
+        parts.append(f'<p><img src="{picture}" width="500" alt="The window at the end"></p>')
+    output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    if output:
+        parts.append(f"<p>What the node printed:</p><pre>{html.escape(output)}</pre>")
+    return "".join(parts)

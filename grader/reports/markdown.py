@@ -1,0 +1,87 @@
+"""GitHub-flavoured Markdown: a step summary, a release's text, a comment."""
+
+from __future__ import annotations
+
+import re
+
+from grader.reports import text
+from grader.reports.report import Report, ShownVerdict
+
+_SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
+#: What can begin something in Markdown, anywhere or at the start of a line. A backslash before it
+#: takes that away.
+_SPECIAL = re.compile(r"([\\`*_\[\]<>#|~&$])")
+_SPECIAL_AT_START = re.compile(r"^(\d*)([-+=.)])")
+_OUTPUT_LIMIT = 10_000
+
+
+def render(report: Report) -> str:
+    """The report, ending with a line break so that it can be appended to a file."""
+    parts = [
+        f"## {_quote(report.exercise)}: {report.score_text} points",
+        f"Submission: {_quote(report.submission)}",
+        _first(report),
+        _table(report),
+    ]
+    parts += [_seen(verdict) for verdict in report.verdicts if verdict.status == "failed"]
+    parts += [_run(report), _output(report)]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _quote(value: str) -> str:
+    """A text in one line that Markdown shows as it is."""
+    quoted = _SPECIAL_AT_START.sub(r"\1\\\2", _SPECIAL.sub(r"\\\1", text.one_line(value)))
+    # No links from addresses, and nobody is notified: an entity and an invisible joiner.
+    return quoted.replace("://", "&#58;//").replace("www.", "www&#46;").replace("@", "@\u2060")
+
+
+def _first(report: Report) -> str:
+    first = report.first_to_mend
+    if first is None:
+        return f"**{_quote(report.headline)}**"
+    return f"**First to mend, {_quote(first.name)}:** {_quote(report.headline)}"
+
+
+def _table(report: Report) -> str:
+    rows = ["| verdict | check | points | asked for |", "| --- | --- | ---: | --- |"]
+    for verdict in report.verdicts:
+        asked = _quote(verdict.title)
+        if verdict.waited_for:
+            asked += f" (waits for {_quote(', '.join(verdict.waited_for))})"
+        points = verdict.score_text + (" (partial credit)" if verdict.is_partial else "")
+        sign = f"{_SIGNS[verdict.status]} {verdict.word}"
+        rows.append(f"| {sign} | {_quote(verdict.name)} | {points} | {asked} |")
+    rows.append(f"| | **total** | **{report.score_text.replace(' of ', ' / ')}** | |")
+    return "\n".join(rows)
+
+
+def _seen(verdict: ShownVerdict) -> str:
+    lines = [f"### {_quote(verdict.name)}: {verdict.score_text}", "", _quote(verdict.rationale)]
+    if verdict.points:
+        lines += ["", *(f"- {_quote(str(point))}" for point in verdict.points)]
+    if verdict.help:
+        lines += ["", f"**Look at:** {_quote(verdict.help)}"]
+    return "\n".join(lines)
+
+
+def _run(report: Report) -> str:
+    run = report.run
+    lines = [
+        f"Run: {_quote(run['outcome'].replace('_', ' '))}, {run['simulated_s']:.1f} s simulated "
+        f"in {run['wall_s']:.1f} s ({run['time']} time)."
+    ]
+    lines += [f"- Note: {_quote(flag)}" for flag in run["flags"]]
+    return "\n".join(lines)
+
+
+def _output(report: Report) -> str:
+    """What the node printed, in a fence that is longer than any in it."""
+    output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
+    if not output.strip():
+        return ""
+    longest = max((len(run) for run in re.findall(r"`+", output)), default=0)
+    fence = "`" * max(3, longest + 1)
+    return (
+        "<details><summary>What the node printed</summary>\n\n"
+        f"{fence}text\n{output}\n{fence}\n\n</details>"
+    )

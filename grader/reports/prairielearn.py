@@ -1,0 +1,53 @@
+"""PrairieLearn's `/grade/results/results.json`: a score from 0 to 1, at most 1 MB in all."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from grader.reports import pictures, text
+from grader.reports.report import Report, ShownVerdict
+
+#: PrairieLearn refuses a file above 1 MB.
+LIMIT_BYTES = 1_000_000
+_OUTPUT_LIMIT = 20_000
+
+
+def render(report: Report) -> str:
+    """The JSON document, without the picture or even the explanations if it would be too large."""
+    picture = pictures.canvas_uri(report)
+    images = [{"label": "The window at the end", "url": picture}] if picture else []
+    for shown, tests_in_full in ((images, True), ([], True), ([], False)):
+        document = json.dumps(_document(report, shown, tests_in_full)) + "\n"
+        if len(document) <= LIMIT_BYTES:  # json.dumps writes ASCII: characters are bytes
+            break
+    return document
+
+
+def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> dict[str, Any]:
+    return {
+        "gradable": True,
+        "score": _share(report),
+        "message": text.clip(report.headline, 1000),
+        "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
+        "images": images,
+        "tests": [_test(verdict, in_full) for verdict in report.verdicts],
+    }
+
+
+def _test(verdict: ShownVerdict, in_full: bool) -> dict[str, Any]:
+    test = {
+        "name": f"{verdict.name} ({verdict.word})",
+        "points": text.number(verdict.score),
+        "max_points": text.number(verdict.max_score),
+    }
+    if in_full:
+        test["description"] = verdict.title
+        test["message"] = "\n".join(verdict.lines())
+    return test
+
+
+def _share(report: Report) -> float:
+    if report.max_score <= 0:
+        return 1.0 if all(verdict.passed for verdict in report.verdicts) else 0.0
+    return min(report.score / report.max_score, 1.0)

@@ -1,0 +1,71 @@
+"""Text made fit to stand in any report: a submission may print and name what it likes."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+_ESCAPE_SEQUENCES = re.compile(
+    r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)?|[@-Z\\^_])"
+)
+_LINE_BREAKS = re.compile(r"\r\n?|[\u2028\u2029]")
+#: Control characters (XML 1.0 has none of them), halves of characters, non-characters, and the
+#: marks that turn the direction of the text behind them.
+_UNFIT = re.compile(
+    r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069]"
+)
+_REPLACEMENT = "\ufffd"
+
+
+def plain(text: str) -> str:
+    r"""The text without colours and control characters; `\n` is its only line break."""
+    text = _ESCAPE_SEQUENCES.sub("", text)
+    return _UNFIT.sub(_REPLACEMENT, _LINE_BREAKS.sub("\n", text))
+
+
+def plain_all(value: Any) -> Any:
+    """The same JSON value with each of its texts made plain."""
+    if isinstance(value, str):
+        return plain(value)
+    if isinstance(value, dict):
+        return {plain(key): plain_all(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [plain_all(item) for item in value]
+    return value
+
+
+def one_line(text: str) -> str:
+    """The text with every run of white space as one space."""
+    return " ".join(text.split())
+
+
+def clip(text: str, limit: int) -> str:
+    """The text, its end cut off if it has more than `limit` characters."""
+    return text if len(text) <= limit else text[: limit - 1] + "…"
+
+
+def clip_middle(text: str, limit: int) -> str:
+    """The start and the end of a text that has more than about `limit` characters."""
+    if len(text) <= limit:
+        return text
+    half = limit // 2
+    left_out = len(text) - 2 * half
+    return f"{text[:half]}\n[… {left_out} characters left out …]\n{text[-half:]}"
+
+
+def points(value: float) -> str:
+    """Points as people write them: two decimals at most, 12.5, 30."""
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def number(value: float) -> float | int:
+    """A number as JSON formats get it: two decimals at most, and whole where it is."""
+    rounded = round(value, 2)
+    return int(rounded) if float(rounded).is_integer() else rounded
+
+
+def place(x: float, y: float) -> str:
+    """A place in the window [m]: '(5.54, 7.20)'."""
+    known = math.isfinite(x) and math.isfinite(y)
+    return f"({x:.2f}, {y:.2f})" if known else "an unknown place"

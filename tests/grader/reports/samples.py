@@ -1,0 +1,111 @@
+"""Results to be shown, and recordings to lie beside them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from PIL import Image
+
+from grader.recording import Recording
+from grader.reports import Report
+
+#: The environment that Classroom 50 gives to an autograder.
+CLASSROOM50 = {
+    "CLASSROOM": "ros-1",
+    "ASSIGNMENT": "spiral",
+    "ASSIGNMENT_TYPE": "individual",
+    "OWNER": "ada",
+    "SUBMISSION_TAG": "submit/2026-10-01T12-00-00Z-a1b2c3d",
+    "COMMIT_URL": "https://example.org/commit/a1b2c3d",
+    "RELEASE_URL": "https://example.org/releases/1",
+    "REVIEW_URL": "https://example.org/compare/1",
+}
+
+
+def evidence(note: str = "here", time_s: float = 1.6, **more: Any) -> dict[str, Any]:
+    item = {"tick": 100, "time_s": time_s, "x": 5.5, "y": 7.25, "note": note}
+    return item | more
+
+
+def verdict(check: str, status: str = "passed", score: float = 10, **more: Any) -> dict[str, Any]:
+    parts = {
+        "check": check,
+        "title": f"Title of {check}",
+        "status": status,
+        "score": score,
+        "max_score": 10,
+        "rationale": f"Rationale of {check}.",
+        "help": "" if status == "passed" else f"Help for {check}.",
+        "evidence": [],
+        "depends_on": [],
+    }
+    return parts | more
+
+
+def run(**more: Any) -> dict[str, Any]:
+    parts = {
+        "time": "virtual",
+        "outcome": "finished",
+        "exit_code": None,
+        "ticks": 3500,
+        "simulated_s": 56.0,
+        "wall_s": 4.25,
+        "trace_sha256": "ab" * 32,
+        "isolation": "domain 17",
+        "flags": [],
+    }
+    return parts | more
+
+
+def result(*verdicts: dict[str, Any], **more: Any) -> dict[str, Any]:
+    listed = list(verdicts) or MIXED
+    parts = {
+        "schema": "turtlesim-grader/result/v1",
+        "exercise": "some_exercise",
+        "submission": "controller.py",
+        "score": round(sum(v["score"] for v in listed), 2),
+        "max_score": round(sum(v["max_score"] for v in listed), 2),
+        "verdicts": listed,
+        "run": run(),
+        "artifacts": {},
+    }
+    return parts | more
+
+
+#: One of each: passed, failed with partial credit, failed, not judged. 18.33 of 40 points.
+MIXED = [
+    verdict("starts", evidence=[evidence("it starts", 0.16)]),
+    verdict("draws", "failed", 8.33, evidence=[evidence("a gap", 20.0), evidence("again", 21.0)]),
+    verdict("stops", "failed", 0),
+    verdict("rests", "not_judged", 0, depends_on=["starts", "stops"]),
+]
+
+
+def report(*verdicts: dict[str, Any], **more: Any) -> Report:
+    """A report without anything beside it."""
+    return Report(result(*verdicts, **more), Path("/nowhere"))
+
+
+def graded(
+    folder: Path,
+    recording: Recording,
+    *verdicts: dict[str, Any],
+    varied: tuple[Recording, ...] = (),
+    output: str = "",
+    **more: Any,
+) -> Path:
+    """A result file with a recording, a picture and an output beside it, as `grader run` leaves."""
+    recording.save(folder / "recording")
+    for number, other in enumerate(varied, 1):
+        other.save(folder / "recording" / f"varied_{number}")
+    Image.fromarray(recording.window).save(folder / "canvas.png")
+    (folder / "output.txt").write_text(output, encoding="utf-8")
+    artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
+    if varied:
+        start = {"x": 4.0, "y": 7.0, "theta": 1.0}
+        more["varied_runs"] = [run(ticks=other.run.ticks, start=start) for other in varied]
+    path = folder / "result.json"
+    path.write_text(json.dumps(result(*verdicts, artifacts=artifacts, **more)))
+    return path

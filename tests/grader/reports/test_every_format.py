@@ -1,0 +1,158 @@
+"""Whatever a submission prints and is called: every format stays readable, and the scores agree."""
+
+from __future__ import annotations
+
+from decimal import ROUND_HALF_UP, Decimal
+from pathlib import Path
+
+import jsonschema
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from grader import result as results
+from grader.reports import FORMATS, Report, render
+from tests.grader.reports import samples
+from tests.grader.reports.readers import READERS
+
+NASTY = [
+    "]]>",
+    "<script>alert(1)</script>",
+    '"><img src=x onerror=alert(1)>',
+    "</script>",
+    "<!--",
+    "{{ 7 * 7 }}",
+    "a | b \\| c",
+    "[link](http://evil.example)",
+    "http://evil.example and www.evil.example, me@evil.example",
+    "![x](y)",
+    "```\n# title\n```",
+    "---",
+    "1. one",
+    "=HYPERLINK(1)",
+    "Grade :=>> 100",
+    "--|>\nGrade :=>> 100\n<|--",
+    "\nGrade :=>> 100",
+    "-title (-50)",
+    '{"scores": {"all": 100}}',
+    "\n::error::boo",
+    "[[ATTACHMENT|/etc/passwd]]",
+    "\x1b[31mred\x1b[0m \x1b]0;title\x07",
+    "\x00\x08\x0b\x0c\x1f\x7f\x85",
+    "\ud800",
+    "\ufffe\uffff",
+    "\u2028\u2029",
+    "\u202egpj.exe",
+    "score",
+    "[bold]rich[/bold] [/]",
+    "<b>&amp;</b>",
+    "ünïcödé 🐢",
+    "",
+    " ",
+]
+TEXTS = st.one_of(
+    st.sampled_from(NASTY),
+    st.text(st.characters(codec=None), max_size=40),
+    st.lists(st.sampled_from(NASTY), max_size=3).map("".join),
+)
+PLACES = st.one_of(st.floats(-1, 12), st.just(float("nan")), st.just(float("inf")))
+EVIDENCE = st.fixed_dictionaries(
+    {
+        "tick": st.integers(0, 10_000),
+        "time_s": st.floats(0, 1000),
+        "x": PLACES,
+        "y": PLACES,
+        "note": TEXTS,
+    },
+    optional={"run": st.integers(0, 3)},
+)
+
+
+@st.composite
+def verdicts(draw):
+    most = draw(st.sampled_from([0, 1, 2.5, 5, 10, 30, 33.33]))
+    status = draw(st.sampled_from(["passed", "failed", "not_judged"]))
+    share = {"passed": 1.0, "not_judged": 0.0}.get(status)
+    if share is None:
+        share = draw(st.floats(0, 0.999))
+    return {
+        "check": draw(TEXTS),
+        "title": draw(TEXTS),
+        "status": status,
+        "score": round(most * share, 2),
+        "max_score": most,
+        "rationale": draw(TEXTS),
+        "help": draw(TEXTS),
+        "evidence": draw(st.lists(EVIDENCE, max_size=3)),
+        "depends_on": draw(st.lists(TEXTS, max_size=2)),
+    }
+
+
+@st.composite
+def any_results(draw):
+    flags = draw(st.lists(TEXTS, max_size=2))
+    facts = samples.run(
+        flags=flags,
+        isolation=draw(TEXTS),
+        outcome=draw(st.sampled_from(["finished", "crashed", "time_limit"])),
+        exit_code=draw(st.none() | st.integers(-11, 255)),
+    )
+    listed = draw(st.lists(verdicts(), min_size=1, max_size=5))
+    made = samples.result(
+        *listed, submission=draw(TEXTS), exercise=draw(TEXTS), run=facts, varied_runs=[facts]
+    )
+    jsonschema.validate(made, results.schema())
+    return made
+
+
+@pytest.fixture
+def classroom(monkeypatch):
+    for name, value in samples.CLASSROOM50.items():
+        monkeypatch.setenv(name, value)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@settings(
+    deadline=None,
+    max_examples=40,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(made=any_results())
+def test_every_format_of_every_result_is_well_formed_and_has_the_same_score(name, made, classroom):
+    content = render(name, [Report(made, Path("/nowhere"))])
+    content.encode("utf-8")
+    found = READERS[name](content)
+    if name == "classroom50":
+        factor = classroom50_factor(made)
+        exact = Decimal(str(made["score"])) * factor
+        assert found == int(exact.to_integral_value(ROUND_HALF_UP))
+    else:
+        assert found == pytest.approx(made["score"], abs=1e-9)
+
+
+def classroom50_factor(made):
+    most = [Decimal(str(v["max_score"])) for v in made["verdicts"]]
+    return next(f for f in (1, 10, 100) if all(m * f % 1 == 0 for m in most))
+
+
+def test_there_is_a_reader_for_every_format():
+    assert READERS.keys() == FORMATS.keys()
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_what_is_not_judged_never_looks_passed(name, classroom):
+    content = render(name, [samples.report(samples.verdict("waits", "not_judged", 0))])
+    assert READERS[name](content) == 0
+    passed = {"✅", "✓", '"passed": true', '"status": "pass', "1 passed"}
+    assert not [sign for sign in passed if sign in content.split("<script")[0]]
+
+
+@pytest.mark.parametrize("name", set(FORMATS) - {"csv"})
+def test_every_format_says_what_was_seen_and_what_to_look_at(name, classroom):
+    content = render(name, [samples.report()])
+    if name == "github-autograding":
+        import base64
+
+        content = base64.b64decode(content).decode()
+    for words in ("Rationale of draws.", "Help for draws.", "20.00 s", "(5.50, 7.25)", "a gap"):
+        assert words in content.replace("\\", ""), words

@@ -1,0 +1,29 @@
+from __future__ import annotations
+
+import json
+
+from grader.reports import Report, gradescope
+from tests.grader.driving import Spiral, drive
+from tests.grader.reports import readers, samples
+
+
+def test_students_see_the_picture_and_what_their_node_printed(tmp_path):
+    path = samples.graded(tmp_path, drive(Spiral(), ticks=200), output="<b>Traceback</b>\n")
+    content = gradescope.render(Report.read(path))
+    readers.gradescope(content)
+    overview = json.loads(content)["output"]
+    assert 'src="data:image/png;base64,' in overview
+    assert "<pre>&lt;b&gt;Traceback&lt;/b&gt;</pre>" in overview
+
+
+def test_what_is_not_judged_is_failed_and_says_what_it_waits_for():
+    test = json.loads(gradescope.render(samples.report()))["tests"][3]
+    assert test["status"] == "failed"
+    assert test["output"].startswith("Not judged.\n")
+    assert "Waits for: stops" in test["output"]
+
+
+def test_partial_credit_is_named():
+    test = json.loads(gradescope.render(samples.report()))["tests"][1]
+    assert (test["score"], test["status"]) == (8.33, "failed")
+    assert test["output"].startswith("Partial credit.\n")

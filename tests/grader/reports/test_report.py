@@ -1,0 +1,104 @@
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from grader.errors import UsageError
+from grader.reports import FORMATS, Report, render, write
+from tests.grader.driving import Spiral, drive
+from tests.grader.reports import samples
+from tests.grader.reports.samples import evidence, verdict
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return drive(Spiral(), ticks=600)
+
+
+def test_the_first_thing_to_mend_is_the_first_failed_check():
+    assert samples.report().first_to_mend.name == "draws"
+    assert samples.report().headline == "Rationale of draws."
+
+
+def test_without_a_failed_check_it_is_the_first_that_was_not_judged():
+    report = samples.report(verdict("a"), verdict("b", "not_judged", 0))
+    assert report.first_to_mend.name == "b"
+
+
+def test_with_everything_passed_there_is_nothing_to_mend():
+    report = samples.report(verdict("a"), verdict("b"))
+    assert report.first_to_mend is None
+    assert report.headline == "Nothing to mend: all 2 checks passed."
+
+
+def test_evidence_is_numbered_over_all_verdicts_and_names_its_run():
+    report = samples.report(
+        verdict("a", evidence=[evidence("x"), evidence("y", run=2)]),
+        verdict("b", evidence=[evidence("z")]),
+    )
+    assert [(p.number, p.verdict, p.run, p.note) for p in report.points] == [
+        (1, 0, 0, "x"),
+        (2, 0, 2, "y"),
+        (3, 1, 0, "z"),
+    ]
+    assert str(report.points[1]) == "varied run 2, at 1.60 s, at (5.50, 7.25): y"
+
+
+def test_a_check_that_is_not_judged_waits_for_those_that_did_not_pass_only():
+    assert samples.report().verdicts[3].waited_for == ("stops",)
+
+
+def test_checks_of_one_name_or_none_can_be_told_apart():
+    names = [v.name for v in samples.report(*map(verdict, ["a", "", "a", "a (2)"])).verdicts]
+    assert names[:3] == ["a", "check 2", "a (2)"]
+    assert len(set(names)) == 4
+
+
+def test_a_result_is_read_with_what_lies_beside_it(tmp_path, recording):
+    report = Report.read(samples.graded(tmp_path, recording, varied=(recording,), output="hi\x07"))
+    assert report.canvas_path == tmp_path.resolve() / "canvas.png"
+    assert list(report.recordings) == [0, 1]
+    assert report.output == "hi\ufffd"
+
+
+def test_a_missing_recording_is_no_error_and_the_reason_is_known(tmp_path, recording):
+    path = samples.graded(tmp_path, recording)
+    (tmp_path / "recording" / "run.json").unlink(missing_ok=True)
+    (tmp_path / "recording" / "recording.json").unlink(missing_ok=True)
+    report = Report.read(path)
+    assert report.recordings == {}
+    assert "recording" in report.no_recording(0)
+    assert samples.report().no_recording(0) == "no recording lies beside it"
+
+
+@pytest.mark.parametrize("path", ["../secret.png", "/etc/passwd", "link.png"])
+def test_only_what_lies_below_the_results_folder_is_opened(tmp_path, path):
+    folder = tmp_path / "graded"
+    folder.mkdir()
+    (tmp_path / "secret.png").write_bytes(b"secret")
+    (folder / "link.png").symlink_to(tmp_path / "secret.png")
+    report = Report(samples.result(artifacts={"canvas": path, "output": path}), folder)
+    assert report.canvas_path is None
+    assert report.output == ""
+
+
+def test_what_is_no_result_is_refused_with_its_name(tmp_path):
+    path = tmp_path / "other.json"
+    path.write_text(json.dumps({"score": 100}))
+    with pytest.raises(UsageError, match=r"other\.json is no result"):
+        Report.read(path)
+
+
+def test_one_format_takes_several_results_and_the_others_say_so():
+    assert [name for name, form in FORMATS.items() if form.takes_several] == ["csv"]
+    with pytest.raises(UsageError, match=r"markdown shows one result, found 2; .*: csv"):
+        render("markdown", [samples.report(), samples.report()])
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path):
+    write("ä\n", tmp_path / "new" / "report.md")
+    assert (tmp_path / "new" / "report.md").read_bytes() == "ä\n".encode()
+    with pytest.raises(UsageError, match="cannot write"):
+        write("x", tmp_path / "new" / "report.md" / "below_a_file")
+    assert [p.name for p in (tmp_path / "new").iterdir()] == ["report.md"]

@@ -1,0 +1,96 @@
+"""`grader report`, called as a user does."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.cli import main
+from tests.grader.reports import samples
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def result(tmp_path):
+    path = tmp_path / "result.json"
+    path.write_text(json.dumps(samples.result(submission="größe.py")))
+    return path
+
+
+def test_without_a_format_it_is_for_the_terminal(result, capsys):
+    assert main(["report", str(result)]) == 0
+    assert capsys.readouterr().out.startswith("Rationale of draws.\n")
+
+
+def test_a_format_goes_to_standard_output(result, capsysbinary):
+    assert main(["report", str(result), "--format", "gradescope"]) == 0
+    assert json.loads(capsysbinary.readouterr().out)["score"] == 18.33
+
+
+def test_or_to_a_file_and_then_nothing_is_printed(result, tmp_path, capsys):
+    out = tmp_path / "new" / "report.html"
+    assert main(["report", str(result), "--format", "html", "--out", str(out)]) == 0
+    assert out.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    assert capsys.readouterr().out == ""
+
+
+def test_csv_takes_several_results(result, capsys):
+    assert main(["report", str(result), str(result), "--format", "csv"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 3
+
+
+def test_other_formats_refuse_several(result, tmp_path, capsys):
+    out = tmp_path / "x"
+    words = ["report", str(result), str(result), "--format", "junit", "--out", str(out)]
+    assert main(words) == 2
+    assert "several can be given with: csv" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_github_summary_is_appended_beside_the_usual_output(
+    result, tmp_path, monkeypatch, capsys
+):
+    summary = tmp_path / "summary.md"
+    summary.write_text("before\n")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+    assert main(["report", str(result), "--github-summary"]) == 0
+    text = summary.read_text(encoding="utf-8")
+    assert text.startswith("before\n## some\\_exercise: 18.33 of 40 points\n")
+    assert "Score: 18.33 of 40" in capsys.readouterr().out
+
+
+def test_nothing_is_appended_unasked(result, tmp_path, monkeypatch):
+    summary = tmp_path / "summary.md"
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+    assert main(["report", str(result), "--format", "markdown"]) == 0
+    assert not summary.exists()
+
+
+def test_a_github_summary_elsewhere_is_refused(result, monkeypatch, capsys):
+    monkeypatch.delenv("GITHUB_STEP_SUMMARY", raising=False)
+    assert main(["report", str(result), "--github-summary"]) == 2
+    assert "GITHUB_STEP_SUMMARY is not set" in capsys.readouterr().err
+
+
+def test_help_lists_the_formats(capsys):
+    with pytest.raises(SystemExit):
+        main(["report", "--help"])
+    text = capsys.readouterr().out
+    assert "classroom50" in text
+    assert "moodle-vpl" in text
+
+
+def test_an_ascii_terminal_and_a_closed_pipe_are_no_failures(result):
+    command = f"{sys.executable} -m grader report {result} --format html | head -c 10"
+    env = {**os.environ, "PYTHONPATH": str(ROOT), "LC_ALL": "POSIX", "PYTHONUTF8": "0"}
+    done = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, env=env
+    )
+    assert done.stdout == "<!DOCTYPE "
+    assert done.stderr == ""

@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+import io
+
+import pytest
+from rich.console import Console
+
+from grader.reports import terminal
+from tests.grader.reports import samples
+from tests.grader.reports.samples import verdict
+
+
+def shown(result, width=80):
+    out = io.StringIO()
+    terminal.show(result, Console(file=out, width=width))
+    return out.getvalue()
+
+
+def test_the_first_line_is_the_first_thing_to_mend_uncut():
+    rationale = "word " * 60
+    text = shown(samples.result(verdict("a", "failed", 0, rationale=rationale)))
+    assert text.splitlines()[0] == rationale.strip()
+
+
+def test_with_nothing_to_mend_the_first_line_says_so():
+    text = shown(samples.result(verdict("a")))
+    assert text.startswith("Nothing to mend: all 1 checks passed.\n")
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_it_stays_within_the_terminal(width):
+    text = shown(samples.result(*[verdict(f"check_{i}", title="word " * 12) for i in range(7)]))
+    assert max(map(len, text.splitlines())) <= width
+
+
+def test_names_and_points_are_whole_at_80_columns():
+    text = shown(samples.result(verdict("a_long_name_of_a_check", title="word " * 20)))
+    assert "a_long_name_of_a_check" in text
+    assert "10 / 10" in text
+
+
+def test_partial_credit_and_what_a_check_waits_for_are_shown():
+    text = shown(samples.result())
+    assert "8.33 / 10" in text
+    assert "partial credit" in text
+    assert "waits for stops" in text
+    assert "Score: 18.33 of 40" in text
+
+
+def test_a_check_that_waits_for_none_says_why_it_is_not_judged():
+    text = shown(samples.result(verdict("a", "not_judged", 0, rationale="The run was spoiled.")))
+    assert "a, 0 / 10: The run was spoiled." in text
+
+
+def test_markup_is_shown_and_not_obeyed():
+    text = shown(samples.result(verdict("a", "failed", 0, rationale="[bold]x[/bold] [/red] [1]")))
+    assert text.startswith("[bold]x[/bold] [/red] [1]\n")
+
+
+def test_a_submission_cannot_speak_to_the_runner_of_a_ci_system():
+    rationale = "x\n::error file=a.py::boo ::stop-commands::t ##[error]no ##vso[task.x]"
+    lines = shown(samples.result(verdict("a", "failed", 0, rationale=rationale)), 20).splitlines()
+    assert not [line for line in lines if "::" in line or "##" in line]
+
+
+def test_flags_of_the_run_are_notes():
+    assert "Note: seen twice" in shown(samples.result(run=samples.run(flags=["seen twice"])))

@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import pytest
+
+from grader.reports import text
+
+
+@pytest.mark.parametrize(
+    ("raw", "plain"),
+    [
+        ("\x1b[31mred\x1b[0m", "red"),
+        ("\x1b]0;a title\x07text", "text"),
+        ("one\r\ntwo\rthree\u2028four", "one\ntwo\nthree\nfour"),
+        ("tab\tstays", "tab\tstays"),
+        ("bell\x07 nul\x00", "bell\ufffd nul\ufffd"),
+        ("half a character: \ud83d", "half a character: \ufffd"),
+        ("gpj\u202eexe", "gpj\ufffdexe"),
+        ("größer 🐢", "größer 🐢"),
+    ],
+)
+def test_plain_text_has_no_colours_and_no_control_characters(raw, plain):
+    assert text.plain(raw) == plain
+
+
+def test_every_text_of_a_result_is_made_plain_and_numbers_stay():
+    raw = {"a\x00": ["\x1b[1mb", {"c": "\ud800"}], "n": 1.5, "t": True, "z": None}
+    plain = {"a\ufffd": ["b", {"c": "\ufffd"}], "n": 1.5, "t": True, "z": None}
+    assert text.plain_all(raw) == plain
+
+
+def test_a_long_text_keeps_its_start_and_its_end():
+    clipped = text.clip_middle("a" * 500 + "b" * 500, 100)
+    assert clipped.startswith("a" * 50)
+    assert clipped.endswith("b" * 50)
+    assert "900 characters left out" in clipped
+    assert text.clip_middle("short", 100) == "short"
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [(30, "30"), (12.5, "12.5"), (8.333, "8.33"), (0, "0"), (100, "100")]
+)
+def test_points_have_two_decimals_at_most(value, shown):
+    assert text.points(value) == shown
+
+
+def test_json_numbers_are_whole_where_they_can_be():
+    assert repr(text.number(5.0)) == "5"
+    assert repr(text.number(8.333)) == "8.33"
+
+
+def test_a_turtle_that_is_nowhere_is_at_an_unknown_place():
+    assert text.place(1, 2.346) == "(1.00, 2.35)"
+    assert text.place(float("nan"), 2) == "an unknown place"
