@@ -94,12 +94,13 @@ def _judge_one(
             check.depends_on,
         )
     finding = check.function(recordings, tolerances)
-    passed = finding.share >= 1.0
+    share = min(max(finding.share, 0.0), 1.0)
+    passed = share >= 1.0
     return Verdict(
         check.name,
         check.title,
         "passed" if passed else "failed",
-        round(max_score * finding.share, 2),
+        round(max_score * share, 2),
         max_score,
         finding.rationale,
         "" if passed else finding.help,

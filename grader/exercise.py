@@ -84,43 +84,101 @@ def names() -> list[str]:
 def load(name_or_file: str) -> Exercise:
     """Load an installed exercise by name, or an edited copy of its exercise.yaml by path.
 
+    What an edited copy leaves out of `limits` and `tolerances` stays as it is in the original.
+
     Raises:
         UsageError: there is no such exercise, or the file does not describe one.
     """
     path = Path(name_or_file)
     if path.suffix in (".yaml", ".yml"):
         try:
-            text = path.read_text(encoding="utf-8")
+            edited = _read(path.read_text(encoding="utf-8"))
+            return _build(_merged(_installed(edited.get("exercise")), edited))
         except OSError as error:
             raise UsageError(f"cannot read the exercise {path}: {error.strerror}") from None
-    elif name_or_file in names():
-        text = (files("grader") / "exercises" / name_or_file / "exercise.yaml").read_text()
-    else:
-        raise UsageError(
-            f"there is no exercise {name_or_file!r}; there are: {', '.join(names())}. "
-            "An edited copy is given as the path of its exercise.yaml."
-        )
-    try:
-        return _parse(yaml.safe_load(text))
-    except (yaml.YAMLError, KeyError, TypeError, ValueError) as error:
-        raise UsageError(f"{name_or_file} is not an exercise: {error!r}") from None
+        except (ExerciseError, ValueError) as error:
+            raise UsageError(f"{path} is not an exercise: {error}") from None
+    if name_or_file in names():
+        return _build(_installed(name_or_file))
+    raise UsageError(
+        f"there is no exercise {name_or_file!r}; there are: {', '.join(names())}. "
+        "An edited copy is given as the path of its exercise.yaml."
+    )
 
 
-def _parse(data: dict[str, Any]) -> Exercise:
-    name = data["exercise"]
+class ExerciseError(Exception):
+    """What is wrong with an exercise.yaml."""
+
+
+def _installed(name: object) -> dict[str, Any]:
     if name not in names():
-        raise ValueError(f"exercise: expected one of {', '.join(names())}, found {name!r}")
+        raise ExerciseError(f"exercise: expected one of {', '.join(names())}, found {name!r}")
+    return _read((files("grader") / "exercises" / str(name) / "exercise.yaml").read_text())
+
+
+def _read(text: str) -> dict[str, Any]:
+    try:
+        data = yaml.safe_load(text)
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else "?"
+        raise ExerciseError(f"line {line}: {error.problem}") from None
+    except yaml.YAMLError as error:
+        raise ExerciseError(str(error).splitlines()[0]) from None
+    if not isinstance(data, dict):
+        raise ExerciseError("expected keys such as exercise, limits, points")
+    return data
+
+
+def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
+    """The original with what was edited; every key must exist there, with a like value."""
+    merged = {**original, **edited}
+    for part in ("limits", "tolerances", "varied_runs"):
+        known, given = original.get(part, {}), edited.get(part, {})
+        if not isinstance(given, dict):
+            raise ExerciseError(f"{part}: expected names with numbers, found {given!r}")
+        for key, value in given.items():
+            if key not in known:
+                raise ExerciseError(f"{part}: unknown {key!r}; there are {', '.join(known)}")
+            if not _alike(value, known[key]):
+                raise ExerciseError(f"{part}: {key}: expected e.g. {known[key]!r}, found {value!r}")
+        merged[part] = {**known, **given}
+    return merged
+
+
+def _alike(value: object, example: object) -> bool:
+    if isinstance(example, list):
+        return isinstance(value, list) and all(_alike(v, example[0]) for v in value)
+    if isinstance(example, bool) or not isinstance(example, int | float):
+        return type(value) is type(example)
+    return _is_amount(value)
+
+
+def _is_amount(value: object) -> bool:
+    """A number that is finite and not negative."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and math.isfinite(value) and value >= 0  # type: ignore[arg-type, operator]
+
+
+def _build(data: dict[str, Any]) -> Exercise:
+    name = data["exercise"]
     checks = importlib.import_module(f"grader.exercises.{name}.checks").checks
-    points = {str(check): float(value) for check, value in data["points"].items()}
-    unknown = points.keys() - {check.name for check in checks}
-    if unknown:
-        raise ValueError(f"points: no check is named {', '.join(sorted(unknown))}")
+    points = data["points"]
+    if not isinstance(points, dict) or not points:
+        raise ExerciseError("points: expected check names with points")
+    known = [check.name for check in checks]
+    for check, value in points.items():
+        if check not in known:
+            raise ExerciseError(
+                f"points: no check is named {check!r}; there are {', '.join(known)}"
+            )
+        if not _is_amount(value):
+            raise ExerciseError(f"points: {check}: expected a number from 0, found {value!r}")
     return Exercise(
         name=name,
-        title=data["title"],
+        title=str(data["title"]),
         limits=Limits(**{key: float(value) for key, value in data["limits"].items()}),
         varied=VariedRuns(**data.get("varied_runs", {})),
-        points=points,
+        points={check: float(value) for check, value in points.items()},
         tolerances=data.get("tolerances", {}),
         checks=checks,
     )

@@ -17,6 +17,7 @@ import jsonschema
 
 from grader.errors import UsageError
 from grader.exercise import Exercise
+from grader.messages import remarks
 from grader.recording import Recording, Recordings
 from grader.verdict import Verdict
 
@@ -47,7 +48,7 @@ def build(
 
 def _run(recording: Recording) -> dict[str, Any]:
     run = asdict(recording.run)
-    run["flags"] = list(recording.run.flags)
+    run["flags"] = [*recording.run.flags, *remarks(recording)]
     if recording.start is not None:
         run["start"] = asdict(recording.start)
     return run
@@ -61,10 +62,15 @@ def schema() -> dict[str, Any]:
 
 
 def write(result: Result, path: Path) -> None:
-    """Write a result whole or not at all."""
+    """Write a result whole or not at all; into a device or a pipe it is simply written."""
+    text = json.dumps(result, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    if path.exists() and not path.is_file():
+        path.write_text(text, encoding="utf-8")
+        return
+    path = path.resolve()  # a link stays a link
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.{os.getpid()}")
-    unfinished.write_text(json.dumps(result, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    unfinished.write_text(text, encoding="utf-8")
     unfinished.replace(path)
 
 

@@ -91,12 +91,14 @@ class _Player:
 
     def _events_by_tick(self) -> dict[int, list[tuple[int, dict[str, Any]]]]:
         ticks, events = self.scenario.get("ticks"), self.scenario.get("events", [])
-        if not isinstance(ticks, int) or not isinstance(events, list):
-            raise ScenarioError("a scenario needs 'ticks', a whole number, and 'events', a list")
+        if type(ticks) is not int or ticks < 0 or not isinstance(events, list):
+            raise ScenarioError(
+                "a scenario needs 'ticks', a whole number from 0, and 'events', a list"
+            )
         by_tick: dict[int, list[tuple[int, dict[str, Any]]]] = defaultdict(list)
         for index, event in enumerate(events):
             tick = event.get("tick") if isinstance(event, dict) else None
-            if not isinstance(tick, int) or not 1 <= tick <= ticks:
+            if type(tick) is not int or not 1 <= tick <= ticks:
                 raise ScenarioError(
                     f"event {index}: 'tick' must be from 1 to {ticks}, found {tick!r}"
                 )

@@ -50,7 +50,18 @@ def read(path: Path) -> dict[str, Any]:
         raise ScenarioError(
             f"{path} holds no scenario: expected an object with 'ticks' and 'events'"
         )
-    return {"name": path.stem, **data}
+    scenario = {"name": path.stem, **data}
+    events = scenario.get("events")
+    snapshots = filter(_is_snapshot, events if isinstance(events, list) else ())
+    names = [scenario["name"], *(event["name"] for event in snapshots)]
+    for name in names:
+        if not isinstance(name, str) or not name or Path(name).name != name:
+            raise ScenarioError(f"{path}: {name!r} is no name for a file")
+    return scenario
+
+
+def _is_snapshot(event: object) -> bool:
+    return isinstance(event, dict) and "name" in event and "snapshot" in str(event.get("op"))
 
 
 def write(outcome: Replay, folder: Path) -> list[Path]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import shutil
 from importlib.resources import as_file, files
 from pathlib import Path
@@ -22,9 +23,11 @@ def main(args: argparse.Namespace) -> int:
         UsageError: the folder holds something, or cannot be written.
     """
     folder: Path = args.folder
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise UsageError(f"{folder} is not empty; give a new folder, nothing was written")
     try:
+        if folder.exists() and not folder.is_dir():
+            raise UsageError(f"{folder} is a file; give a new folder, nothing was written")
+        if folder.exists() and any(folder.iterdir()):
+            raise UsageError(f"{folder} is not empty; give a new folder, nothing was written")
         with as_file(files("turtlesim_challenge") / "starter") as starter:
             skip = shutil.ignore_patterns("__pycache__", "*.pyc")
             shutil.copytree(starter, folder, dirs_exist_ok=True, ignore=skip)
@@ -32,5 +35,6 @@ def main(args: argparse.Namespace) -> int:
         raise UsageError(f"cannot write {folder}: {error.strerror}") from None
     print(f"The starter package is in {folder}.")
     print("Fill in the TODOs of turtlesim_challenge/turtle_controller.py, then run:")
-    print(f"    grader run {folder}")
+    shown = f"./{folder}" if str(folder).startswith("-") else str(folder)
+    print(f"    grader run {shlex.quote(shown)}")
     return 0

@@ -64,6 +64,7 @@ def test_a_command_to_a_turtle_that_is_gone_does_nothing():
         ({"tick": 1, "op": "cmd_vel", "linear": [1], "angular": [0, 0, 0]}, "cmd_vel"),
         ({"tick": 1, "op": "set_pen", "r": 999, "g": 0, "b": 0, "width": 1, "off": 0}, "set_pen"),
         ("clear", "event 0"),
+        ({"tick": True, "op": "clear"}, "event 0"),
     ],
 )
 def test_a_wrong_event_is_named_with_its_place(event, words):
@@ -105,7 +106,17 @@ def test_a_bare_scenario_is_named_after_its_file(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["{", "[]", "{}", '{"ticks": "three"}', '{"ticks": 3, "events": 5}']
+    "text",
+    [
+        "{",
+        "[]",
+        "{}",
+        '{"ticks": "three"}',
+        '{"ticks": -3}',
+        '{"ticks": 3, "events": 5}',
+        '{"ticks": 3, "name": "../../elsewhere"}',
+        '{"ticks": 3, "events": [{"tick": 1, "op": "snapshot", "name": "/tmp/x"}]}',
+    ],
 )
 def test_a_file_that_is_no_scenario_gives_one_line_and_exit_code_2(tmp_path, text):
     (tmp_path / "broken.json").write_text(text)

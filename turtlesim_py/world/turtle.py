@@ -92,7 +92,7 @@ class Turtle:
         self._last_command_ns = now_ns
 
     def place(self, x: float, y: float, theta: float) -> None:
-        """Stand at (x, y) [m, y up] with heading theta [rad], as if spawned there; draws nothing."""
+        """Stand at (x, y) [m, y up], heading theta [rad], as if spawned there; draws nothing."""
         self.x_m = float32(x)
         self.y_down_m = float32(SIZE_M - float32(y))
         self.heading_rad = float32(theta)

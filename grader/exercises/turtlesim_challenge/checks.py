@@ -31,12 +31,15 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
     ending = how_it_ended(recording)
     if not commands:
         rationale = f"Your node published no velocity command on /turtle1/cmd_vel in {seconds}."
-        return Finding(0, rationale + ending, _where_it_published(recording))
+        help_ = _where_it_published(recording)
+        if recording.run.outcome == "crashed":
+            help_ = "Mend that error first; all that the node printed is in output.txt."
+        return Finding(0, rationale + ending, help_)
     foreign = _foreign(path)
     if not (path.moving & (path.speed > 0)).any():
         return Finding(
             0,
-            f"Your node published {len(commands)} velocity commands in {seconds}, "
+            f"Your node published velocity commands ({len(commands)} in {seconds}), "
             f"but they never moved turtle1.{foreign}{ending}",
             "Is linear.x of the Twist different from zero?",
             (path.at(commands[0]["tick"], "the first command"),),
@@ -122,7 +125,7 @@ def steady_rate(recordings: Recordings, tolerances: Tolerances) -> Finding:
     path = Path(recordings.nominal)
     ticks = np.array([c["tick"] for c in path.calls("cmd_vel") if c["tick"] <= path.stop_tick + 1])
     if len(ticks) < 3:
-        return Finding(0, f"{len(ticks)} commands are too few to have a rate.", "Use a timer.")
+        return Finding(0, f"Fewer than three commands ({len(ticks)}) have no rate.", "Use a timer.")
     gaps = np.diff(ticks)
     if gaps.max() > WATCHDOG_TICKS:
         row = int(np.argmax(gaps > WATCHDOG_TICKS))
@@ -180,7 +183,8 @@ def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
         )
     paths = [Path(recording, number) for number, recording in enumerate(recordings)]
     colorings = [pens.coloring(path, tolerances) for path in paths]
-    worst = min(range(len(paths)), key=lambda n: colorings[n].share)
+    telling = [n for n, coloring in enumerate(colorings) if coloring.tells or n == 0]
+    worst = min(telling, key=lambda n: colorings[n].share)
     found, path = colorings[worst], paths[worst]
     if found.share >= 1:
         entries = len(colorings[0].judged)

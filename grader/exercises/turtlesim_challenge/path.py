@@ -55,11 +55,15 @@ class Path:
 
     Attributes:
         foreign: the calls that ended stretches, as scenario events.
+        lost_tick: from here on the position is not a number, and the path ends; None: never.
         number: of the run, for evidence.
     """
 
     def __init__(self, recording: Recording, number: int = 0) -> None:
         rows = recording.published.get("turtle1", np.zeros((0, 9)))
+        nowhere = ~np.isfinite(rows[:, 1:4]).all(axis=1)
+        self.lost_tick = int(rows[np.argmax(nowhere), 0]) if nowhere.any() else None
+        rows = rows[: np.argmax(nowhere)] if nowhere.any() else rows
         self.recording = recording
         self.number = number
         self.foreign = [event for event in recording.events if _is_foreign(event)]
@@ -142,6 +146,8 @@ class Path:
 
     def at(self, tick: int, note: str) -> Evidence:
         """Evidence at a tick."""
+        if not len(self):
+            return Evidence(tick, round(tick * TICK_S, 3), CENTRE_M, CENTRE_M, note, self.number)
         row = int(np.clip(np.searchsorted(self.ticks, tick), 0, len(self) - 1))
         return Evidence(
             tick=int(self.ticks[row]),

@@ -31,9 +31,14 @@ class Coloring:
     own: dict[int, Color]
 
     @property
+    def tells(self) -> bool:
+        """Whether the run went through enough quadrants to say anything."""
+        return len(self.own) > 1
+
+    @property
     def share(self) -> float:
         """The part of the entries that are right, less if quadrants share a colour."""
-        if len(self.own) < 2 or not self.judged:
+        if not self.tells:
             return 0.0
         different = len(set(self.own.values())) / len(self.own)
         return (1 - len(self.bad) / len(self.judged)) * different

@@ -22,6 +22,15 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Finding:
             "Watch the pose, and stop before a wall is reached.",
             (touched,),
         )
+    if path.lost_tick is not None:
+        lost = path.at(path.lost_tick, "the last place it was at")
+        return Finding(
+            0,
+            f"At {lost.time_s:.1f} s your node sent a velocity that is not a number, and the "
+            "turtle was nowhere from then on.",
+            "Which division or logarithm can give nan or inf?",
+            (lost,),
+        )
     end = path.at(path.stop_tick, "the last place it moved to")
     if path.last >= len(path) - 2:
         return Finding(

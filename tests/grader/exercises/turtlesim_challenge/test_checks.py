@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from grader import exercise as exercises
@@ -169,6 +171,46 @@ def test_a_path_that_starts_elsewhere_loses_the_start_only():
 
     found = scores(drive(controller))
     assert found["spiral"] == pytest.approx(24)
+
+
+class SendsNotANumber(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.05
+        twist(arena, self.speed if tick < 1500 else float("nan"))
+
+
+def test_a_velocity_that_is_no_number_is_named_and_leaves_finite_evidence():
+    exercise = exercises.load("turtlesim_challenge")
+    recordings = Recordings(drive(SendsNotANumber(), ticks=2500))
+    verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
+    stop = next(verdict for verdict in verdicts if verdict.check == "edge_stop")
+    assert "not a number" in stop.rationale
+    json.dumps([verdict.as_json() for verdict in verdicts], allow_nan=False)
+
+
+def test_a_turtle_that_is_never_anywhere_is_judged_without_a_fault():
+    def nowhere(tick, pose, arena):
+        twist(arena, float("nan"))
+
+    assert set(scores(drive(nowhere, ticks=300)).values()) == {0}
+
+
+def test_a_right_solution_is_right_wherever_it_starts_and_counting_steps_is_not():
+    exercise = exercises.load("turtlesim_challenge")
+    starts = [start for seed in (1, 2, 3) for start in exercise.varied.starts(seed)]
+    for controller, passes in ((Spiral, True), (CountsItsSteps, False)):
+        runs = tuple(drive(controller(), start=start) for start in starts)
+        recordings = Recordings(drive(controller()), runs)
+        verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
+        assert all(v.status == "passed" for v in verdicts if v.check != "edge_stop")
+        stop = next(verdict for verdict in verdicts if verdict.check == "edge_stop")
+        assert (stop.status == "passed") == passes
+        assert (stop.evidence[0].run == 0) == passes
+
+
+class CountsItsSteps(Spiral):
+    def near_edge(self, tick, pose):
+        return self.speed > 5.1
 
 
 def test_the_evidence_of_a_needless_call_names_tick_and_place():
