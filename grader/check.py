@@ -38,7 +38,14 @@ class Checks:
         return iter(self._checks)
 
     def __call__(self, *, after: tuple[str, ...] = ()) -> Callable[[CheckFunction], CheckFunction]:
-        """Register the decorated function; `after` names the checks it depends on."""
+        """Register the decorated function; `after` names the checks it depends on.
+
+        Raises:
+            ValueError: one of them is not defined above it.
+        """
+        unknown = set(after) - {check.name for check in self._checks}
+        if unknown:
+            raise ValueError(f"after: no check above is named {', '.join(sorted(unknown))}")
 
         def register(function: CheckFunction) -> CheckFunction:
             title = (function.__doc__ or function.__name__).strip().splitlines()[0]

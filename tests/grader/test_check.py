@@ -62,3 +62,8 @@ def test_a_check_without_points_is_not_run():
 def test_points_for_an_unknown_check_are_an_error():
     with pytest.raises(KeyError, match="no check is named 'third'"):
         verdicts(an_exercise(1), {"third": 1})
+
+
+def test_a_dependency_that_is_not_defined_above_is_an_error():
+    with pytest.raises(ValueError, match="no check above is named frist"):
+        Checks()(after=("frist",))

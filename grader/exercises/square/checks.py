@@ -1,0 +1,156 @@
+"""What is looked at: sides, corners, the return, and the end."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from grader.check import Checks, Tolerances
+from grader.exercises.square.shape import (
+    judge_corners,
+    judge_returns,
+    judge_sides,
+    judge_square,
+    judge_straight,
+)
+from grader.exercises.square.way import Way
+from grader.recording import Recording, Recordings
+from grader.verdict import Evidence, Finding
+from turtlesim_py.world.turtle import TICK_S
+
+#: The row of a command's own tick shows what it did: after a stop at tick t the last row that
+#: differs from the one before is t - 1.
+STOP_SHOWS = 1
+checks = Checks()
+
+
+@checks()
+def drives(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """The node drives turtle1."""
+    recording = recordings.nominal
+    commands = recording.calls("cmd_vel")
+    if not commands:
+        return Finding(
+            0,
+            "No velocity command came to turtle1.",
+            "Does your node publish on the topic that turtle1 listens to, and is it spinning?",
+        )
+    way = Way(recording)
+    if way.length_m < tolerances["driven_m"]:
+        return Finding(
+            0,
+            f"{len(commands)} velocity commands came, but turtle1 drove {way.length_m:.2f} m.",
+            "Look at what your commands contain: which speed moves a turtle ahead?",
+        )
+    if way.broken_by:
+        return Finding(
+            0,
+            f"turtle1 drove {way.length_m:.2f} m, then {way.broken_by}.",
+            "Only velocity commands should move the turtle between its start and its return, "
+            "and they must hold finite numbers.",
+            (way.evidence(-1, f"after this, {way.broken_by}"),),
+        )
+    return Finding(1, f"turtle1 drove {way.length_m:.2f} m by {len(commands)} velocity commands.")
+
+
+@checks(after=("drives",))
+def sides(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """The way has four sides of about 2 m."""
+    return judge_sides(Way(recordings.nominal), tolerances)
+
+
+@checks(after=("drives",))
+def corners(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """It has four corners of about 90 degrees, all to the same hand."""
+    return judge_corners(Way(recordings.nominal), tolerances)
+
+
+@checks(after=("drives", "corners"))
+def straight(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """The sides are straight."""
+    return judge_straight(Way(recordings.nominal), tolerances)
+
+
+@checks(after=("drives",))
+def returns(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """It comes to rest where it started, after one round."""
+    return judge_returns(Way(recordings.nominal), tolerances)
+
+
+@checks(after=("drives",))
+def stops(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """A command brings it to rest."""
+    recording = recordings.nominal
+    way = Way(recording)
+    if not way.rests(tolerances):
+        return Finding(
+            0,
+            f"turtle1 was still moving when the run ended after {recording.run.simulated_s:.1f} s.",
+            "How does your node know that it is done, and what does it tell the turtle then?",
+            (way.evidence(-1, "still moving"),),
+        )
+    tick = stop_command(recording, int(way.ticks[way.last_motion]))
+    if tick is None:
+        return Finding(
+            0.5,
+            "turtle1 rests because no commands came any more: the simulator stops a turtle one "
+            "second after its last command. None of speed 0 came while it was moving.",
+            "Ceasing to publish is not stopping. What must the last command say?",
+            (way.evidence(way.last_motion, "it came to rest without a command"),),
+        )
+    rested_s = (way.ticks[-1] - way.ticks[way.last_motion]) * TICK_S
+    return Finding(
+        1,
+        f"A command of speed 0 came at {tick * TICK_S:.2f} s; turtle1 then rested for "
+        f"{rested_s:.1f} s.",
+        evidence=(way.evidence(way.last_motion, "here it came to rest"),),
+    )
+
+
+@checks(after=("drives",))
+def anywhere(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """It draws the square from any start."""
+    if not recordings.varied:
+        raise ValueError(
+            "there is no run from elsewhere: the exercise needs varied_runs, or no points for "
+            "'anywhere'"
+        )
+    shares: list[float] = []
+    sentences: list[str] = []
+    evidence: list[Evidence] = []
+    for number, recording in enumerate(recordings.varied, start=1):
+        share, wrong, where = judge_square(Way(recording), tolerances)
+        shares.append(share)
+        evidence += [replace(item, run=number) for item in where[:2]]
+        sentences.append(f"Run {number} ({start_of(recording)}): {wrong or 'a right square'}.")
+    help = (
+        "Does your node take for granted where the turtle starts, or which way it looks? Whatever "
+        "is wrong in the nominal run is wrong here too: mend that first."
+    )
+    return Finding(float(np.mean(shares)), " ".join(sentences), help, tuple(evidence))
+
+
+def stop_command(recording: Recording, last_motion: int) -> int | None:
+    """The tick of the command that stopped turtle1, if one did."""
+    found = None
+    for command in reversed(recording.calls("cmd_vel")):
+        if not is_stop(command):
+            break
+        found = int(command["tick"])
+    return found if found is not None and found <= last_motion + STOP_SHOWS else None
+
+
+def is_stop(command: dict[str, Any]) -> bool:
+    """Whether a velocity command says to stand still."""
+    return bool(command["linear"][0] == 0 and command["angular"][2] == 0)
+
+
+def start_of(recording: Recording) -> str:
+    """Where a varied run started."""
+    start = recording.start
+    if start is None:
+        return "from the usual start"
+    return f"from ({start.x:.2f}, {start.y:.2f}), heading {math.degrees(start.theta):.0f} degrees"
