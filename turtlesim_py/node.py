@@ -2,117 +2,160 @@
 
 from __future__ import annotations
 
-import signal
+import gc
 import sys
-from pathlib import Path
+import time
+from collections.abc import Callable
 from typing import Any
 
-import rclpy
-from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
-from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rcl_interfaces.msg import ParameterEvent
+from rclpy.exceptions import NameValidationException
 from rclpy.expand_topic_name import expand_topic_name
-from rclpy.node import Node
+from rclpy.logging import LoggingSeverity
 from rclpy.parameter import Parameter
-from rclpy.signals import SignalHandlerOptions
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.time_source import CLOCK_TOPIC, USE_SIM_TIME_NAME
 from rclpy.validate_full_topic_name import validate_full_topic_name
-from std_srvs.srv import Empty, Trigger
+from std_srvs.srv import Empty
 from turtlesim.srv import Kill, Spawn
 
-from turtlesim_py import pacer
+from turtlesim_py import pacer, program, window
 from turtlesim_py.executor import TickExecutor
+from turtlesim_py.rclcpp_node import RclcppNode, UnusableParameter
 from turtlesim_py.turtle_endpoints import TurtleEndpoints
-from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.events import Event, GoalFeedback, GoalResult, LogLine
-from turtlesim_py.world.parameters import BY_NAME, PARAMETERS, refusal
+from turtlesim_py.world.floats import printf_f
+from turtlesim_py.world.parameters import BY_NAME, PARAMETERS
 from turtlesim_py.world.sprites import NAMES
 from turtlesim_py.world.turtle import Reading
 
 #: The longest name that rotate_absolute's hidden services add to a turtle's.
 LONGEST_SUFFIX = "/rotate_absolute/_action/cancel_goal"
+#: How the original listens to changes of parameters.
+PARAMETER_EVENTS_QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-class TurtlesimNode(Node):
+class TurtlesimNode(RclcppNode):
     """The node `/turtlesim`: owns an arena and serves it; somebody else calls `tick`.
 
     Args:
         arguments: ROS arguments (`--ros-args ...`) of this node alone; the global ones count too.
 
+    Attributes:
+        arena: the turtles and what they have drawn.
+        tick_executor: serves the node, once in a tick.
+        follows_ros_clock: whether the time comes from /clock: the parameter `use_sim_time`.
+
     Raises:
-        InvalidParameterValueException, InvalidParameterTypeException: a parameter override is
-            out of range or of the wrong type.
+        UnusableParameter: a parameter override is out of range or of the wrong type.
+        InvalidParameterTypeException: the same, for a parameter of every ROS node.
     """
 
     def __init__(self, arguments: list[str] | None = None) -> None:
         super().__init__("turtlesim", cli_args=arguments)
-        self.arena: Arena
-        self._endpoints: dict[str, TurtleEndpoints] = {}
         for parameter in PARAMETERS:
-            descriptor = ParameterDescriptor(description=parameter.description)
-            if parameter.low is not None and parameter.high is not None:
-                channel = IntegerRange(from_value=parameter.low, to_value=parameter.high, step=1)
-                descriptor.integer_range = [channel]
-            self.declare_parameter(parameter.name, parameter.default, descriptor)
-        sprite = self._declare_own_parameters()
+            low, high = parameter.low, parameter.high
+            limits = None if low is None or high is None else (low, high)
+            self.declare(parameter.name, parameter.default, parameter.description, limits)
+        sprite = self._declare_sprite()
+        window.declare_parameters(self)
         self.get_logger().info(
             f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
         )
         self.arena = Arena((self._on_event,), sprite=sprite)
+        self._window = window.Window(self, self.arena)
+        self._endpoints: dict[str, TurtleEndpoints] = {}
+        self._logs_positions = self.get_logger().is_enabled_for(LoggingSeverity.DEBUG)
+        self._last_ns = 0
+        self._set_back_ns = 0
+        self.follows_ros_clock: bool = self.get_clock().ros_time_is_active
+        self._set_time(self._now_ns())
+        self._sync_endpoints()
         for parameter in PARAMETERS:
             self.arena.set_parameter(parameter.name, self.get_parameter(parameter.name).value)
-        self.arena.now_ns = self.get_clock().now().nanoseconds
-        self._sync_endpoints()
         self.add_post_set_parameters_callback(self._on_parameters)
+        # The original repaints on these; here it only completes the graph.
+        self.create_subscription(
+            ParameterEvent, "/parameter_events", lambda _: None, PARAMETER_EVENTS_QOS, raw=True
+        )
         self.create_service(Empty, "clear", self._on_clear)
         self.create_service(Empty, "reset", self._on_reset)
         self.create_service(Spawn, "spawn", self._on_spawn)
         self.create_service(Kill, "kill", self._on_kill)
-        self.create_service(Trigger, "~/save_canvas", self._on_save_canvas)
-        self.executor_once_a_tick = TickExecutor(self)
+        self.tick_executor = TickExecutor(self)
 
-    def tick(self) -> dict[str, Reading]:
-        """Serve what has arrived, update the turtles, publish; return what was published."""
-        self.arena.now_ns = self.get_clock().now().nanoseconds
-        self.executor_once_a_tick.spin_some()
+    def destroy_node(self) -> None:
+        """Leave the graph."""
+        self._drop_endpoints(set(self._endpoints))  # rclpy forgets actions
+        super().destroy_node()
+
+    # Time -------------------------------------------------------------------------------------
+
+    def tick(self, now_ns: int | None = None) -> dict[str, Reading]:
+        """Serve what has arrived, update the turtles, publish; return what was published.
+
+        Args:
+            now_ns: the time [ns]; without it, the node's clock is asked. While that does not know
+                the time (`use_sim_time` without /clock), the turtles are not updated.
+        """
+        if not self.serve(now_ns):
+            return {}
         readings = self.arena.tick()
         for name, reading in readings.items():
             self._endpoints[name].publish(reading)
+        if self._logs_positions:
+            self._log_positions()
+        self._window.publish_if_due()
         return readings
+
+    def serve(self, now_ns: int | None = None) -> int:
+        """Serve what has arrived without an update; return the time [ns], 0 where not known."""
+        if now_ns is None:
+            now_ns = self._now_ns()
+        self._set_time(now_ns)
+        self.tick_executor.spin_some()
+        return now_ns
+
+    def hear_clock(self, patience_ns: int) -> int:
+        """Wait for a message on /clock, at most so long; return the node's time [ns]."""
+        self.tick_executor.wait_for(CLOCK_TOPIC, patience_ns)
+        return self._now_ns()
+
+    def _now_ns(self) -> int:
+        now_ns: int = self.get_clock().now().nanoseconds
+        return now_ns
+
+    def _set_time(self, now_ns: int) -> None:
+        """Tell the arena the time.
+
+        There it never goes back: commands would else keep turtles moving until a clock that was
+        set back is again where it was.
+        """
+        self._set_back_ns += max(0, self._last_ns - now_ns)
+        self._last_ns = now_ns
+        self.arena.now_ns = now_ns + self._set_back_ns
 
     # Parameters -------------------------------------------------------------------------------
 
-    def _declare_own_parameters(self) -> str:
-        """Declare what the original does not have; return the picture for every turtle."""
-        self.declare_parameter(
-            "canvas_folder", ".", ParameterDescriptor(description="Where save_canvas writes")
-        )
-        sprite = self.declare_parameter(
+    def _declare_sprite(self) -> str:
+        expected = f"one of {', '.join(NAMES)}"
+        sprite = self.declare(
             "turtle_image",
             "",
-            ParameterDescriptor(
-                description=f"Picture of every turtle ({', '.join(NAMES)}); empty: a random one",
-                read_only=True,
-            ),
-        ).value
+            f"Picture of every turtle, {expected}; empty: a random one",
+            read_only=True,
+        )
         if sprite and sprite not in NAMES:
-            raise InvalidParameterValueException(
-                "turtle_image", sprite, f"expected one of {', '.join(NAMES)}"
-            )
-        return str(sprite)
-
-    def _apply_descriptor(
-        self, parameter: Parameter, *args: Any, **kwargs: Any
-    ) -> SetParametersResult:
-        """Refuse in the original's words instead of rclpy's."""
-        result = super()._apply_descriptor(parameter, *args, **kwargs)
-        if not result.successful and parameter.name in BY_NAME:
-            result.reason = refusal(BY_NAME[parameter.name], parameter.value) or result.reason
-        return result
+            raise UnusableParameter("turtle_image", sprite, expected)
+        return sprite
 
     def _on_parameters(self, parameters: list[Parameter]) -> None:
         for parameter in parameters:
             if parameter.name in BY_NAME:
                 self.arena.set_parameter(parameter.name, parameter.value)
+            elif parameter.name == USE_SIM_TIME_NAME:
+                self.follows_ros_clock = parameter.value
 
     # Services ---------------------------------------------------------------------------------
 
@@ -142,21 +185,6 @@ class TurtlesimNode(Node):
         self._sync_endpoints()
         return response
 
-    def _on_save_canvas(self, _: Any, response: Any) -> Any:
-        folder = Path(self.get_parameter("canvas_folder").value).expanduser().resolve()
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            path = _next_free(folder)
-            arena = self.arena
-            picture.save_png(picture.render(arena.canvas, arena.background, arena.sprites()), path)
-        except OSError as error:
-            response.success = False
-            response.message = f"cannot write the canvas to {folder}: {error.strerror}"
-        else:
-            response.success = True
-            response.message = str(path)
-        return response
-
     # Helpers ----------------------------------------------------------------------------------
 
     def _problem_with_name(self, name: str) -> str:
@@ -166,7 +194,7 @@ class TurtlesimNode(Node):
         try:
             full = expand_topic_name(name + LONGEST_SUFFIX, self.get_name(), self.get_namespace())
             validate_full_topic_name(full, is_service=True)
-        except (ValueError, rclpy.exceptions.NameValidationException) as error:
+        except (ValueError, NameValidationException) as error:
             return str(error).replace("\n", " ").strip()
         return ""
 
@@ -193,45 +221,54 @@ class TurtlesimNode(Node):
                 else:
                     logger.error(text)
             case GoalFeedback(turtle):
-                self._endpoints[turtle].feedback(event)
+                self._endpoints[turtle].action.feedback(event)
             case GoalResult(turtle):
-                self._endpoints[turtle].finish(event)
+                self._endpoints[turtle].action.finish(event)
+
+    def _log_positions(self) -> None:
+        for name in sorted(self.arena.turtles):
+            turtle = self.arena.turtles[name]
+            numbers = (turtle.x_m, turtle.y_down_m, turtle.heading_rad)
+            x, y, theta = map(printf_f, numbers)
+            # In brackets stands the namespace, not the turtle: so does the original.
+            self.get_logger().debug(
+                f"[{self.get_namespace()}]: pos_x: {x} pos_y: {y} theta: {theta}"
+            )
 
 
-def _next_free(folder: Path) -> Path:
-    """canvas_001.png, or the first number that is not taken yet."""
-    number = 1
-    while (path := folder / f"canvas_{number:03}.png").exists():
-        number += 1
-    return path
+def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
+    """Let the clock that the node follows move the turtles until it is stopped."""
+    # What exists now stays: no search through it in the middle of a tick
+    gc.collect()
+    gc.freeze()
+    node.tick_executor.hang_doorbell()
+
+    def goes_on(follows_ros_clock: bool) -> bool:
+        return not stopped() and node.follows_ros_clock == follows_ros_clock
+
+    def tick() -> bool:
+        # the time of the node's clock, which takes ten times as long to tell it
+        node.tick(time.time_ns())
+        return goes_on(follows_ros_clock=False)
+
+    def ros_tick(now_ns: int) -> bool:
+        node.tick(now_ns)
+        return goes_on(follows_ros_clock=True)
+
+    def serve() -> bool:
+        node.serve()
+        return goes_on(follows_ros_clock=True)
+
+    while not stopped():
+        if node.follows_ros_clock:
+            pacer.follow_ros_clock(node.hear_clock, serve, ros_tick)
+        else:
+            pacer.follow_wall_clock(tick)
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run the simulator until SIGINT or SIGTERM; 2 where its parameters cannot be used."""
-    stop = False
-
-    def on_signal(*_: Any) -> None:
-        nonlocal stop
-        stop = True
-
-    signal.signal(signal.SIGINT, on_signal)
-    signal.signal(signal.SIGTERM, on_signal)
-    rclpy.init(args=argv, signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        node = TurtlesimNode()
-    except (InvalidParameterValueException, InvalidParameterTypeException) as error:
-        print(f"turtlesim_node: {error}", file=sys.stderr)
-        rclpy.shutdown()
-        return 2
-
-    def tick() -> bool:
-        node.tick()
-        return not stop
-
-    pacer.follow_wall_clock(tick)
-    node.destroy_node()
-    rclpy.shutdown()
-    return 0
+    """Run the simulator until SIGINT or SIGTERM; 2 where its arguments cannot be used."""
+    return program.run("turtlesim_node", TurtlesimNode, simulate, argv)
 
 
 if __name__ == "__main__":

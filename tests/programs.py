@@ -1,0 +1,79 @@
+"""Programs of this checkout as processes: started, listened to, ended."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import IO, Any, Self
+
+ROOT = Path(__file__).resolve().parents[1]
+#: Only a failing test waits so long [s].
+DEADLINE_S = 30.0
+
+
+class Program:
+    """`python -m MODULE ARGUMENTS`; what it writes to stderr is collected line by line."""
+
+    def __init__(self, module: str, *arguments: str, **options: Any) -> None:
+        path = f"{ROOT}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", module, *arguments],
+            cwd=options.pop("cwd", ROOT),
+            env={**os.environ, "PYTHONPATH": path, "PYTHONUNBUFFERED": "1"},
+            stdout=options.pop("stdout", subprocess.PIPE),
+            stderr=subprocess.PIPE,
+            text=True,
+            **options,
+        )
+        self.lines: list[str] = []
+        self._news = threading.Condition()
+        assert self.process.stderr is not None
+        self._reader = threading.Thread(target=self._read, args=(self.process.stderr,))
+        self._reader.start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        self._reader.join()
+        for stream in (self.process.stdout, self.process.stderr):
+            if stream is not None:
+                stream.close()
+
+    def wait_for_line(self, text: str, after: int = 0) -> str:
+        """Wait for a line on stderr that contains `text`, from line number `after` on."""
+        with self._news:
+            found = self._news.wait_for(
+                lambda: next((line for line in self.lines[after:] if text in line), None),
+                DEADLINE_S,
+            )
+        assert found, f"no line with {text!r} in {DEADLINE_S} s; there are:\n" + self.text()
+        return found
+
+    def wait(self) -> int:
+        """Wait for the end; the exit code."""
+        code = self.process.wait(DEADLINE_S)
+        self._reader.join()
+        return code
+
+    def stop(self, how: signal.Signals = signal.SIGINT) -> int:
+        """Ask it to end; the exit code."""
+        self.process.send_signal(how)
+        return self.wait()
+
+    def text(self) -> str:
+        """All that it has written to stderr."""
+        return "".join(self.lines)
+
+    def _read(self, stream: IO[str]) -> None:
+        for line in stream:
+            with self._news:
+                self.lines.append(line)
+                self._news.notify_all()

@@ -1,0 +1,164 @@
+"""A real node's action rotate_absolute: every way in which a goal can end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+from action_msgs.msg import GoalStatus
+from action_msgs.srv import CancelGoal
+from geometry_msgs.msg import Twist
+from rclpy.task import Future
+from turtlesim.action import RotateAbsolute
+from turtlesim.msg import Pose
+from turtlesim.srv import Kill, Spawn, TeleportAbsolute
+
+from tests.graph import Graph
+from tests.programs import Program
+
+
+@dataclass
+class Goal:
+    """A goal that a node has accepted, with what its client hears."""
+
+    handle: Any
+    result: Future
+    remaining: list[float] = field(default_factory=list)
+
+
+class Rotation:
+    """A client of one turtle's action."""
+
+    def __init__(self, graph: Graph, turtle: str) -> None:
+        self.graph = graph
+        self.client = graph.action(RotateAbsolute, f"/{turtle}/rotate_absolute")
+
+    def send(self, theta: float) -> Goal:
+        remaining: list[float] = []
+        sent = self.client.send_goal_async(
+            RotateAbsolute.Goal(theta=theta),
+            feedback_callback=lambda message: remaining.append(message.feedback.remaining),
+        )
+        handle = self.graph.done(sent, "acceptance")
+        assert handle.accepted
+        return Goal(handle, handle.get_result_async(), remaining)
+
+    def outcome(self, goal: Goal) -> tuple[int, float]:
+        """Wait for the end of a goal: its status and delta."""
+        response = self.graph.done(goal.result, "a result")
+        return response.status, response.result.delta
+
+
+@pytest.fixture
+def rotation(graph: Graph, turtle: str) -> Rotation:
+    return Rotation(graph, turtle)
+
+
+def test_a_goal_turns_the_turtle_and_stops_just_short(
+    graph: Graph, simulator: Program, turtle: str, rotation: Rotation
+) -> None:
+    poses = graph.listen(Pose, f"/{turtle}/pose")
+    begin = len(simulator.lines)
+    goal = rotation.send(0.2)
+    status, delta = rotation.outcome(goal)
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    # the original's sign: where it started minus where it is
+    assert delta == pytest.approx(-0.192)
+    graph.until(lambda: len(goal.remaining) == 13, "a feedback of every tick")
+    assert goal.remaining[0] == pytest.approx(0.2)
+    assert goal.remaining[-1] == pytest.approx(0.008, abs=1e-6)
+    assert simulator.wait_for_line("Rotation goal completed successfully", begin)[:6] == "[INFO]"
+    graph.until(lambda: poses[-1].angular_velocity == 0.0, "rest")
+    assert poses[-1].theta == pytest.approx(0.192)
+
+
+def test_a_goal_within_the_tolerance_succeeds_at_once(rotation: Rotation) -> None:
+    goal = rotation.send(0.01)
+    assert rotation.outcome(goal) == (GoalStatus.STATUS_SUCCEEDED, 0.0)
+    rotation.graph.until(lambda: len(goal.remaining) == 1, "its only feedback")
+
+
+def test_a_second_goal_aborts_the_first(simulator: Program, rotation: Rotation) -> None:
+    begin = len(simulator.lines)
+    first = rotation.send(3.0)
+    rotation.graph.until(lambda: len(first.remaining) > 3, "a rotation")
+    second = rotation.send(0.0)
+    status, delta = rotation.outcome(first)
+    assert status == GoalStatus.STATUS_ABORTED
+    assert delta < 0.0
+    line = simulator.wait_for_line("Rotation goal received before a previous goal finished.", begin)
+    assert line.startswith("[WARN]")
+    assert line.endswith("Aborting previous goal\n")
+    assert rotation.outcome(second)[0] == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_a_command_aborts_a_goal(
+    graph: Graph, simulator: Program, turtle: str, rotation: Rotation
+) -> None:
+    publisher = graph.publisher(Twist, f"/{turtle}/cmd_vel")
+    begin = len(simulator.lines)
+    goal = rotation.send(3.0)
+    graph.until(lambda: goal.remaining, "a rotation")
+    publisher.publish(Twist())
+    assert rotation.outcome(goal)[0] == GoalStatus.STATUS_ABORTED
+    line = simulator.wait_for_line("Velocity command received during rotation goal.", begin)
+    assert line.startswith("[WARN]")
+
+
+def test_a_canceled_goal_stops_the_turtle(
+    graph: Graph, simulator: Program, turtle: str, rotation: Rotation
+) -> None:
+    poses = graph.listen(Pose, f"/{turtle}/pose")
+    begin = len(simulator.lines)
+    goal = rotation.send(3.0)
+    graph.until(lambda: len(goal.remaining) > 3, "a rotation")
+    answer = graph.done(goal.handle.cancel_goal_async())
+    assert answer.return_code == CancelGoal.Response.ERROR_NONE
+    assert len(answer.goals_canceling) == 1
+    status, delta = rotation.outcome(goal)
+    assert status == GoalStatus.STATUS_CANCELED
+    assert delta < 0.0
+    assert simulator.wait_for_line("Rotation goal canceled", begin).startswith("[INFO]")
+    graph.until(lambda: poses[-1].angular_velocity == 0.0, "rest")
+
+
+def test_a_goal_that_is_over_cannot_be_canceled(graph: Graph, rotation: Rotation) -> None:
+    goal = rotation.send(0.01)
+    rotation.outcome(goal)
+    answer = graph.done(goal.handle.cancel_goal_async())
+    assert answer.return_code == CancelGoal.Response.ERROR_GOAL_TERMINATED
+    assert not answer.goals_canceling
+
+
+def test_a_result_can_still_be_asked_for_after_the_end(graph: Graph, rotation: Rotation) -> None:
+    goal = rotation.send(0.1)
+    first = rotation.outcome(goal)
+    again = graph.done(goal.handle.get_result_async())
+    assert (again.status, again.result.delta) == first
+
+
+def test_a_killed_turtles_goal_is_canceled(graph: Graph, simulator: Program) -> None:
+    graph.call(Spawn, "/spawn", x=5.0, y=5.0, name="victim")
+    rotation = Rotation(graph, "victim")
+    goal = rotation.send(3.0)
+    graph.until(lambda: len(goal.remaining) > 3, "a rotation")
+    graph.call(Kill, "/kill", name="victim")
+    assert rotation.outcome(goal) == (GoalStatus.STATUS_CANCELED, 0.0)
+
+
+def test_a_teleport_does_not_stop_a_goal(graph: Graph, turtle: str, rotation: Rotation) -> None:
+    goal = rotation.send(0.3)
+    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=2.0, y=2.0, theta=0.2)
+    assert rotation.outcome(goal)[0] == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_goals_of_two_turtles_run_beside_each_other(
+    graph: Graph, turtle: str, rotation: Rotation
+) -> None:
+    graph.call(Spawn, "/spawn", x=5.0, y=5.0, name="second")
+    other = Rotation(graph, "second")
+    goals = rotation.send(0.2), other.send(-0.2)
+    assert rotation.outcome(goals[0])[1] == pytest.approx(-0.192)
+    assert other.outcome(goals[1])[1] == pytest.approx(0.192)
+    graph.call(Kill, "/kill", name="second")

@@ -1,0 +1,131 @@
+"""A node that says what rclcpp's nodes say, where rclpy has other words for the same thing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import qos_policy_name_from_kind
+
+from turtlesim_py.world.parameters import wrong_type
+
+Value = TypeVar("Value", bound=bool | int | float | str)
+
+OFFERED = "New publisher discovered on topic '{}', offering incompatible QoS. "
+REQUESTED = "New subscription discovered on topic '{}', requesting incompatible QoS. "
+NO_MESSAGES = "No messages will be sent to it. Last incompatible policy: {}_QOS_POLICY"
+
+#: What a value of a type looks like on the command line.
+IN_WORDS: dict[type, str] = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number with a decimal point",
+    str: "a string",
+}
+
+
+class UnusableParameter(ValueError):
+    """A parameter cannot have the value with which the node was started."""
+
+    def __init__(self, name: str, value: object, expected: str) -> None:
+        super().__init__(f"parameter {name} is {value!r}, expected {expected}")
+
+
+class RclcppNode(Node):
+    """A node whose refusals and warnings read like those of a C++ node."""
+
+    # Parameters -------------------------------------------------------------------------------
+
+    def declare(
+        self,
+        name: str,
+        default: Value,
+        description: str,
+        limits: tuple[float, float] | None = None,
+        read_only: bool = False,
+    ) -> Value:
+        """Declare a parameter and return its value; `limits` are the least and the largest.
+
+        Raises:
+            UnusableParameter: the value that it was started with is of another type or outside.
+        """
+        descriptor = ParameterDescriptor(description=description, read_only=read_only)
+        expected = IN_WORDS[type(default)]
+        if limits:
+            expected += " from {} to {}".format(*limits)
+            low, high = limits
+            if isinstance(default, int):
+                descriptor.integer_range = [IntegerRange(from_value=low, to_value=high, step=1)]
+            else:
+                descriptor.floating_point_range = [
+                    FloatingPointRange(from_value=low, to_value=high)
+                ]
+        try:
+            value: Value = self.declare_parameter(name, default, descriptor).value
+        except (InvalidParameterTypeException, InvalidParameterValueException):
+            found = self._parameter_overrides[name].value
+            raise UnusableParameter(name, found, expected) from None
+        return value
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set all or none; an undeclared one is a refusal here, an exception in rclpy."""
+        for parameter in parameter_list:
+            if not self.has_parameter(parameter.name):
+                reason = f"parameter '{parameter.name}' cannot be set because it was not declared"
+                return SetParametersResult(successful=False, reason=reason)
+        return super().set_parameters_atomically(parameter_list)
+
+    def _apply_descriptor(
+        self,
+        parameter: Parameter,
+        descriptor: ParameterDescriptor | None = None,
+        check_read_only: bool = True,
+    ) -> SetParametersResult:
+        """Called by rclpy for each value that is to be declared or set."""
+        result = super()._apply_descriptor(parameter, descriptor, check_read_only)
+        if not result.successful:
+            descriptor = descriptor or self.describe_parameter(parameter.name)
+            result.reason = _refusal(parameter, descriptor, check_read_only)
+        return result
+
+    # Quality of service -----------------------------------------------------------------------
+
+    def warn_subscribers(self, topic: str) -> PublisherEventCallbacks:
+        """For a publisher: it warns of subscribers that it cannot serve."""
+        return PublisherEventCallbacks(incompatible_qos=self._warner(REQUESTED, topic))
+
+    def warn_publishers(self, topic: str) -> SubscriptionEventCallbacks:
+        """For a subscription: it warns of publishers from which it gets nothing."""
+        return SubscriptionEventCallbacks(incompatible_qos=self._warner(OFFERED, topic))
+
+    def _warner(self, text: str, topic: str) -> Callable[[Any], None]:
+        begin = text.format(self.resolve_topic_name(topic))
+
+        def warn(event: Any) -> None:
+            policy = qos_policy_name_from_kind(event.last_policy_kind)
+            self.get_logger().warning(begin + NO_MESSAGES.format(policy))
+
+        return warn
+
+
+def _refusal(parameter: Parameter, descriptor: ParameterDescriptor, check_read_only: bool) -> str:
+    """Why a parameter is not set; rclcpp asks in this order."""
+    if check_read_only and descriptor.read_only:
+        return f"parameter '{parameter.name}' cannot be set because it is read-only"
+    if parameter.type_ == Parameter.Type.NOT_SET:
+        return "cannot undeclare a statically typed parameter"
+    expected = Parameter.Type(descriptor.type)
+    if parameter.type_ != expected:
+        return wrong_type(parameter.name, expected.name.lower(), parameter.type_.name.lower())
+    kind = "integer" if descriptor.integer_range else "floating point"
+    return f"Parameter {{{parameter.name}}} doesn't comply with {kind} range."

@@ -1,0 +1,78 @@
+"""The action `rotate_absolute` of one turtle."""
+
+from __future__ import annotations
+
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.action.server import GoalEvent, ServerGoalHandle
+from rclpy.node import Node
+from turtlesim.action import RotateAbsolute
+
+from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.events import GoalFeedback, GoalResult
+
+#: How long a result can still be asked for [s]: rclcpp's default, which the original leaves alone.
+RESULT_TIMEOUT_S = 10
+
+
+class RotateAction:
+    """Passes goals and cancel requests on to the arena, and what comes of them to the clients.
+
+    Every goal and every request is accepted. In rclpy an execute callback turns a goal into a
+    result; here the world does, in the middle of its ticks, so there is no such callback, and
+    `finish` sets the state and the waiting result itself.
+    """
+
+    def __init__(self, node: Node, arena: Arena, turtle: str) -> None:
+        self._arena = arena
+        self._turtle = turtle
+        self._running: dict[bytes, ServerGoalHandle] = {}
+        self._server = ActionServer(
+            node,
+            RotateAbsolute,
+            f"{turtle}/rotate_absolute",
+            execute_callback=lambda _: None,  # never called, but required
+            handle_accepted_callback=self._on_goal,
+            cancel_callback=self._on_cancel,
+            result_timeout=RESULT_TIMEOUT_S,
+        )
+
+    def feedback(self, event: GoalFeedback) -> None:
+        """Tell a goal's client how far it still is."""
+        message = RotateAbsolute.Feedback(remaining=event.remaining_rad)
+        self._running[_key(event)].publish_feedback(message)
+
+    def finish(self, event: GoalResult) -> None:
+        """End a goal and send its result to those who wait for it."""
+        key = _key(event)
+        handle = self._running.pop(key)
+        if event.status == "SUCCEEDED":
+            handle.succeed()
+        elif event.status == "ABORTED":
+            handle.abort()
+        else:
+            if not handle.is_cancel_requested:  # the turtle is gone, nobody has asked
+                handle._update_state(GoalEvent.CANCEL_GOAL)
+            handle.canceled()
+        response = RotateAbsolute.Impl.GetResultService.Response(
+            status=handle.status, result=RotateAbsolute.Result(delta=event.delta_rad)
+        )
+        self._server._result_futures[key].set_result(response)
+
+    def destroy(self) -> None:
+        """Take the action off the graph."""
+        self._server.destroy()
+
+    def _on_goal(self, handle: ServerGoalHandle) -> None:
+        handle._update_state(GoalEvent.EXECUTE)
+        key = bytes(handle.goal_id.uuid)
+        self._running[key] = handle
+        self._arena.rotate_absolute(self._turtle, handle.request.theta, key)
+
+    def _on_cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        self._arena.cancel(bytes(handle.goal_id.uuid))
+        return CancelResponse.ACCEPT
+
+
+def _key(event: GoalFeedback | GoalResult) -> bytes:
+    assert isinstance(event.goal_id, bytes)  # as given to the arena in _on_goal
+    return event.goal_id
