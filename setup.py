@@ -27,7 +27,7 @@ ROS_IS_SOURCED = bool(os.environ.get("ROS_DISTRO"))
 ROS_PACKAGES: dict[str, list[str]] = {
     "grader": [],
     "turtlesim_challenge": ["launch/turtlesim_challenge.launch.py"],
-    "turtlesim_py": [],
+    "turtlesim_py": ["launch/multisim.launch.py"],
 }
 
 
