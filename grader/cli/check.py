@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
 from rich.console import Console
@@ -10,8 +11,10 @@ from rich.console import Console
 from grader import exercise as exercises
 from grader import result as results
 from grader.check import judge
+from grader.cli.run import points
 from grader.recording import load_all
 from grader.reports import terminal
+from grader.storage import WINDOW_PICTURE
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,16 +23,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--exercise", default=exercises.DEFAULT, metavar="NAME")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here")
     parser.add_argument(
-        "--fail-under", type=float, metavar="POINTS", help="exit 1 below this score"
+        "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"
     )
 
 
 def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
     exercise = exercises.load(args.exercise)
-    recordings = load_all(args.recording)
+    folder: Path = args.recording
+    if (folder / "recording").is_dir():  # the folder of the result, which holds the recording
+        folder /= "recording"
+    recordings = load_all(folder)
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
-    result = results.build(args.recording.name, exercise, recordings, verdicts, {})
+    artifacts = {}
+    if args.json:
+        beside = os.path.relpath(folder, args.json.parent)
+        artifacts = {"recording": beside, "canvas": f"{beside}/{WINDOW_PICTURE}"}
+    result = results.build(args.recording.name, exercise, recordings, verdicts, artifacts)
     if args.json:
         results.write(result, args.json)
     terminal.show(result, Console())

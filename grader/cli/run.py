@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import argparse
+import math
+import os
 from pathlib import Path
 
 from PIL import Image
 from rich.console import Console
 
 from grader import exercise as exercises
+from grader import reports
 from grader import result as results
 from grader.check import judge
 from grader.cli import progress
-from grader.errors import UsageError
+from grader.cli.watch import each_save
+from grader.errors import GraderFailure, UsageError
+from grader.grading import Runner, grade
 from grader.recording import Recordings
 from grader.reports import terminal
 from grader.result import Result
-from grader.run import real_time
+from grader.run import real_time, virtual_time
 from grader.submission import opened
+
+RUNNERS: dict[str, Runner] = {"real": real_time.run, "virtual": virtual_time.run}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,57 +32,102 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("submission", type=Path, help="a .py file, a folder, a package or a zip")
     parser.add_argument("--exercise", default=exercises.DEFAULT, metavar="NAME")
     parser.add_argument(
-        "--time", choices=["real"], default="real", help="the clock that the submission lives by"
+        "--time",
+        choices=sorted(RUNNERS),
+        default="virtual",
+        help="the clock that the submission lives by; virtual takes seconds and is the default",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="default: graded/SUBMISSION")
+    parser.add_argument(
+        "--seed", type=int, metavar="N", help="where the varied runs start (the exercise's own)"
+    )
+    parser.add_argument("--watch", action="store_true", help="grade again on every save")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="default: below graded/")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here as well")
     parser.add_argument("--executable", metavar="NAME", help="which console script to start")
     parser.add_argument(
-        "--fail-under", type=float, metavar="POINTS", help="exit 1 below this score"
+        "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"
     )
+
+
+def points(text: str) -> float:
+    """A number of points from the command line."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a number of points, found {text}")
+    return value
 
 
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
+    if not args.watch:
+        return _grade(args)
+    for _ in each_save(args.submission):
+        _grade_and_go_on(args)
+    return 0
+
+
+def _grade_and_go_on(args: argparse.Namespace) -> None:
+    """Grade; what cannot be used now may be usable after the next save."""
+    messages = Console(stderr=True, highlight=False)
+    try:
+        _grade(args)
+    except (UsageError, GraderFailure) as error:
+        messages.print(str(error), markup=False, soft_wrap=True)
+    messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
+
+
+def _grade(args: argparse.Namespace) -> int:
     exercise = exercises.load(args.exercise)
-    out: Path = args.out or Path("graded") / args.submission.resolve().stem
+    out: Path = args.out or _default_out(args.submission)
     console, messages = Console(), Console(stderr=True, highlight=False)
     with opened(args.submission, args.executable) as submission:
         messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
         _prepare(out, args.json)
-        messages.print("Running it beside a simulator, in real time; this can take a minute.")
+        messages.print(f"Running it beside a simulator, in {args.time} time ...")
         with progress.shown(messages, "running") as show:
-            recordings = Recordings(real_time.run(submission, exercise.limits, show))
+            recordings = grade(
+                submission, exercise, RUNNERS[args.time], seed=args.seed, progress=show
+            )
         name = submission.name
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     artifacts = _write(recordings, out)
     result = results.build(name, exercise, recordings, verdicts, artifacts)
     _write_result(result, out, args.json)
+    page = out / "report.html"
+    reports.write(reports.render("html", [reports.Report.read(out / "result.json")]), page)
     terminal.show(result, console)
-    console.print(f"Picture, recording and result: {out}", highlight=False, soft_wrap=True)
+    console.print(f"The page with picture and plots: {page}", highlight=False, soft_wrap=True)
     return int(args.fail_under is not None and result["score"] < args.fail_under)
 
 
+def _default_out(submission: Path) -> Path:
+    """A folder of its own for each submission: alice/turtle_controller.py is not bob's."""
+    absolute = Path(os.path.abspath(submission))  # noqa: PTH100  a link keeps its own name
+    here = Path.cwd()
+    if absolute.is_relative_to(here) and absolute != here:
+        return Path("graded") / absolute.relative_to(here)
+    return Path("graded") / absolute.parent.name / absolute.name
+
+
 def _prepare(out: Path, copy: Path | None) -> None:
-    """Find out before the run whether its result can be written.
+    """Find out before the run whether its result can be written, then make the folders.
 
     An older result goes now: it must not outlive a run that fails.
 
     Raises:
-        UsageError: one of the places cannot be written.
+        UsageError: one of the places cannot be written; nothing has changed then.
     """
-    for folder in (out, *([copy.parent] if copy else [])):
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            probe = folder / ".grader-can-write"
-            probe.touch()
-            probe.unlink()
-        except OSError as error:
-            raise UsageError(f"cannot write into {folder}: {error.strerror}") from None
-    for path in (out / "result.json", *([copy] if copy else [])):
+    files = [out / "result.json", *([copy] if copy else [])]
+    for path in files:
         if path.is_dir():
             raise UsageError(f"{path} is a folder; expected the name of a file to write")
-        path.unlink(missing_ok=True)
+        there = next(folder for folder in path.absolute().parents if os.path.lexists(folder))
+        if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+            raise UsageError(f"cannot write {path}: {there} is no folder that you may write into")
+    for path in files:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.is_file() and not path.is_symlink():
+            path.unlink()
 
 
 def _write(recordings: Recordings, out: Path) -> dict[str, str]:

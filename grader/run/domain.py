@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import fcntl
-import os
 import random
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 from grader.errors import GraderFailure
+from grader.run import scratch
 
 #: Domain ids whose ports stay clear of the ephemeral ones, minus the low ones that people use.
 DOMAINS = (*range(40, 102), *range(215, 233))
@@ -25,8 +23,7 @@ def reserved() -> Iterator[int]:
     Raises:
         GraderFailure: all of them are taken.
     """
-    folder = Path(tempfile.gettempdir()) / f"turtlesim-grader-{os.getuid()}"
-    folder.mkdir(mode=0o700, exist_ok=True)
+    folder = scratch.home()  # the empty lock files stay there for the next run
     for domain in random.sample(DOMAINS, len(DOMAINS)):
         with (folder / f"domain-{domain}.lock").open("w") as lock:
             try:

@@ -1,6 +1,6 @@
-"""`grader run` on real submissions: real processes, real ROS, real time.
+"""`grader run` on real submissions: real processes, real ROS, virtual time and real time.
 
-All runs of this module go on at once; they mostly wait.
+All runs of this module are started at once.
 """
 
 from __future__ import annotations
@@ -84,9 +84,10 @@ def finish(process: subprocess.Popen[str], out: Path) -> Graded:
 
 @pytest.fixture(scope="module")
 def exercise(tmp_path_factory) -> Path:
-    """The challenge with short limits: real time is precious."""
+    """The challenge with short limits and nominal runs only: a test suite is in a hurry."""
     source = ROOT / "grader/exercises/turtlesim_challenge/exercise.yaml"
     data = yaml.safe_load(source.read_text()) | {"limits": SHORT_LIMITS}
+    data["varied_runs"]["count"] = 0
     path = tmp_path_factory.mktemp("exercise") / "short.yaml"
     path.write_text(yaml.safe_dump(data))
     return path
@@ -108,14 +109,17 @@ def graded(tmp_path_factory, exercise):
     running = {
         name: start(path, outs[name], "--exercise", str(exercise)) for name, path in paths.items()
     }
+    outs["in_real_time"] = folder / "out_real"
+    running["in_real_time"] = start(paths["quick_spiral"], outs["in_real_time"], "--time", "real")
     return {name: finish(process, outs[name]) for name, process in running.items()}
 
 
-def test_a_right_solution_gets_full_marks(graded):
-    run = graded["quick_spiral"]
+@pytest.mark.parametrize(("name", "time"), [("quick_spiral", "virtual"), ("in_real_time", "real")])
+def test_a_right_solution_gets_full_marks_by_either_clock(graded, name, time):
+    run = graded[name]
     assert run.code == 0, run.stderr
     assert (run.result["score"], run.result["max_score"]) == (100, 100)
-    assert run.result["run"]["outcome"] == "finished"
+    assert (run.result["run"]["outcome"], run.result["run"]["time"]) == ("finished", time)
 
 
 def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(graded):
@@ -133,7 +137,7 @@ def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(grade
         ("syntax_error", "crashed", "SyntaxError: expected ':' (turtle_controller.py, line 2)"),
         ("missing_import", "crashed", "No module named 'turtlesim_messages' (turtle_controller.py"),
         ("exits_at_once", "exited", "ended by itself"),
-        ("never_ends", "time_limit", "no velocity command"),
+        ("never_ends", "stalled", "no velocity command"),
         ("wrong_topic", "time_limit", "/turtle/cmd_vel"),
     ],
 )
@@ -146,6 +150,12 @@ def test_a_submission_that_cannot_draw_gets_zero_and_is_told_why(graded, name, o
 
 def test_what_a_submission_writes_and_prints_is_no_result(graded):
     assert graded["forges"].result["score"] == 0
+
+
+def test_a_submission_that_starts_processes_is_graded_in_real_time_and_the_result_says_why(graded):
+    run = graded["forks_away"].result["run"]
+    assert run["time"] == "real"
+    assert any("graded in real time" in flag for flag in run["flags"])
 
 
 def test_every_result_follows_the_schema_and_its_files_exist(graded):
@@ -211,8 +221,9 @@ def test_a_simulator_that_dies_is_the_graders_failure_and_leaves_no_result(tmp_p
     slow.write_text("import pathlib, time\npathlib.Path('up').touch()\ntime.sleep(1000)\n")
     process = start(slow, out, "--exercise", str(exercise))
     grader = psutil.Process(process.pid)
-    simulator = wait_for(grader, "grader.run.simulator", tmp_path / "up")
-    simulator.send_signal(signal.SIGKILL)
+    for _ in range(2):  # a spoiled run is repeated once
+        wait_for(grader, "grader.run.lockstep", tmp_path / "up").send_signal(signal.SIGKILL)
+        (tmp_path / "up").unlink()
     run = finish(process, out)
     assert run.code == 3
     assert "not the submission's fault" in run.stderr
@@ -225,7 +236,7 @@ def test_a_killed_grader_takes_both_processes_along(tmp_path, exercise):
     slow.write_text("import pathlib, time\npathlib.Path('up').touch()\ntime.sleep(1000)\n")
     process = start(slow, out, "--exercise", str(exercise))
     grader = psutil.Process(process.pid)
-    wait_for(grader, "grader.run.simulator", tmp_path / "up")
+    wait_for(grader, "grader.run.lockstep", tmp_path / "up")
     family = grader.children(recursive=True)
     process.kill()
     process.communicate()
@@ -239,4 +250,8 @@ def wait_for(grader: psutil.Process, name: str, sign: Path) -> psutil.Process:
     while not sign.exists():
         assert grader.is_running()
         assert grader.status() != psutil.STATUS_ZOMBIE
-    return next(p for p in grader.children() if name in p.cmdline())
+    return next(
+        p
+        for p in grader.children(recursive=True)
+        if p.status() != psutil.STATUS_ZOMBIE and name in p.cmdline()
+    )

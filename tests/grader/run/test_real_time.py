@@ -1,0 +1,121 @@
+"""Whole runs in real time: nothing is lost at the start, and what is ours stays out of sight."""
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from grader.exercise import Limits
+from grader.recording import Recording
+from grader.run import real_time
+from grader.submission import EntryPoint, Submission, opened
+
+LIMITS = Limits(first_motion_s=3, rest_s=0.3, total_s=20)
+HEAD = """
+import time
+import rclpy
+from geometry_msgs.msg import Twist
+from turtlesim.srv import SetPen, TeleportAbsolute
+"""
+FILES = {
+    "commands_at_once": HEAD
+    + """
+rclpy.init()
+publisher = rclpy.create_node("driver").create_publisher(Twist, "/turtle1/cmd_vel", 10)
+twist = Twist()
+twist.linear.x = 1.0
+publisher.publish(twist)
+time.sleep(60)
+""",
+    "calls_at_once": HEAD
+    + """
+rclpy.init()
+node = rclpy.create_node("driver")
+pen = node.create_client(SetPen, "turtle1/set_pen")
+pen.call_async(SetPen.Request(r=1, g=2, b=3, width=4))
+time.sleep(60)
+""",
+    "starts_late": "import time\ntime.sleep(3.2)\n"
+    + HEAD
+    + """
+rclpy.init()
+publisher = rclpy.create_node("driver").create_publisher(Twist, "/turtle1/cmd_vel", 10)
+twist = Twist()
+twist.linear.x = 1.0
+publisher.publish(twist)
+time.sleep(60)
+""",
+    "wrong_topic": HEAD
+    + """
+rclpy.init()
+node = rclpy.create_node("driver")
+started = time.monotonic()
+for number in range(10):
+    node.create_publisher(Twist, "/turtle/cmd_vel", 10)
+print(time.monotonic() - started < 5, flush=True)
+""",
+    "never_a_node": "while True: pass\n",
+    "raises": "def main():\n    import rclpy.node\n    raise ValueError('mine')\n\nmain()\n",
+}
+
+
+def run(path: Path) -> Recording:
+    with opened(path) as submission:
+        return real_time.run(submission, LIMITS)
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Recording]:
+    """All of them, a few at a time: a crowded machine is late with everything."""
+    folder = tmp_path_factory.mktemp("handed_in")
+    for name, text in FILES.items():
+        (folder / f"{name}.py").write_text(text)
+    with ThreadPoolExecutor(3) as pool:
+        return dict(
+            zip(FILES, pool.map(run, [folder / f"{name}.py" for name in FILES]), strict=True)
+        )
+
+
+@pytest.mark.parametrize("name", ["commands_at_once", "starts_late"])
+def test_the_first_command_arrives(recordings: dict[str, Recording], name: str) -> None:
+    recording = recordings[name]
+    assert (recording.run.outcome, len(recording.calls("cmd_vel"))) == ("finished", 1)
+
+
+def test_the_first_call_of_a_service_arrives(recordings: dict[str, Recording]) -> None:
+    assert len(recordings["calls_at_once"].calls("set_pen")) == 1
+
+
+def test_a_wrong_name_costs_little_time(recordings: dict[str, Recording]) -> None:
+    assert recordings["wrong_topic"].output.endswith("True\n")
+
+
+def test_without_a_node_the_clock_of_the_run_starts_as_well(
+    recordings: dict[str, Recording],
+) -> None:
+    assert recordings["never_a_node"].run.outcome == "time_limit"
+    assert recordings["never_a_node"].run.simulated_s == pytest.approx(3.0, abs=0.1)
+
+
+def test_a_traceback_shows_none_of_our_lines(recordings: dict[str, Recording]) -> None:
+    assert "ValueError: mine" in recordings["raises"].output
+    assert "student_main" not in recordings["raises"].output
+
+
+def started(root: Path, module: str, function: str) -> Recording:
+    submission = Submission("handed in", root, EntryPoint(module, function), "")
+    return real_time.run(submission, LIMITS)
+
+
+def test_an_entry_point_may_be_a_method(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text(
+        "import sys\nclass Node:\n    @staticmethod\n    def main(): print(sys.argv)\n"
+    )
+    assert started(tmp_path, "node", "Node.main").output == "['node']\n"
+
+
+def test_a_module_that_is_not_the_submission_s_is_named(tmp_path: Path) -> None:
+    (tmp_path / "signal.py").write_text("def main(): print('mine')\n")
+    recording = started(tmp_path, "signal", "main")
+    assert recording.run.outcome == "crashed"
+    assert "'signal' is also the name of a module" in recording.output

@@ -1,0 +1,148 @@
+"""Whole runs in virtual time: every style of waiting, every service, and those who misbehave."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.exercise import Limits
+from grader.recording import Recording, Start
+from grader.run import virtual_time
+from grader.submission import opened
+
+SUBMISSIONS = Path(__file__).parents[2] / "submissions"
+STYLES = sorted(p.stem for p in (SUBMISSIONS / "styles").glob("*.py") if p.stem != "spiral")
+#: The longest that a run may take where nothing waits for a limit, beside others [s].
+MOST_WALL_S = 60
+
+Recorded = Callable[..., Recording]
+
+
+def each(folder: str, *cases: tuple[Any, ...], times: int = 1) -> list[Any]:
+    """Parameters of a test, the first of which names a submission that it will have recorded."""
+    return [
+        pytest.param(*case, marks=pytest.mark.records(f"{folder}/{case[0]}", times=times))
+        for case in cases
+    ]
+
+
+@pytest.mark.parametrize("style", each("styles", *((style,) for style in STYLES), times=2))
+def test_every_style_of_waiting_gives_the_same_run_twice(recorded: Recorded, style: str) -> None:
+    first, second = recorded(f"styles/{style}"), recorded(f"styles/{style}", 2)
+    assert (first.run.time, first.run.outcome, first.run.flags) == ("virtual", "finished", ())
+    assert first.run.trace_sha256 == second.run.trace_sha256
+    assert len(first.calls("cmd_vel")) > 10
+    assert first.topics == second.topics
+
+
+def test_styles_that_mean_the_same_draw_the_same(recorded: Recorded) -> None:
+    names = ("timer", "events_executor", "call_in_callback")
+    assert len({recorded(f"styles/{name}").run.trace_sha256 for name in names}) == 1
+
+
+@pytest.mark.parametrize(
+    "name", each("services", ("all_services",), ("rotate",), ("graph",), times=2)
+)
+def test_what_services_actions_and_the_graph_tell_is_the_same_every_time(
+    recorded: Recorded, name: str
+) -> None:
+    first, second = recorded(f"services/{name}"), recorded(f"services/{name}", 2)
+    assert (first.run.exit_code, first.run.flags) == (0, ())
+    assert first.output == second.output
+    assert first.events == second.events
+
+
+def test_rotation_goals_end_as_in_the_original(recorded: Recorded) -> None:
+    lines = recorded("services/rotate").output.splitlines()
+    # 62 ticks of 0.016 rad from 0 towards 1.0, first feedback in the tick of acceptance
+    assert lines[1].startswith("1.008 4 turtlesim.action.RotateAbsolute_Result(delta=-0.99199998")
+    statuses = [int(line.split()[1]) for line in lines if "Result" in line]
+    assert statuses == [4, 5, 6, 6, 4]  # succeeded, cancelled, aborted twice, succeeded
+
+
+@pytest.mark.records("services/burst")
+def test_a_burst_of_commands_is_consumed_one_a_tick_and_only_the_last_seven(
+    recorded: Recorded,
+) -> None:
+    commands = recorded("services/burst").calls("cmd_vel")
+    assert [(e["tick"], e["linear"][0]) for e in commands] == [
+        (tick, tick + 13.0) for tick in range(1, 8)
+    ]
+
+
+def test_a_run_may_start_elsewhere() -> None:
+    with opened(SUBMISSIONS / "misbehaving/exits.py") as submission:
+        recording = virtual_time.run(submission, Limits(3, 1, 60), Start(2.0, 3.0, 1.0))
+    _, x, y, theta, *_ = recording.published["turtle1"][0]
+    assert (x, y, theta) == pytest.approx((2.0, 3.0, 1.0), abs=0.02)
+    assert recording.start == Start(2.0, 3.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "outcome", "exit_code"),
+    each(
+        "misbehaving",
+        ("busy_for_ever", "stalled", None),
+        ("calls_in_callback", "stalled", None),
+        ("calls_without_spinning", "stalled", None),
+        ("exits", "crashed", 3),
+        ("floods", "time_limit", None),
+        ("floods_without_end", "time_limit", None),
+        ("interrupts_itself", "finished", 0),
+        ("kills_itself", "killed", -9),
+        ("never_spins", "stalled", None),
+        ("prints_a_million", "finished", None),
+        ("raises_in_callback", "crashed", 1),
+        ("sleeps_for_ever", "finished", None),
+        ("spins_in_callback", "stalled", None),
+    ),
+)
+def test_misbehaviour_ends_by_itself_and_is_named(
+    recorded: Recorded, name: str, outcome: str, exit_code: int | None
+) -> None:
+    recording = recorded(f"misbehaving/{name}")
+    assert recording.run.wall_s < MOST_WALL_S
+    assert recording.run.time == "virtual"
+    assert (recording.run.outcome, recording.run.exit_code) == (outcome, exit_code)
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    each(
+        "misbehaving",
+        ("spins_in_callback", "rclpy.spin_until_future_complete(self, answer)"),
+        ("calls_in_callback", "self.pen.call(SetPen.Request(r=255, width=3))"),
+        ("calls_without_spinning", "pen.call(SetPen.Request(r=255, width=3))"),
+    ),
+)
+def test_a_deadlock_is_shown_where_it_is(recorded: Recorded, name: str, line: str) -> None:
+    output = recorded(f"misbehaving/{name}").output
+    assert output.count("Your node is stuck here") == 1
+    assert line in output
+    assert "grader/run" not in output
+
+
+@pytest.mark.records("misbehaving/raises_in_callback")
+def test_an_exception_shows_the_traceback_of_a_student_s_desk(recorded: Recorded) -> None:
+    output = recorded("misbehaving/raises_in_callback").output
+    assert re.search(r"AttributeError: 'Pose' object has no attribute 'z'\s*$", output)
+    assert "grader/run" not in output
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    each(
+        "misbehaving",
+        ("starts_a_program", "starts another program (sleep)"),
+        ("blocks_in_c", "waits for something outside of Python's and ROS's own waiting"),
+        ("attacks_link", "broke our virtual time"),
+    ),
+)
+def test_what_virtual_time_cannot_follow_runs_in_real_time(
+    recorded: Recorded, name: str, reason: str
+) -> None:
+    recording = recorded(f"misbehaving/{name}")
+    assert recording.run.time == "real"
+    assert reason in recording.run.flags[-1]

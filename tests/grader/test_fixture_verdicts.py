@@ -1,0 +1,101 @@
+"""Real submissions, run for real in virtual time, get exactly the verdicts they deserve.
+
+All of them are graded first, two at a time; then each has a test of its own.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from grader import exercise as exercises
+from grader.check import judge
+from grader.grading import grade
+from grader.run import virtual_time
+from grader.submission import opened
+from tests.submissions.mutants import MUTANTS, REFERENCE
+
+SUBMISSIONS = Path(__file__).parents[1] / "submissions"
+RIGHT = {
+    "reference": REFERENCE,
+    "quick_spiral": SUBMISSIONS / "quick_spiral.py",
+    **{
+        style: SUBMISSIONS / "styles" / f"{style}.py"
+        for style in (
+            "timer",
+            "spin_once_loop",
+            "events_executor",
+            "multi_threaded",
+            "call_in_callback",
+            "rate_with_spin_thread",
+        )
+    },
+}
+#: Graded a second time, to see that nothing changes.
+TWICE = ("reference", "rate_with_spin_thread", "random_colours", "draws_by_teleport")
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory):
+    """Name of a submission -> its verdicts and hashes, once for each grading."""
+    folder = tmp_path_factory.mktemp("mutants")
+    paths = dict(RIGHT)
+    for name, mutant in MUTANTS.items():
+        paths[name] = folder / name / "turtle_controller.py"
+        paths[name].parent.mkdir()
+        paths[name].write_text(mutant.text(), encoding="utf-8")
+    exercise = exercises.load("turtlesim_challenge")
+
+    def grade_one(name):
+        with opened(paths[name]) as submission:
+            recordings = grade(submission, exercise, virtual_time.run)
+        verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
+        hashes = [recording.run.trace_sha256 for recording in recordings]
+        assert all(recording.run.time == "virtual" for recording in recordings)
+        return verdicts, hashes
+
+    with ThreadPoolExecutor(2) as pool:
+        tasks = {name: [pool.submit(grade_one, name)] for name in paths}
+        for name in TWICE:
+            tasks[name].append(pool.submit(grade_one, name))
+        return {name: [task.result() for task in both] for name, both in tasks.items()}
+
+
+def scores(verdicts):
+    return {verdict.check: verdict.score for verdict in verdicts}
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("name", RIGHT)
+def test_a_right_solution_gets_every_point(graded, name):
+    verdicts, _ = graded[name][0]
+    assert [(v.check, v.rationale) for v in verdicts if v.status != "passed"] == []
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("name", MUTANTS)
+def test_a_mutant_loses_what_it_spoils_and_nothing_else(graded, name):
+    verdicts, _ = graded[name][0]
+    lost = MUTANTS[name].lost
+    for verdict in verdicts:
+        expected = lost.get(verdict.check, verdict.max_score)
+        if expected == "some":
+            assert 0 < verdict.score < verdict.max_score, verdict
+        else:
+            assert verdict.score == expected, verdict
+
+
+@pytest.mark.parametrize("name", MUTANTS)
+def test_a_failed_verdict_explains_itself(graded, name):
+    verdicts, _ = graded[name][0]
+    for verdict in verdicts:
+        assert verdict.rationale
+        assert verdict.help or verdict.status == "passed"
+
+
+@pytest.mark.parametrize("name", TWICE)
+def test_the_same_submission_gets_the_same_verdicts_and_the_same_hashes(graded, name):
+    first, second = graded[name]
+    assert first == second

@@ -1,0 +1,16 @@
+"""Leaves after a second, with an exit code."""
+
+import sys
+import time
+
+import rclpy
+from geometry_msgs.msg import Twist
+
+rclpy.init()
+node = rclpy.create_node("controller")
+velocity = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+twist = Twist()
+twist.linear.x = 1.0
+velocity.publish(twist)
+time.sleep(1.0)
+sys.exit(3)

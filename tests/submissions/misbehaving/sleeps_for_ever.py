@@ -1,0 +1,14 @@
+"""Sleeps for a million seconds while the turtle drives."""
+
+import time
+
+import rclpy
+from geometry_msgs.msg import Twist
+
+rclpy.init()
+node = rclpy.create_node("controller")
+velocity = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+twist = Twist()
+twist.linear.x = 1.0
+velocity.publish(twist)
+time.sleep(1e6)
