@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
+from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import CompressedImage, Image
@@ -47,7 +48,9 @@ class Window:
     def __init__(self, node: RclcppNode, arena: Arena) -> None:
         self._node = node
         self._arena = arena
+        self._rate_hz: float = node.get_parameter("image_rate").value
         self._due_ns = 0
+        node.add_post_set_parameters_callback(self._on_parameters)
         only_the_newest = QoSProfile(depth=1)
         self._raw = node.create_publisher(Image, "~/image", only_the_newest)
         self._compressed = node.create_publisher(
@@ -58,16 +61,14 @@ class Window:
     def publish_if_due(self) -> None:
         """Send the picture if somebody looks and the last one is old enough; after each tick."""
         late_ns = self._arena.now_ns - self._due_ns
-        if late_ns < 0:
+        if late_ns < 0 or self._rate_hz == 0.0:
             return
-        rate_hz = self._node.get_parameter("image_rate").value
-        # 0 is looked at again after a while
-        period_ns = round(1e9 / rate_hz) if rate_hz > 0.0 else 1_000_000_000
+        period_ns = round(1e9 / self._rate_hz)
         # counted from when it was due: waiting for a tick does not make pictures rarer
         self._due_ns += period_ns if late_ns < period_ns else late_ns + period_ns
         raw = self._raw.get_subscription_count()
         compressed = self._compressed.get_subscription_count()
-        if rate_hz == 0.0 or not (raw or compressed):
+        if not (raw or compressed):
             return
         pixels = self._picture()
         if raw:
@@ -79,6 +80,12 @@ class Window:
         message.header.stamp = self._node.get_clock().now().to_msg()
         message.header.frame_id = "window"
         publisher.publish(message)
+
+    def _on_parameters(self, parameters: list[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name == "image_rate":
+                self._rate_hz = parameter.value
+                self._due_ns = 0
 
     def _on_save(self, _: Any, response: Any) -> Any:
         folder = Path(self._node.get_parameter("canvas_folder").value).expanduser().resolve()

@@ -93,7 +93,7 @@ def test_python_imports_from_the_workspace(workspace: Workspace) -> None:
 
 def test_launch_file_is_where_ros2_launch_looks(workspace: Workspace) -> None:
     names = [path.name for path in workspace.installed if path.parent.name == "launch"]
-    assert names == ["turtlesim_challenge.launch.py"]
+    assert sorted(names) == ["multisim.launch.py", "turtlesim_challenge.launch.py"]
 
 
 def test_nothing_of_ros_is_built_or_required(workspace: Workspace) -> None:

@@ -43,7 +43,7 @@ def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment)
     path = ros2_run("grader", "grader", shell)
     help_ = subprocess.run([path, "run", "--help"], env=shell, capture_output=True, text=True)
     assert help_.returncode == 0, help_.stderr
-    assert "SUBMISSION" in help_.stdout
+    assert "submission" in help_.stdout
 
 
 @pytest.mark.parametrize("package", ["turtlesim_py", "turtlesim_challenge", "grader"])

@@ -120,3 +120,6 @@ def test_a_rate_of_zero_means_no_pictures(rate: Rate, renderings: list[None]) ->
     rate.node.set_parameters([Parameter("image_rate", value=0.0)])
     rate.tick(20)
     assert not renderings
+    rate.node.set_parameters([Parameter("image_rate", value=62.5)])
+    rate.tick(5)
+    assert len(renderings) == 5

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Grades for Autolab, in an image made from ../Dockerfile. The last line on standard output is the
+# scores; where there is none, Autolab says that the autograder failed.
+set -uo pipefail
+
+# EDIT: the name under which Autolab puts the file that was handed in beside this script
+handed_in=handin.zip
+
+scripts=${GRADER_SCRIPTS:-/opt}
+venv=${GRADER_VENV:-/opt/turtlesim-grader}
+if [ -f exercise.yaml ]; then
+    EXERCISE=$PWD/exercise.yaml
+fi
+export EXERCISE=${EXERCISE:-turtlesim_challenge}
+work=$(mktemp -d)
+
+code=0
+bash "$scripts/grade.sh" "$handed_in" "$work" || code=$?
+case $code in
+0 | 1)
+    "$venv/bin/grader" report "$work/graded/result.json"
+    "$venv/bin/grader" report "$work/graded/result.json" --format autolab
+    ;;
+2)
+    echo "This cannot be graded, so it has no points. Mend that, and hand in again."
+    "$venv/bin/python" -P -c 'import json, sys; from grader import exercise
+print(json.dumps({"scores": dict.fromkeys(exercise.load(sys.argv[1]).points, 0)}))' "$EXERCISE"
+    ;;
+*) exit 3 ;;
+esac
