@@ -10,7 +10,7 @@ ifdef _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH
 endif
 
-.PHONY: help install test lint demo clean
+.PHONY: help install test lint demo bench clean
 .DEFAULT_GOAL := help
 
 help:
@@ -18,6 +18,7 @@ help:
 	@echo "make demo      grade the reference controller: pictures and result in demo/"
 	@echo "make test      run all tests                   (ARGS=\"-k name\" for some)"
 	@echo "make lint      ruff and mypy"
+	@echo "make bench     what the simulator and a grading cost: tables (minutes)"
 	@echo "make clean     remove everything that was made here"
 	@echo "PYTHON=python3.12 make install   with that Python (3.11, 3.12 or 3.13)"
 
@@ -40,6 +41,10 @@ demo: install
 	@echo "== grading the reference controller"
 	@$(BIN)/grader run "$$($(BIN)/python -P -c 'import turtlesim_challenge as c; print(c.__path__[0])')/turtle_controller.py" --out demo
 	@echo "== the picture is demo/canvas.png, the result demo/result.json"
+
+bench: install
+	@$(BIN)/python benchmarks/node.py
+	@$(BIN)/python benchmarks/grading.py
 
 clean:
 	rm -rf .venv build install log demo *.egg-info .eggs .hypothesis .mypy_cache .pytest_cache .ruff_cache

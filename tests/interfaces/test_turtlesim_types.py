@@ -4,7 +4,6 @@ Where ROS is sourced this checks apt's package in the same way.
 """
 
 import json
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -55,7 +54,7 @@ class Peer:
 
     def __init__(self) -> None:
         self._context = Context()
-        rclpy.init(context=self._context, domain_id=os.getpid() % 100 + 1)
+        rclpy.init(context=self._context)
         self.node = Node("peer", context=self._context)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
