@@ -1,0 +1,43 @@
+"""A busy machine and neighbours slow a run down, but change nothing in it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+
+from grader.exercise import Limits
+from grader.run import virtual_time
+from grader.submission import opened
+
+STYLES = Path(__file__).parents[2] / "submissions" / "styles"
+NAMES = ("timer", "multi_threaded", "rate_with_spin_thread")
+LIMITS = Limits(first_motion_s=3, rest_s=1, total_s=25)
+
+
+@contextmanager
+def busy_loops(count: int) -> Iterator[None]:
+    loops = [subprocess.Popen([sys.executable, "-S", "-c", "while 1: 0"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for loop in loops:
+            loop.kill()
+            loop.wait()
+
+
+def trace(name: str) -> tuple[str, str]:
+    with opened(STYLES / f"{name}.py") as submission:
+        recording = virtual_time.run(submission, LIMITS)
+    assert (recording.run.time, recording.run.flags) == ("virtual", ())
+    return name, recording.run.trace_sha256
+
+
+def test_beside_busy_loops_and_other_runs_every_trace_stays_the_same() -> None:
+    alone = dict(trace(name) for name in NAMES)
+    with busy_loops(2), ThreadPoolExecutor(4) as pool:
+        crowded = list(pool.map(trace, NAMES * 2))
+    assert {(name, alone[name]) for name in NAMES} == set(crowded)
