@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import errno
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -45,6 +44,7 @@ from grader.handed_in import (
     top_of,
 )
 from grader.python_source import Source, read_source
+from grader.run import scratch as scratch_folders
 from grader.setup_files import ConsoleScript, Package
 
 __all__ = ["EntryPoint", "Script", "Submission", "SubmissionError", "opened"]
@@ -97,9 +97,11 @@ def opened(path: Path, executable: str | None = None) -> Iterator[Submission]:
     Raises:
         SubmissionError: there is nothing to start, or no way to tell what.
     """
-    with tempfile.TemporaryDirectory(prefix="submission-", ignore_cleanup_errors=True) as scratch:
+    with scratch_folders.folder() as folder:
+        scratch = folder.resolve() / "submission"
+        scratch.mkdir()
         try:
-            submission = _open(path, executable, Path(scratch).resolve())
+            submission = _open(path, executable, scratch)
         except OSError as error:
             if error.errno not in _UNREADABLE:
                 raise
