@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import fcntl
 import json
-import os
 import socket
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -20,7 +18,7 @@ from pathlib import Path
 
 from grader.exercise import Limits
 from grader.recording import Outcome, Recording, Start
-from grader.run import real_time, session
+from grader.run import real_time, scratch, session
 from grader.run.host import __path__ as host
 from grader.run.host import core
 from grader.run.link import Patience
@@ -112,8 +110,7 @@ def command(submission: Submission, link_fd: int, core_id: int) -> list[str]:
 def _core(run: int) -> Iterator[int]:
     """A processor core for both processes of a run: if possible one that no other run has."""
     cores = core.available()
-    folder = Path(tempfile.gettempdir()) / f"turtlesim-grader-{os.getuid()}"
-    folder.mkdir(mode=0o700, exist_ok=True)
+    folder = scratch.home()
     with ExitStack() as locks:
         for core_id in cores:
             lock = locks.enter_context((folder / f"core-{core_id}.lock").open("w"))
