@@ -1,0 +1,172 @@
+"""Grade all fixture submissions with a checkout's grader, and compare two such snapshots.
+
+    python scripts/snapshot.py take DIR [--grader PATH/TO/grader] [--jobs N] [--only NAME...]
+    python scripts/snapshot.py compare BEFORE AFTER
+
+A change that is to leave behaviour as it is takes a snapshot before and one after. `take` uses
+nothing but the command line, so it serves for any two versions of the grader. Compared are, byte
+for byte, the result, the recordings and every report format; what differs between equal runs (wall
+time, a date) is taken out first. What ran in real time is compared by its outcome alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import filecmp
+import json
+import os
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+#: Always the same place: tracebacks in a submission's output name its path.
+FIXTURES = Path("/tmp/turtlesim-snapshot-fixtures")
+FORMATS = (
+    *("html", "markdown", "csv", "junit", "gradescope", "prairielearn", "autolab"),
+    *("moodle-vpl", "github-autograding", "terminal"),
+)
+#: What of a recording differs between equal runs.
+CIRCUMSTANCES = "circumstances.json"
+
+
+def lay_out() -> dict[str, tuple[Path, str]]:
+    """Copy the fixtures; name -> path and exercise."""
+    sys.path.insert(0, str(ROOT))
+    from tests.submissions.mutants import MUTANTS, REFERENCE
+
+    shutil.rmtree(FIXTURES, ignore_errors=True)
+    shutil.copytree(ROOT / "tests" / "submissions", FIXTURES)
+    found: dict[str, tuple[Path, str]] = {}
+    for path in sorted(FIXTURES.rglob("*.py")):
+        if path.stem not in ("mutants", "spiral"):
+            is_square = path.stem.startswith("square")
+            found[path.stem] = (path, "square" if is_square else "turtlesim_challenge")
+    for name, text in {
+        "reference": REFERENCE.read_text(encoding="utf-8"),
+        **{name: mutant.text() for name, mutant in MUTANTS.items()},
+    }.items():
+        path = FIXTURES / "mutants" / name / "turtle_controller.py"
+        path.parent.mkdir(parents=True)
+        path.write_text(text, encoding="utf-8")
+        found[f"mutant-{name}"] = (path, "turtlesim_challenge")
+    starter = FIXTURES / "starter"
+    shutil.copytree(ROOT / "turtlesim_challenge" / "starter", starter)
+    return {**found, "starter": (starter, "turtlesim_challenge")}
+
+
+def take(grader: str, folder: Path, jobs: int, only: list[str]) -> None:
+    """Grade everything into a new folder."""
+    folder.mkdir(parents=True)
+    fixtures = {name: case for name, case in lay_out().items() if not only or name in only}
+    with ThreadPoolExecutor(jobs) as pool:
+        for line in pool.map(lambda item: _grade(grader, folder, *item), fixtures.items()):
+            print(line, flush=True)
+
+
+def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
+    path, exercise = case
+    env = {**os.environ, "COLUMNS": "100"}
+    command = [grader, "run", str(path), "--exercise", exercise, "--out", name]
+    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True)
+    if done.returncode:
+        (folder / name).mkdir(exist_ok=True)
+        (folder / name / "failed.txt").write_text(f"{done.returncode}\n{done.stderr}")
+        return f"{name}: exit {done.returncode}"
+    file = folder / name / "result.json"
+    result = json.loads(file.read_text(encoding="utf-8"))
+    for run in _runs(result):
+        run["wall_s"] = 1.0
+    file.write_text(json.dumps(result, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    for form in FORMATS:
+        command = [grader, "report", f"{name}/result.json", "--format", form]
+        report = subprocess.run(command, cwd=folder, env=env, capture_output=True)
+        (folder / name / f"report.{form}").write_bytes(report.stdout or report.stderr)
+    (folder / name / "report.html").replace(folder / name / "report.html.as-written")
+    page = subprocess.run([grader, "report", f"{name}/result.json", "--format", "html"],
+                          cwd=folder, env=env, capture_output=True)  # fmt: skip
+    (folder / name / "report.html").write_bytes(page.stdout)
+    (folder / name / "report.html.as-written").unlink()
+    hashes = " ".join(run["trace_sha256"][:8] for run in _runs(result))
+    return f"{name}: {result['score']} {result['run']['time']} {hashes}"
+
+
+def _runs(result: dict[str, Any]) -> list[dict[str, Any]]:
+    return [result["run"], *result.get("varied_runs", [])]
+
+
+def compare(before: Path, after: Path) -> int:
+    """Print what differs; the number of submissions that do."""
+    names = sorted({path.name for folder in (before, after) for path in folder.iterdir()})
+    different = traces = files = 0
+    for name in names:
+        faults, counted = _differences(before / name, after / name)
+        files += counted
+        if (before / name / "result.json").exists():
+            result = json.loads((before / name / "result.json").read_text(encoding="utf-8"))
+            traces += len(_runs(result))
+        different += bool(faults)
+        for fault in faults:
+            print(f"{name}: {fault}")
+    print(f"{len(names)} submissions, {traces} runs, {files} files compared; {different} differ")
+    return different
+
+
+def _differences(before: Path, after: Path) -> tuple[list[str], int]:
+    if not before.is_dir() or not after.is_dir():
+        return [f"only in {before.parent if before.is_dir() else after.parent}"], 0
+    both = [_result(folder) for folder in (before, after)]
+    if any(run["time"] == "real" for result in both if result for run in _runs(result)):
+        seen = [
+            [(run["time"], run["outcome"], run["flags"]) for run in _runs(result)]
+            for result in both
+            if result
+        ]
+        return ([] if seen[0] == seen[-1] and len(seen) == 2 else [f"{seen}"]), 0
+    names = sorted(
+        {
+            path.relative_to(folder)
+            for folder in (before, after)
+            for path in folder.rglob("*")
+            if path.is_file() and path.name != CIRCUMSTANCES
+        }
+    )
+    faults = []
+    for name in names:
+        ours, theirs = before / name, after / name
+        if not ours.exists() or not theirs.exists():
+            faults.append(f"{name} is only {'after' if theirs.exists() else 'before'}")
+        elif not filecmp.cmp(ours, theirs, shallow=False):
+            faults.append(f"{name} differs")
+    return faults, len(names)
+
+
+def _result(folder: Path) -> dict[str, Any] | None:
+    file = folder / "result.json"
+    return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
+
+
+def main() -> int:
+    """Command line; `compare` exits with 1 where something differs."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    taking = verbs.add_parser("take")
+    taking.add_argument("folder", type=Path)
+    taking.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
+    taking.add_argument("--jobs", type=int, default=2)
+    taking.add_argument("--only", nargs="*", default=[], metavar="NAME")
+    comparing = verbs.add_parser("compare")
+    comparing.add_argument("before", type=Path)
+    comparing.add_argument("after", type=Path)
+    args = parser.parse_args()
+    if args.verb == "take":
+        take(args.grader, args.folder, args.jobs, args.only)
+        return 0
+    return int(compare(args.before, args.after) > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
