@@ -22,9 +22,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # this checkout, whatever is installed
 
-from grader.exercise import Limits  # noqa: E402
+from grader.exercise.loading import Limits  # noqa: E402
 from grader.run import real_time, virtual_time  # noqa: E402
-from grader.submission import opened  # noqa: E402
+from grader.submission.opening import open_submission  # noqa: E402
 
 STYLES = {
     "timer": "timer and rclpy.spin",
@@ -58,7 +58,7 @@ def style(name: str) -> Path:
 def virtual(path: Path) -> Timing:
     """Grade once in virtual time."""
     marks: dict[str, float] = {}
-    with opened(path) as submission:
+    with open_submission(path) as submission:
         begun = time.monotonic()
         recording = virtual_time.run(submission, LIMITS, marks=marks)
         ended = time.monotonic()
@@ -71,7 +71,7 @@ def virtual(path: Path) -> Timing:
 
 def real(path: Path) -> float:
     """Grade once in real time; the wall time [s]."""
-    with opened(path) as submission:
+    with open_submission(path) as submission:
         begun = time.monotonic()
         real_time.run(submission, LIMITS)
         return time.monotonic() - begun

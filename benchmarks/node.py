@@ -32,7 +32,7 @@ from geometry_msgs.msg import Twist, Vector3  # noqa: E402
 from turtlesim.msg import Pose  # noqa: E402
 from turtlesim.srv import Spawn  # noqa: E402
 
-from grader.run import domain  # noqa: E402
+from grader.run.processes import domain  # noqa: E402
 from turtlesim_py.world.arena import TICK_NS, Arena  # noqa: E402
 from turtlesim_py.world.canvas import Canvas, Pen  # noqa: E402
 
@@ -253,7 +253,7 @@ def main() -> None:
     print(f"|{'-' * 46}|{'-' * 7}|{'-' * 10}:|{'-' * 20}:|{'-' * 14}:|")
     for row in bare_world():
         print(row, flush=True)
-    with domain.reserved() as number:
+    with domain.reserve_domain() as number:
         os.environ["ROS_DOMAIN_ID"] = str(number)
         os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         rclpy.init(args=[])

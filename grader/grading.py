@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import Protocol
 
 from grader.errors import GraderFailure
-from grader.exercise import Exercise, Limits
-from grader.recording import Recording, Recordings, Start
-from grader.submission import Submission
+from grader.exercise.loading import Exercise, Limits
+from grader.recording.recording import Recording, Recordings, Start
+from grader.submission.opening import Submission
 
 Progress = Callable[[float], None]
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from grader.run import domain
+from grader.run.processes import domain
 from tests.programs import Program
 
 # Before anything of ROS is imported: the wheels take an int in a float field for other bits.
@@ -24,7 +24,7 @@ _numbers = count(1)
 
 def pytest_configure() -> None:
     """Take a ROS domain for this session, and a place for ROS's log files."""
-    os.environ["ROS_DOMAIN_ID"] = str(_reserved.enter_context(domain.reserved()))
+    os.environ["ROS_DOMAIN_ID"] = str(_reserved.enter_context(domain.reserve_domain()))
     os.environ["ROS_LOG_DIR"] = _reserved.enter_context(tempfile.TemporaryDirectory())
 
 
@@ -64,7 +64,7 @@ def graph(session_graph: Any) -> Iterator[Any]:
 def simulator(session_graph: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Program]:
     """One turtlesim_node for the whole session, a process of its own, as `/turtlesim`."""
     folder = tmp_path_factory.mktemp("simulator")
-    with Program("turtlesim_py.node", cwd=folder) as program:
+    with Program("turtlesim_py.ros.node", cwd=folder) as program:
         session_graph.meet("turtlesim")
         yield program
         assert program.stop() == 0

@@ -15,9 +15,9 @@ from rich.markup import escape
 
 from grader.cli import check, new, report, run
 from grader.errors import GraderFailure, UsageError
-from grader.recording import RecordingError
-from grader.run import processes
-from grader.submission import SubmissionError
+from grader.recording.recording import RecordingError
+from grader.run.processes import watched
+from grader.submission.opening import SubmissionError
 
 VERBS: dict[str, Any] = {"run": run, "check": check, "report": report, "new": new}
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -32,7 +32,7 @@ def main(argv: list[str] | None = None) -> int:
         verb = verbs.add_parser(name, help=summary, description=summary)
         module.add_arguments(verb)
     args = parser.parse_args(argv)
-    processes.end_on_signals()
+    watched.end_on_signals()
     errors = Console(stderr=True, soft_wrap=True, highlight=False)
     try:
         return int(VERBS[args.verb].main(args))

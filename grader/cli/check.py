@@ -8,19 +8,19 @@ from pathlib import Path
 
 from rich.console import Console
 
-from grader import exercise as exercises
-from grader import result as results
-from grader.check import judge
 from grader.cli.run import points
-from grader.recording import load_all
+from grader.exercise.check import judge
+from grader.exercise.loading import DEFAULT, load_exercise
+from grader.recording.folder import WINDOW_PICTURE
+from grader.recording.recording import load_all
 from grader.reports import terminal
-from grader.storage import WINDOW_PICTURE
+from grader.result import result as results
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.add_argument("recording", type=Path, help="the folder `recording` of a graded run")
-    parser.add_argument("--exercise", default=exercises.DEFAULT, metavar="NAME")
+    parser.add_argument("--exercise", default=DEFAULT, metavar="NAME")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here")
     parser.add_argument(
         "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
-    exercise = exercises.load(args.exercise)
+    exercise = load_exercise(args.exercise)
     folder: Path = args.recording
     if (folder / "recording").is_dir():  # the folder of the result, which holds the recording
         folder /= "recording"

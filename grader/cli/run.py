@@ -10,19 +10,19 @@ from pathlib import Path
 from PIL import Image
 from rich.console import Console
 
-from grader import exercise as exercises
 from grader import reports
-from grader import result as results
-from grader.check import judge
 from grader.cli import progress
 from grader.cli.watch import each_save
 from grader.errors import GraderFailure, UsageError
+from grader.exercise.check import judge
+from grader.exercise.loading import DEFAULT, load_exercise
 from grader.grading import Runner, grade
-from grader.recording import Recordings
+from grader.recording.recording import Recordings
 from grader.reports import terminal
-from grader.result import Result
+from grader.result import result as results
+from grader.result.result import Result
 from grader.run import real_time, virtual_time
-from grader.submission import opened
+from grader.submission.opening import open_submission
 
 RUNNERS: dict[str, Runner] = {"real": real_time.run, "virtual": virtual_time.run}
 
@@ -30,7 +30,7 @@ RUNNERS: dict[str, Runner] = {"real": real_time.run, "virtual": virtual_time.run
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.add_argument("submission", type=Path, help="a .py file, a folder, a package or a zip")
-    parser.add_argument("--exercise", default=exercises.DEFAULT, metavar="NAME")
+    parser.add_argument("--exercise", default=DEFAULT, metavar="NAME")
     parser.add_argument(
         "--time",
         choices=sorted(RUNNERS),
@@ -77,10 +77,10 @@ def _grade_and_go_on(args: argparse.Namespace) -> None:
 
 
 def _grade(args: argparse.Namespace) -> int:
-    exercise = exercises.load(args.exercise)
+    exercise = load_exercise(args.exercise)
     out: Path = args.out or _default_out(args.submission)
     console, messages = Console(), Console(stderr=True, highlight=False)
-    with opened(args.submission, args.executable) as submission:
+    with open_submission(args.submission, args.executable) as submission:
         messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
         _prepare(out, args.json)
         messages.print(f"Running it beside a simulator, in {args.time} time ...")

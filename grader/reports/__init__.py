@@ -41,7 +41,7 @@ class Format:
 
 FORMATS: Final[Mapping[str, Format]] = {
     "terminal": Format("terminal", "for reading in a terminal"),
-    "html": Format("html", "one self-contained page: picture, plots, animation, verdicts"),
+    "html": Format("page.html", "one self-contained page: picture, plots, animation, verdicts"),
     "markdown": Format("markdown", "a GitHub step summary, a comment, a release's text"),
     "csv": Format("csv", "one row a result, for a spreadsheet", takes_several=True),
     "junit": Format("junit", "JUnit XML for GitLab, Jenkins and GitHub actions"),

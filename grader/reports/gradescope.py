@@ -6,7 +6,8 @@ import html
 import json
 from typing import Any
 
-from grader.reports import pictures, text
+from grader.reports import text
+from grader.reports.page import pictures
 from grader.reports.report import Report, ShownVerdict
 
 _OUTPUT_LIMIT = 20_000

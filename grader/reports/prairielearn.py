@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from grader.reports import pictures, text
+from grader.reports import text
+from grader.reports.page import pictures
 from grader.reports.report import Report, ShownVerdict
 
 #: PrairieLearn refuses a file above 1 MB.

@@ -9,11 +9,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from grader import recording as recordings
-from grader import result as results
-from grader.recording import Recording, RecordingError
+from grader.recording import recording as recordings
+from grader.recording.recording import Recording, RecordingError
 from grader.reports import text
-from grader.result import Result
+from grader.result import result as results
+from grader.result.result import Result
 
 #: How the three verdicts are called.
 WORDS = {"passed": "passed", "failed": "failed", "not_judged": "not judged"}
@@ -62,7 +62,7 @@ class Point:
 class ShownVerdict:
     """A verdict as reports show it.
 
-    Attributes (the others are those of `grader.verdict.Verdict`):
+    Attributes (the others are those of `grader.exercise.verdict.Verdict`):
         index: its number in the result, from 0.
         name: the check's name; no two verdicts have the same.
         points: its evidence.

@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.reports.report import Report, ShownVerdict
-from grader.result import Result
+from grader.result.result import Result
 
 _MARKS = {
     "passed": ("✓", "green"),

@@ -6,12 +6,16 @@ import sys
 import time
 from collections.abc import Callable
 
-from grader.exercise import Limits
-from grader.recording import Recording, Start
-from grader.run import session, student_main
-from grader.run.processes import Student
-from grader.run.session import Simulator
-from grader.submission import Submission
+from grader.exercise.loading import Limits
+from grader.recording.recording import Recording, Start
+from grader.run import stage
+from grader.run.processes.watched import Student
+from grader.run.simulator_process import Simulator, start_simulator
+from grader.run.student import main as student_main
+from grader.submission.opening import Submission
+
+#: What runs as the simulator's process.
+MODULE = "grader.run.simulator.real_time"
 
 
 def run(
@@ -30,27 +34,27 @@ def run(
         GraderFailure: the simulator could not be started or died.
     """
     started = time.monotonic()
-    with session.stage() as stage:
-        with session.simulator("grader.run.simulator", stage, limits, start) as simulator:
+    with stage.open_stage() as place:
+        with start_simulator(MODULE, place, limits, start) as simulator:
             simulator.expect("ready")
-            student = stage.student(command(submission), submission)
+            student = place.student(command(submission), submission)
             try:
                 reason, exit_code = _watch(simulator, student, progress)
             finally:
                 student.end()
-        recording = session.fetch(stage, start, student.output())
+        recording = stage.fetch(place, start, student.output())
     return recording.finished(
         time="real",
-        outcome=session.outcome(reason, exit_code),
+        outcome=stage.outcome(reason, exit_code),
         exit_code=exit_code,
         wall_s=round(time.monotonic() - started, 3),
-        isolation=stage.isolation,
+        isolation=place.isolation,
     )
 
 
 def command(submission: Submission) -> list[str]:
     """How the submission's process is started."""
-    return [sys.executable, student_main.__file__, *session.target(submission)]
+    return [sys.executable, student_main.__file__, *stage.target(submission)]
 
 
 def _watch(

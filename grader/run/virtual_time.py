@@ -6,24 +6,22 @@ grader only starts them and waits. What cannot run so runs in real time, and the
 
 from __future__ import annotations
 
-import fcntl
 import json
 import socket
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from grader.exercise import Limits
-from grader.recording import Outcome, Recording, Start
-from grader.run import real_time, scratch, session
-from grader.run.host import __path__ as host
-from grader.run.host import core
-from grader.run.link import Patience
-from grader.run.session import Message, Simulator
-from grader.submission import Submission
+from grader.exercise.loading import Limits
+from grader.recording.recording import Outcome, Recording, Start
+from grader.run import real_time, stage
+from grader.run.processes import cores
+from grader.run.simulator.link import Patience
+from grader.run.simulator_process import SIMULATOR_PATIENCE_S, Message, Simulator, start_simulator
+from grader.run.student import __path__ as student_folder
+from grader.submission.opening import Submission
 
 WAITS_FOR_EVER = "every thread of the node waits for something that will not come"
 STUCK = "the node waits for something that can no longer happen; its output says where"
@@ -68,8 +66,8 @@ def _try(
     """The recording of a run in virtual time, or why there is none."""
     started = time.monotonic()
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with session.stage() as stage, _core(ours.fileno()) as core_id, ours, theirs:
-        student = stage.student(
+    with stage.open_stage() as place, cores.reserve_core(ours.fileno()) as core_id, ours, theirs:
+        student = place.student(
             command(submission, ours.fileno(), core_id),
             submission,
             pass_fds=(ours.fileno(),),
@@ -78,8 +76,8 @@ def _try(
         ours.close()
         try:
             more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
-            module = "grader.run.lockstep"
-            with session.simulator(module, stage, limits, start, theirs, *more) as simulator:
+            module = "grader.run.simulator.virtual_time"
+            with start_simulator(module, place, limits, start, theirs, *more) as simulator:
                 theirs.close()
                 ending = _watch(simulator, patience.run_s)
                 exit_code = student.wait(2.0) if ending.get("silence") == "gone" else None
@@ -88,45 +86,27 @@ def _try(
         if ending["say"] == "refused":
             return None, ending["reason"]
         marks.update(ending["marks"])
-        recording = session.fetch(stage, start, student.output())
+        recording = stage.fetch(place, start, student.output())
     outcome, flags = _judge(ending, exit_code, patience)
     return recording.finished(
         time="virtual",
         outcome=outcome,
         exit_code=exit_code,
         wall_s=round(time.monotonic() - started, 3),
-        isolation=stage.isolation,
+        isolation=place.isolation,
         flags=(*flags, *ending["flags"]),
     ), ""
 
 
 def command(submission: Submission, link_fd: int, core_id: int) -> list[str]:
     """How the submission's process is started."""
-    main = str(Path(host[0]) / "main.py")
-    return [sys.executable, main, str(link_fd), str(core_id), *session.target(submission)]
-
-
-@contextmanager
-def _core(run: int) -> Iterator[int]:
-    """A processor core for both processes of a run: if possible one that no other run has."""
-    cores = core.available()
-    folder = scratch.home()
-    with ExitStack() as locks:
-        for core_id in cores:
-            lock = locks.enter_context((folder / f"core-{core_id}.lock").open("w"))
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue
-            break
-        else:
-            core_id = cores[run % len(cores)]
-        yield core_id
+    main = str(Path(student_folder[0]) / "virtual_main.py")
+    return [sys.executable, main, str(link_fd), str(core_id), *stage.target(submission)]
 
 
 def _watch(simulator: Simulator, run_s: float) -> Message:
     """Wait for the end of the run."""
-    deadline = time.monotonic() + run_s + session.SIMULATOR_PATIENCE_S
+    deadline = time.monotonic() + run_s + SIMULATOR_PATIENCE_S
     while (message := simulator.next(0.2)) is None:
         if time.monotonic() > deadline:
             raise simulator.failure("did not come to an end")
@@ -147,4 +127,4 @@ def _judge(ending: Message, exit_code: int | None, patience: Patience) -> tuple[
         return "time_limit", [f"the run took more than {patience.run_s:.0f} s"]
     if silence == "broken":
         return "killed", []
-    return session.outcome(ending["reason"], exit_code), []
+    return stage.outcome(ending["reason"], exit_code), []

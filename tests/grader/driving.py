@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.recording import Recording, Start
-from grader.run.recorder import Recorder
+from grader.recording.recording import Recording, Start
+from grader.scenes.turtlesim.recorder import Recorder
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import SIZE_M, Pose
 

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from grader import exercise as exercises
-from grader.check import judge
+from grader.exercise.check import judge
+from grader.exercise.loading import load_exercise
 from grader.grading import grade
 from grader.run import virtual_time
-from grader.submission import opened
+from grader.submission.opening import open_submission
 from tests.submissions.mutants import MUTANTS, REFERENCE
 
 SUBMISSIONS = Path(__file__).parents[1] / "submissions"
@@ -46,10 +46,10 @@ def graded(tmp_path_factory):
         paths[name] = folder / name / "turtle_controller.py"
         paths[name].parent.mkdir()
         paths[name].write_text(mutant.text(), encoding="utf-8")
-    exercise = exercises.load("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
 
     def grade_one(name):
-        with opened(paths[name]) as submission:
+        with open_submission(paths[name]) as submission:
             recordings = grade(submission, exercise, virtual_time.run)
         verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
         hashes = [recording.run.trace_sha256 for recording in recordings]

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from grader.check import Checks, Tolerances
+from grader.exercise.check import Checks, Tolerances
+from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.square.shape import (
     judge_corners,
     judge_returns,
@@ -17,8 +18,7 @@ from grader.exercises.square.shape import (
     judge_straight,
 )
 from grader.exercises.square.way import Way
-from grader.recording import Recording, Recordings
-from grader.verdict import Evidence, Finding
+from grader.recording.recording import Recording, Recordings
 from turtlesim_py.world.turtle import TICK_S
 
 #: The row of a command's own tick shows what it did: after a stop at tick t the last row that

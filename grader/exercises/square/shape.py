@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from grader.check import Tolerances
+from grader.exercise.check import Tolerances
+from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.square.way import Way
-from grader.verdict import Evidence, Finding
 
 SIDES = 4
 

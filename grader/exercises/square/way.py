@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from grader.check import Tolerances
-from grader.recording import Recording, Start
-from grader.verdict import Evidence
+from grader.exercise.check import Tolerances
+from grader.exercise.verdict import Evidence
+from grader.recording.recording import Recording, Start
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 FloatArray = npt.NDArray[np.float64]

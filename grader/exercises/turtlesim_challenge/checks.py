@@ -6,13 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from grader.check import Checks, Tolerances
+from grader.exercise.check import Checks, Tolerances
+from grader.exercise.sentences import how_it_ended
+from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import ink, pens, shape
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, NAMES, Path
 from grader.exercises.turtlesim_challenge.stops import judge_stop
-from grader.messages import how_it_ended
-from grader.recording import Recording, Recordings
-from grader.verdict import Evidence, Finding
+from grader.recording.recording import Recording, Recordings
 from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
 
 checks = Checks()

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.pens import colors_by_tick
-from grader.recording import Recording
+from grader.recording.recording import Recording
 from turtlesim_py.world.canvas import Canvas, Pen
 from turtlesim_py.world.turtle import METER_PX, SIZE_M
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording import Recording
-from grader.verdict import Evidence
+from grader.exercise.verdict import Evidence
+from grader.recording.recording import Recording
 from turtlesim_py.world.floats import float32
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grader.check import Tolerances
+from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge.path import Entry, Path
-from grader.recording import Recording
+from grader.recording.recording import Recording
 from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.turtle import TICK_S
 

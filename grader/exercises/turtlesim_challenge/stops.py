@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from grader.check import Tolerances
+from grader.exercise.check import Tolerances
+from grader.exercise.sentences import how_it_ended
+from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.messages import how_it_ended
-from grader.verdict import Finding
 
 
 def judge_stop(path: Path, tolerances: Tolerances) -> Finding:

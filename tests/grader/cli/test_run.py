@@ -19,7 +19,7 @@ import psutil
 import pytest
 import yaml
 
-from grader import result as results
+from grader.result import result as results
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 ROOT = Path(__file__).parents[3]
@@ -222,7 +222,9 @@ def test_a_simulator_that_dies_is_the_graders_failure_and_leaves_no_result(tmp_p
     process = start(slow, out, "--exercise", str(exercise))
     grader = psutil.Process(process.pid)
     for _ in range(2):  # a spoiled run is repeated once
-        wait_for(grader, "grader.run.lockstep", tmp_path / "up").send_signal(signal.SIGKILL)
+        wait_for(grader, "grader.run.simulator.virtual_time", tmp_path / "up").send_signal(
+            signal.SIGKILL
+        )
         (tmp_path / "up").unlink()
     run = finish(process, out)
     assert run.code == 3
@@ -236,7 +238,7 @@ def test_a_killed_grader_takes_both_processes_along(tmp_path, exercise):
     slow.write_text("import pathlib, time\npathlib.Path('up').touch()\ntime.sleep(1000)\n")
     process = start(slow, out, "--exercise", str(exercise))
     grader = psutil.Process(process.pid)
-    wait_for(grader, "grader.run.lockstep", tmp_path / "up")
+    wait_for(grader, "grader.run.simulator.virtual_time", tmp_path / "up")
     family = grader.children(recursive=True)
     process.kill()
     process.communicate()

@@ -8,7 +8,7 @@ from typing import Any
 
 from PIL import Image
 
-from grader.recording import Recording
+from grader.recording.recording import Recording
 from grader.reports import Report
 
 #: The environment that Classroom 50 gives to an autograder.

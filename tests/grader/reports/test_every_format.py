@@ -10,8 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from grader import result as results
 from grader.reports import FORMATS, Report, render
+from grader.result import result as results
 from tests.grader.reports import samples
 from tests.grader.reports.readers import READERS
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise import Limits
-from grader.recording import Recording
+from grader.exercise.loading import Limits
+from grader.recording.recording import Recording
 from grader.run import virtual_time
-from grader.run.link import Patience
-from grader.submission import opened
+from grader.run.simulator.link import Patience
+from grader.submission.opening import open_submission
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 LIMITS = Limits(first_motion_s=3, rest_s=1, total_s=60)
@@ -31,7 +31,7 @@ Run = Callable[..., Recording]
 
 def _run(name: str) -> Recording:
     limits, patience = SHORTER.get(Path(name).stem, (LIMITS, Patience()))
-    with opened(SUBMISSIONS / f"{name}.py") as submission:
+    with open_submission(SUBMISSIONS / f"{name}.py") as submission:
         return virtual_time.run(submission, limits, patience=patience)
 
 

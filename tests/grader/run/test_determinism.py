@@ -9,9 +9,9 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
-from grader.exercise import Limits
+from grader.exercise.loading import Limits
 from grader.run import virtual_time
-from grader.submission import opened
+from grader.submission.opening import open_submission
 
 STYLES = Path(__file__).parents[2] / "submissions" / "styles"
 NAMES = ("timer", "multi_threaded", "rate_with_spin_thread")
@@ -30,7 +30,7 @@ def busy_loops(count: int) -> Iterator[None]:
 
 
 def trace(name: str) -> tuple[str, str]:
-    with opened(STYLES / f"{name}.py") as submission:
+    with open_submission(STYLES / f"{name}.py") as submission:
         recording = virtual_time.run(submission, LIMITS)
     assert (recording.run.time, recording.run.flags) == ("virtual", ())
     return name, recording.run.trace_sha256

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from grader import exercise as exercises
-from grader.check import judge
+from grader.exercise.check import judge
+from grader.exercise.loading import load_exercise
 from grader.grading import Runner, grade
 from grader.run import real_time, virtual_time
-from grader.submission import opened
+from grader.submission.opening import open_submission
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 #: Those that do not hang on when discovery ends or on how threads race.
@@ -26,9 +26,9 @@ REPRODUCIBLE = (
 
 
 def verdicts(name: str, run: Runner) -> dict[str, tuple[str, float]]:
-    exercise = exercises.load("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
     exercise = replace(exercise, varied=replace(exercise.varied, count=0))
-    with opened(SUBMISSIONS / f"{name}.py") as submission:
+    with open_submission(SUBMISSIONS / f"{name}.py") as submission:
         recordings = grade(submission, exercise, run)
     found = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     return {verdict.check: (verdict.status, verdict.score) for verdict in found}

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise import Limits
-from grader.recording import Recording
+from grader.exercise.loading import Limits
+from grader.recording.recording import Recording
 from grader.run import real_time
-from grader.submission import EntryPoint, Submission, opened
+from grader.submission.opening import EntryPoint, Submission, open_submission
 
 LIMITS = Limits(first_motion_s=3, rest_s=0.3, total_s=20)
 HEAD = """
@@ -60,7 +60,7 @@ print(time.monotonic() - started < 5, flush=True)
 
 
 def run(path: Path) -> Recording:
-    with opened(path) as submission:
+    with open_submission(path) as submission:
         return real_time.run(submission, LIMITS)
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from grader.exercise import Limits
-from grader.recording import Recording, Start
+from grader.exercise.loading import Limits
+from grader.recording.recording import Recording, Start
 from grader.run import virtual_time
-from grader.submission import opened
+from grader.submission.opening import open_submission
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 STYLES = sorted(p.stem for p in (SUBMISSIONS / "styles").glob("*.py") if p.stem != "spiral")
@@ -73,7 +73,7 @@ def test_a_burst_of_commands_is_consumed_one_a_tick_and_only_the_last_seven(
 
 
 def test_a_run_may_start_elsewhere() -> None:
-    with opened(SUBMISSIONS / "misbehaving/exits.py") as submission:
+    with open_submission(SUBMISSIONS / "misbehaving/exits.py") as submission:
         recording = virtual_time.run(submission, Limits(3, 1, 60), Start(2.0, 3.0, 1.0))
     _, x, y, theta, *_ = recording.published["turtle1"][0]
     assert (x, y, theta) == pytest.approx((2.0, 3.0, 1.0), abs=0.02)

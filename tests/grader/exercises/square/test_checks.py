@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from grader import exercise as exercises
-from grader.check import judge
-from grader.recording import Recordings
+from grader.exercise.check import judge
+from grader.exercise.loading import load_exercise
+from grader.recording.recording import Recordings
 from tests.grader.driving import drive, twist
 from turtlesim_py.world.turtle import TICK_S
 
@@ -104,7 +104,7 @@ class FallsSilent(Legs):
 
 def recorded(controller, seed=None):
     """The recordings of a node that a call of `controller` makes."""
-    exercise = exercises.load("square")
+    exercise = load_exercise("square")
     ticks = round(exercise.limits.total_s / TICK_S)
     nominal, *varied = [
         drive(controller(), ticks, start) for start in (None, *exercise.varied.starts(seed))
@@ -114,7 +114,7 @@ def recorded(controller, seed=None):
 
 def judged(controller, seed=None):
     """The verdicts on it, by their names."""
-    exercise = exercises.load("square")
+    exercise = load_exercise("square")
     recordings = recorded(controller, seed)
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     return {verdict.check: verdict for verdict in verdicts}
@@ -341,7 +341,7 @@ def test_a_turtle_that_drives_into_the_wall_draws_no_square():
 
 
 def test_an_exercise_that_promises_points_for_other_starts_must_have_them():
-    exercise = exercises.load("square")
+    exercise = load_exercise("square")
     alone = Recordings(drive(Legs(polygon([2] * 4))))
     with pytest.raises(ValueError, match="varied_runs"):
         judge(alone, exercise.checks, exercise.points, exercise.tolerances)

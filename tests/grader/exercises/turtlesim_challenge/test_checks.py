@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from grader import exercise as exercises
-from grader.check import judge
-from grader.recording import Recording, Recordings
+from grader.exercise.check import judge
+from grader.exercise.loading import load_exercise
+from grader.recording.recording import Recording, Recordings
 from tests.grader.driving import CENTRE, RED, WHITE, Spiral, drive, pen, twist
 
 FULL = {
@@ -23,7 +23,7 @@ FULL = {
 
 
 def scores(recording: Recording) -> dict[str, float]:
-    exercise = exercises.load("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
     verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
     return {verdict.check: verdict.score for verdict in verdicts}
 
@@ -152,7 +152,7 @@ def test_a_turtle_that_never_moves_earns_nothing():
 
 
 def test_an_empty_recording_says_that_no_command_came():
-    exercise = exercises.load("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
     recording = drive(lambda *_: None, ticks=900)
     first = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)[0]
     assert first.rationale.startswith(
@@ -180,7 +180,7 @@ class SendsNotANumber(Spiral):
 
 
 def test_a_velocity_that_is_no_number_is_named_and_leaves_finite_evidence():
-    exercise = exercises.load("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
     recordings = Recordings(drive(SendsNotANumber(), ticks=2500))
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     stop = next(verdict for verdict in verdicts if verdict.check == "edge_stop")
@@ -196,7 +196,7 @@ def test_a_turtle_that_is_never_anywhere_is_judged_without_a_fault():
 
 
 def test_a_right_solution_is_right_wherever_it_starts_and_counting_steps_is_not():
-    exercise = exercises.load("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
     starts = [start for seed in (1, 2, 3) for start in exercise.varied.starts(seed)]
     for controller, passes in ((Spiral, True), (CountsItsSteps, False)):
         runs = tuple(drive(controller(), start=start) for start in starts)
@@ -214,7 +214,7 @@ class CountsItsSteps(Spiral):
 
 
 def test_the_evidence_of_a_needless_call_names_tick_and_place():
-    exercise = exercises.load("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
     recording = drive(PenOnEveryPose())
     verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
     evidence = verdicts[-1].evidence[0]

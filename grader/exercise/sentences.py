@@ -1,0 +1,73 @@
+"""Sentences about how a submission's process ended, for verdicts and reports."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePath
+
+from grader.recording.recording import Recording
+from turtlesim_py.world.turtle import TICK_S
+
+#: Calls that change the arena other than by driving, and what they do.
+_INTERVENTIONS = {
+    "teleport_absolute": "it moves a turtle without driving",
+    "teleport_relative": "it moves a turtle without driving",
+    "spawn": "it adds a turtle",
+    "kill": "it removes a turtle",
+    "reset": "it starts the arena anew",
+    "clear": "it wipes the drawing",
+}
+_FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+_ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
+
+
+def how_it_ended(recording: Recording) -> str:
+    """A sentence (with a space before it) about an end that matters; '' where there is none."""
+    run = recording.run
+    if run.outcome == "crashed":
+        error = last_error(recording.output) or f"exit code {run.exit_code}"
+        return f" The node ended with an error: {error}."
+    if run.outcome == "exited":
+        return " The node ended by itself, without an error."
+    if run.outcome == "killed":
+        return f" The node was killed (signal {-(run.exit_code or 0)})."
+    return ""
+
+
+def last_error(output: str) -> str:
+    """The last line of the last traceback with file and line: 'NameError: ... (a.py, line 3)'."""
+    start = output.rfind("Traceback (most recent call last)")
+    if start < 0:
+        # A SyntaxError in the file that was started has no traceback of its own.
+        start = max(output.rfind('  File "'), 0)
+    part = output[start:]
+    frames = list(_FRAME.finditer(part))
+    lines = part[frames[-1].end() :].splitlines() if frames else []
+    error = next((line for line in lines if line[:1].strip() and _ERROR.match(line)), "")
+    if not error:
+        return ""
+    where = frames[-1]
+    return _visible(f"{error.rstrip('.')} ({PurePath(where['file']).name}, line {where['line']})")
+
+
+def remarks(recording: Recording) -> list[str]:
+    """What a reader of any exercise's result should know about the run."""
+    found = []
+    if recording.run.outcome == "crashed":
+        found.append(how_it_ended(recording).strip())
+    for op, effect in _INTERVENTIONS.items():
+        calls = [event for event in recording.events if event["op"] == op]
+        if calls:
+            first = calls[0]["tick"] * TICK_S
+            times = "once" if len(calls) == 1 else f"{len(calls)} times"
+            found.append(f"The node called {op} {times}, first at {first:.2f} s: {effect}.")
+    if any(topic["topic"] == "/turtle1/pose" for topic in recording.topics):
+        found.append(
+            "The node published on /turtle1/pose itself. Judged is where the turtle really was."
+        )
+    return found
+
+
+def _visible(text: str) -> str:
+    """The text without characters that a terminal obeys."""
+    return "".join(c if c.isprintable() else "?" for c in text)

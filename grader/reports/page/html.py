@@ -1,0 +1,160 @@
+"""One self-contained HTML page: no network, no files beside it, and useful without its script.
+
+The template is `templates/page.html`; everything that goes into it is escaped by jinja2, and a
+content security policy lets nothing run but the page's own script.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import math
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+from markupsafe import Markup
+
+from grader.recording.recording import Recording
+from grader.reports import text
+from grader.reports.page.pictures import canvas_uri, window_uri
+from grader.reports.page.pins import RADIUS_PX, Pin, pins
+from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
+from grader.reports.page.tracks import Film, Floats, film, to_px
+from grader.reports.report import Report
+from turtlesim_py.world.canvas import SIZE_PX
+from turtlesim_py.world.turtle import METER_PX
+
+_TEMPLATES = Path(__file__).parent / "templates"
+_OUTPUT_LIMIT = 100_000
+_OUTCOMES = {
+    "finished": "the turtle came to rest",
+    "exited": "the node ended by itself, without an error",
+    "crashed": "the node ended with an error",
+    "stalled": "the node stopped responding",
+    "time_limit": "the turtle was still going at the time limit",
+    "killed": "somebody killed the node",
+}
+
+
+@dataclass(frozen=True)
+class RunView:
+    """A run as the page shows it.
+
+    Attributes:
+        number: 0 for the nominal one.
+        title: what it is.
+        facts: how it went, as in the result file.
+        picture: the window at the end as data URI, or ''.
+        pins: the evidence in it.
+        film, plots: None without a recording.
+        output: what the node printed.
+    """
+
+    number: int
+    title: str
+    facts: dict[str, Any]
+    picture: str
+    pins: tuple[Pin, ...]
+    film: Film | None
+    plots: Plots | None
+    output: str
+
+    @property
+    def can_be_seen(self) -> bool:
+        """Whether there is anything to show in a picture."""
+        return bool(self.picture or self.film or self.pins)
+
+
+def render(report: Report) -> str:
+    """The page."""
+    runs = [_view(report, number) for number in range(len(report.varied_runs) + 1)]
+    return (
+        _environment()
+        .get_template("page.html")
+        .render(
+            report=report,
+            runs=runs,
+            films={run.number: _film_data(run.film) for run in runs if run.film is not None},
+            pinned={pin.point.number for run in runs for pin in run.pins},
+            outcomes=_OUTCOMES,
+            box={"width": WIDTH, "height": HEIGHT, "size": SIZE_PX, "meter": METER_PX},
+            radius=RADIUS_PX,
+        )
+    )
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_TEMPLATES),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    environment.filters["points"] = text.points
+    environment.globals.update(
+        place=text.place,
+        to_px=to_px,
+        style=Markup((_TEMPLATES / "page.css").read_text(encoding="utf-8")),
+        script=Markup(script),
+        script_digest=digest,
+    )
+    return environment
+
+
+def _view(report: Report, number: int) -> RunView:
+    recording = report.recordings.get(number)
+    output = report.output if number == 0 else text.plain(recording.output if recording else "")
+    return RunView(
+        number,
+        _title(report, number),
+        report.varied_runs[number - 1] if number else report.run,
+        canvas_uri(report) if number == 0 else _window(recording),
+        pins(report, number),
+        film(recording) if recording is not None else None,
+        plots(recording) if recording is not None else None,
+        text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
+    )
+
+
+def _title(report: Report, number: int) -> str:
+    if number == 0:
+        return "Nominal run"
+    start = report.varied_runs[number - 1].get("start")
+    if not start:
+        return f"Varied run {number}"
+    heading = math.degrees(start["theta"])
+    return f"Varied run {number}: from {text.place(start['x'], start['y'])}, heading {heading:.0f}°"
+
+
+def _window(recording: Recording | None) -> str:
+    return window_uri(recording.window) if recording is not None else ""
+
+
+def _film_data(shown: Film) -> dict[str, Any]:
+    """A film as the script reads it; the names are short because the lists are long."""
+    return {
+        "t": shown.times.round(2).tolist(),
+        "cleared": list(shown.cleared),
+        "tracks": [
+            {
+                "x": _numbers(track.x, 1),
+                "y": _numbers(track.y, 1),
+                "a": _numbers(-np.degrees(track.theta), 0),
+                "ink": [[s.first, s.last, s.color, s.width] for s in track.stretches if s.drawn],
+            }
+            for track in shown.tracks
+        ],
+    }
+
+
+def _numbers(values: Floats, digits: int) -> list[float | None]:
+    rounded = values.round(digits).tolist()
+    return [value if math.isfinite(value) else None for value in rounded]

@@ -1,0 +1,164 @@
+"""Plots over time as SVG: curves are thinned out, so a plot has some kB however long the run."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+
+from grader.recording.recording import Recording
+from grader.reports.page.tracks import Floats, main_turtle, svg_path
+from turtlesim_py.world.turtle import SIZE_M, TICK_S
+
+#: A curve is drawn in a box of this size, which the page stretches. Two points a column.
+WIDTH, HEIGHT = 500, 100
+_COLUMNS = 400
+#: Marks of one service closer than this share of the time axis are drawn as one.
+_MARKS = 400
+_SERVICES = 8
+
+
+@dataclass(frozen=True)
+class Tick:
+    """A labelled place on an axis, `at` in percent from its start."""
+
+    at: float
+    label: str
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A curve over time.
+
+    Attributes:
+        title, unit: what it shows.
+        path: the `d` of an SVG path in a box of WIDTH x HEIGHT.
+        ticks: of the value axis.
+        summary: the plot in words.
+    """
+
+    title: str
+    unit: str
+    path: str
+    ticks: tuple[Tick, ...]
+    summary: str
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Calls at one moment, `at` in percent of the time; `color` where a call names one."""
+
+    at: float
+    color: str
+
+
+@dataclass(frozen=True)
+class Calls:
+    """The calls of one service."""
+
+    name: str
+    count: int
+    marks: tuple[Mark, ...]
+
+
+@dataclass(frozen=True)
+class Plots:
+    """Everything over time that a page shows of a run; all with the same time axis."""
+
+    duration_s: float
+    time_ticks: tuple[Tick, ...]
+    curves: tuple[Plot, ...]
+    calls: tuple[Calls, ...]
+
+
+def plots(recording: Recording) -> Plots | None:
+    """The plots of a recording; None if there is nothing in it."""
+    name = main_turtle(recording)
+    if name is None or not recording.run.ticks:
+        return None
+    rows = recording.published[name]
+    ticks, duration_s = rows[:, 0], recording.run.ticks * TICK_S
+    x = ticks / recording.run.ticks * WIDTH
+    distance = np.hypot(rows[:, 1] - SIZE_M / 2, rows[:, 2] - SIZE_M / 2)
+    every_tick = np.arange(1, recording.run.ticks + 1) / recording.run.ticks * WIDTH
+    curves = (
+        _curve("Distance from the centre of the window", "m", x, distance),
+        _curve("Speed", "m/s", x, rows[:, 4]),
+        _curve("Angular velocity", "rad/s", x, rows[:, 5]),
+        _curve("Rate of velocity commands", "Hz", every_tick, _rate(recording, name)),
+    )
+    time_ticks = tuple(
+        Tick(100 * value / duration_s, f"{value:g}")
+        for value in _nice(0, duration_s, 6)
+        if value <= duration_s
+    )
+    return Plots(duration_s, time_ticks, curves, _calls(recording))
+
+
+def _curve(title: str, unit: str, x: Floats, values: Floats) -> Plot:
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
+    steps = _nice(min(low, 0.0), max(high, 0.0), 4)
+    bottom, top = steps[0], steps[-1]
+    y = (top - values) / (top - bottom) * HEIGHT
+    labels = tuple(Tick(100 * (v - bottom) / (top - bottom), f"{v:g}") for v in steps)
+    summary = f"{title}: from {low:.3g} to {high:.3g} {unit}"
+    return Plot(title, unit, svg_path(*_thinned(x, y)), labels, summary)
+
+
+def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """At most four points a column: its first, lowest, highest and last; nothing is smoothed."""
+    if len(x) <= 2 * _COLUMNS:
+        return x, y
+    keep: set[int] = set()
+    finite = np.isfinite(y)
+    low, high = np.where(finite, y, np.inf), np.where(finite, y, -np.inf)
+    for block in np.array_split(np.arange(len(x)), _COLUMNS):
+        lowest, highest = int(np.argmin(low[block])), int(np.argmax(high[block]))
+        keep.update(int(block[place]) for place in (0, lowest, highest, -1))
+    rows = np.array(sorted(keep))
+    # In the middle of a straight stretch a point says nothing.
+    inner = (y[rows[1:-1]] == y[rows[:-2]]) & (y[rows[1:-1]] == y[rows[2:]])
+    rows = rows[~np.concatenate(([False], inner, [False]))]
+    return x[rows], y[rows]
+
+
+def _rate(recording: Recording, name: str) -> Floats:
+    """Velocity commands a second, for each tick: over the interval that ends with a command."""
+    rate = np.zeros(recording.run.ticks)
+    ticks, counts = np.unique(
+        np.array([e["tick"] for e in recording.calls("cmd_vel", name)], dtype=np.int64),
+        return_counts=True,
+    )
+    for start, stop, count in zip(ticks[:-1], ticks[1:], counts[1:], strict=True):
+        rate[start:stop] = count / ((stop - start) * TICK_S)
+    return rate
+
+
+def _calls(recording: Recording) -> tuple[Calls, ...]:
+    by_service: dict[str, list[Mark]] = defaultdict(list)
+    for event in recording.events:
+        if event["op"] != "cmd_vel":
+            at = 100 * event["tick"] / recording.run.ticks
+            color = f"#{event['r']:02x}{event['g']:02x}{event['b']:02x}" if "r" in event else ""
+            by_service[event["op"]].append(Mark(at, color))
+    listed = sorted(by_service.items(), key=lambda item: -len(item[1]))[:_SERVICES]
+    return tuple(Calls(name, len(marks), _sparse(marks)) for name, marks in listed)
+
+
+def _sparse(marks: list[Mark]) -> tuple[Mark, ...]:
+    """One mark for those that nobody could tell apart."""
+    last = {round(mark.at * _MARKS / 100): mark for mark in marks}
+    return tuple(Mark(round(mark.at, 2), mark.color) for mark in last.values())
+
+
+def _nice(low: float, high: float, about: int) -> list[float]:
+    """Round numbers in even steps; the first at or below `low`, the last at or above `high`."""
+    span = high - low or 1.0
+    raw = span / about
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = power * next((m for m in (1, 2, 5) if m * power >= raw), 10)
+    first, last = math.floor(low / step + 1e-9), math.ceil((low + span) / step - 1e-9)
+    return [round(step * k, 12) for k in range(first, last + 1)]

@@ -1,0 +1,1 @@
+"""The result file: typed, with a schema."""

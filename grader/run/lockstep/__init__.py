@@ -1,0 +1,1 @@
+"""What both sides of a run in virtual time share: the link, and rclpy's endpoints."""

@@ -1,0 +1,266 @@
+"""rclpy's wait sets and guard conditions: they look into our inboxes, and wait in virtual time.
+
+Used by both sides of the link; the simulator never waits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+from grader.run.lockstep.registry import Inbox
+from grader.run.student.scheduler import NEVER
+
+_WaitSet, _GuardCondition, _Timer = _rclpy.WaitSet, _rclpy.GuardCondition, _rclpy.Timer
+_EventHandle = _rclpy.EventHandle
+
+
+class Waiter(Protocol):
+    """Whoever knows how to wait."""
+
+    @property
+    def graph_epoch(self) -> int:
+        """Counts what changes in the graph: afterwards DDS may have events for us."""
+
+    def look_first(self) -> None:
+        """A wait set is about to look whether something is ready."""
+
+    def found_work(self) -> None:
+        """A wait set has found something to do."""
+
+    def found_nothing(self) -> None:
+        """A wait set that must not wait has found nothing."""
+
+    def wait_for(self, wait_set: WaitSet, deadline_ns: int) -> None:
+        """Wait until something may be ready."""
+
+    def deadline(self, timeout_ns: int) -> int:
+        """When a time-out from now ends."""
+
+    def poke(self, cause: object) -> None:
+        """Something that a wait set may hold has changed."""
+
+    def tell_time(self, clock: Any) -> None:
+        """A timer hangs on this clock."""
+
+
+WAITER: Waiter
+
+
+def install(waiter: Waiter) -> None:
+    """Put the classes of this module into rclpy's extension module."""
+    global WAITER
+    WAITER = waiter
+    for name in ("WaitSet", "GuardCondition", "Timer", "EventHandle"):
+        setattr(_rclpy, name, globals()[name])
+
+
+class GuardCondition(_rclpy.GuardCondition):
+    """A flag; rcl's own is never waited for."""
+
+    is_triggered = False
+
+    def trigger_guard_condition(self) -> None:
+        """Raise the flag."""
+        self.is_triggered = True
+        WAITER.poke(self)
+
+
+class Timer(_rclpy.Timer):
+    """A timer whose changes are noticed by those who wait for it."""
+
+    #: somebody wants it destroyed
+    is_gone = False
+
+    def destroy_when_not_in_use(self) -> None:
+        """As in rclpy."""
+        self.is_gone = True
+        _Timer.destroy_when_not_in_use(self)
+
+    def __init__(self, clock: Any, *args: Any) -> None:
+        WAITER.tell_time(clock)  # first: from this time the period counts
+        _Timer.__init__(self, clock, *args)
+
+    def reset_timer(self) -> None:
+        """As in rclpy."""
+        _Timer.reset_timer(self)
+        WAITER.poke(self)
+
+    def cancel_timer(self) -> None:
+        """As in rclpy."""
+        _Timer.cancel_timer(self)
+        WAITER.poke(self)
+
+    def change_timer_period(self, period_ns: int) -> None:
+        """As in rclpy."""
+        _Timer.change_timer_period(self, period_ns)
+        WAITER.poke(self)
+
+
+class EventHandle(_rclpy.EventHandle):
+    """A QoS event; DDS has one only after the graph has changed, so only then it is asked."""
+
+    #: how often to ask after each change: events come a little later than matches
+    TIMES = 20
+
+    def __init__(self, *args: Any) -> None:
+        _EventHandle.__init__(self, *args)
+        self._epoch = -1
+        self._left = 0
+
+    def may_be_ready(self) -> bool:
+        """Whether it is worth while to ask DDS."""
+        if self._epoch != WAITER.graph_epoch:
+            self._epoch, self._left = WAITER.graph_epoch, self.TIMES
+        self._left -= 1
+        return self._left >= 0
+
+
+class WaitSet:
+    """As `_rclpy.WaitSet`, in Python.
+
+    Attributes:
+        end_ns: when the time is out for whoever waits; a time-out like a timer that is ready then.
+        is_out: whether it was after `wait`.
+        ready_guards: the guard conditions that were triggered.
+    """
+
+    def __init__(self, *sizes_and_context: Any) -> None:
+        self._context = sizes_and_context[-1]
+        self.clear_entities()
+
+    def clear_entities(self) -> None:
+        """Start anew."""
+        self.inboxes: list[Inbox] = []
+        self.guards: list[GuardCondition] = []
+        self.timers: list[Timer] = []
+        self.end_ns = NEVER
+        self.is_out = False
+        self.ready_guards: list[GuardCondition] = []
+        self._events: list[EventHandle] = []
+        self._boxes: list[tuple[Any, Inbox]] = []
+        self._kinds: dict[Any, str] = {}
+        self._ready: list[Any] = []
+        self._ready_events: list[bool] = []
+        self._quiet_epoch = -1
+        self._has_work = False
+
+    def _add(self, kind: str, handle: Any) -> int:
+        inbox = getattr(handle, "inbox", None)
+        if inbox is not None:  # else made by rclpy in C++: ~/get_type_description
+            self.inboxes.append(inbox)
+            self._boxes.append((handle, inbox))
+            self._kinds[handle] = kind
+        return len(self._boxes)
+
+    def add_subscription(self, handle: Any) -> int:
+        """As in rclpy."""
+        return self._add("subscription", handle)
+
+    def add_client(self, handle: Any) -> int:
+        """As in rclpy."""
+        return self._add("client", handle)
+
+    def add_service(self, handle: Any) -> int:
+        """As in rclpy."""
+        return self._add("service", handle)
+
+    def add_guard_condition(self, handle: Any) -> int:
+        """As in rclpy."""
+        self.guards.append(handle)
+        return len(self.guards) - 1
+
+    def add_timer(self, handle: Any) -> int:
+        """As in rclpy."""
+        self.timers.append(handle)
+        self._kinds[handle] = "timer"
+        return len(self.timers) - 1
+
+    def add_event(self, handle: Any) -> int:
+        """As in rclpy."""
+        self._events.append(handle)
+        return len(self._events) - 1
+
+    def add_inboxes(self, inboxes: Sequence[Inbox]) -> None:
+        """Look at these as well: an action's."""
+        self.inboxes.extend(inboxes)
+
+    def wait(self, timeout_ns: int) -> None:
+        """Wait until something is ready or the time is out (negative: never)."""
+        WAITER.look_first()
+        deadline_ns = WAITER.deadline(timeout_ns)
+        while not self._collect():
+            if timeout_ns == 0:
+                break
+            WAITER.wait_for(self, min(deadline_ns, self._next_timer()))
+            if WAITER.deadline(0) >= deadline_ns:
+                self._collect()
+                break
+        if self._has_work:
+            WAITER.found_work()
+        elif timeout_ns == 0:
+            # What comes meanwhile is for the next look. A guard condition is no work: each
+            # rclpy.spin_once triggers one, and a loop of them would never cost anything.
+            WAITER.found_nothing()
+
+    def get_ready_entities(self, kind: str) -> list[int]:
+        """The addresses of what was ready after `wait`."""
+        if kind == "guard_condition":
+            return [guard.pointer for guard in self.ready_guards]
+        return [handle.pointer for handle in self._ready if self._kinds[handle] == kind]
+
+    def take_ready(self) -> list[Any]:
+        """The handles of all that was ready after `wait`, but guard conditions and events."""
+        return self._ready
+
+    def is_ready(self, kind: str, index: int) -> bool:
+        """Whether an event was ready after `wait`; rclpy asks by index for nothing else."""
+        return kind == "event" and index < len(self._ready_events) and self._ready_events[index]
+
+    def has_events(self) -> bool:
+        """Whether any event was ready after `wait`."""
+        return any(self._ready_events)
+
+    def _collect(self) -> bool:
+        ready = [handle for handle, inbox in self._boxes if inbox.items]
+        for timer in self.timers:
+            if not timer.is_gone and timer.is_timer_ready():
+                ready.append(timer)
+        self._ready = ready
+        self.ready_guards = [guard for guard in self.guards if guard.is_triggered]
+        for guard in self.ready_guards:
+            guard.is_triggered = False
+        self._ready_events = self._ask_for_events()
+        self.is_out = self.end_ns < NEVER and WAITER.deadline(0) >= self.end_ns
+        self._has_work = (
+            bool(ready)
+            or self.is_out
+            or any(self._ready_events)
+            # those of actions
+            or (len(self.inboxes) > len(self._boxes) and any(i.items for i in self.inboxes))
+        )
+        return self._has_work or bool(self.ready_guards)
+
+    def _ask_for_events(self) -> list[bool]:
+        epoch = WAITER.graph_epoch
+        if not self._events or self._quiet_epoch == epoch:
+            return []
+        wanted = [event.may_be_ready() for event in self._events]
+        if not any(wanted):
+            self._quiet_epoch = epoch
+            return []
+        real = _WaitSet(0, 0, 0, 0, 0, len(self._events), self._context)
+        real.clear_entities()
+        for event in self._events:
+            real.add_event(event)
+        real.wait(0)
+        return [real.is_ready("event", index) for index in range(len(self._events))]
+
+    def _next_timer(self) -> int:
+        """When the first timer is due."""
+        now_ns = WAITER.deadline(0)
+        due = [timer.time_until_next_call() for timer in self.timers if not timer.is_gone]
+        first_ns = min((now_ns + max(0, ns) for ns in due if ns is not None), default=NEVER)
+        return min(first_ns, self.end_ns)

@@ -1,0 +1,1 @@
+"""Processes of a run: started, watched, kept apart, and ended so that none is left."""

@@ -1,0 +1,157 @@
+"""A network for one run alone, so that no run on this machine ever hears another.
+
+Best is a network namespace that holds nothing but a loopback device: root may make one, others
+inside a user namespace, where the system allows that. Else the run reserves a ROS domain. In both
+cases all goes by UDP over loopback: the shared memory of a process that is killed would stay.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from grader.run.processes import domain, supervisor
+
+#: Fast DDS would use shared memory for discovery range LOCALHOST, whatever its settings say.
+RANGE = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+#: Keeps the subnet out where there is no private network.
+ONLY_LOOPBACK = """<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <transport_descriptors>
+    <transport_descriptor>
+      <transport_id>loopback</transport_id>
+      <type>UDPv4</type>
+      <interfaceWhiteList><address>127.0.0.1</address></interfaceWhiteList>
+    </transport_descriptor>
+  </transport_descriptors>
+  <participant profile_name="run" is_default_profile="true">
+    <rtps>
+      <useBuiltinTransports>false</useBuiltinTransports>
+      <userTransports><transport_id>loopback</transport_id></userTransports>
+    </rtps>
+  </participant>
+</profiles>
+"""
+
+
+@dataclass(frozen=True)
+class Isolation:
+    """What keeps a run to itself.
+
+    Attributes:
+        name: for the result: "private network", "ROS domain 87".
+        env: environment variables of both processes.
+        entry: stands before a command that is to run inside.
+    """
+
+    name: str
+    env: Mapping[str, str]
+    entry: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Namespaces:
+    """Open namespaces: kind -> file descriptor. They live as long as these or their processes."""
+
+    fds: dict[str, int] = field(default_factory=dict)
+
+    def entry(self) -> tuple[str, ...]:
+        """The words before a command that is to run inside."""
+        options = [f"--{kind}=/proc/{os.getpid()}/fd/{fd}" for kind, fd in self.fds.items()]
+        return ("nsenter", "--preserve-credentials", *options, "--")
+
+    def close(self) -> None:
+        """Let them go."""
+        for fd in self.fds.values():
+            os.close(fd)
+
+
+@contextmanager
+def obtain_isolation(folder: Path) -> Iterator[Isolation]:
+    """The best isolation that this system allows.
+
+    Args:
+        folder: a place for settings; it must stay as long as the context.
+
+    Raises:
+        GraderFailure: there is no private network, and all ROS domains are taken.
+    """
+    if namespaces := private_network():
+        try:
+            env = {**RANGE, "ROS_DOMAIN_ID": "0", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
+            yield Isolation("private network", env, namespaces.entry())
+        finally:
+            namespaces.close()
+        return
+    profile = folder / "loopback.xml"
+    profile.write_text(ONLY_LOOPBACK, encoding="utf-8")
+    with domain.reserve_domain() as number:
+        env = {
+            **RANGE,
+            "ROS_DOMAIN_ID": str(number),
+            "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
+        }
+        yield Isolation(f"ROS domain {number}", env)
+
+
+#: Ways that this system has refused once; it will not change its mind.
+_refused: set[Callable[[], Namespaces]] = set()
+
+
+def private_network() -> Namespaces | None:
+    """A network namespace with a loopback device; None where there can be none."""
+    if shutil.which("nsenter") is None:
+        return None
+    for way in (_as_root, _as_user):
+        if way not in _refused:
+            try:
+                return way()
+            except OSError:
+                _refused.add(way)
+    return None
+
+
+def _as_root() -> Namespaces:
+    found: list[int | OSError] = []
+
+    def make() -> None:
+        try:
+            supervisor.unshare(supervisor.CLONE_NEWNET)
+            supervisor.raise_loopback()
+            found.append(os.open("/proc/thread-self/ns/net", os.O_RDONLY))
+        except OSError as error:
+            found.append(error)
+
+    # A namespace belongs to a thread: this one moves out, and the rest of us stay where we are.
+    thread = threading.Thread(target=make)
+    thread.start()
+    thread.join()
+    if isinstance(found[0], OSError):
+        raise found[0]
+    return Namespaces({"net": found[0]})
+
+
+def _as_user() -> Namespaces:
+    # Only a process with a single thread may make a user namespace, so another one does.
+    command = [sys.executable, "-I", "-S", supervisor.__file__, "hold"]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as holder:
+        assert holder.stdout is not None
+        if holder.stdout.readline() != b"ready\n":
+            raise PermissionError("no user namespaces here")
+        spaces = Namespaces()
+        try:
+            for kind in ("user", "net"):
+                spaces.fds[kind] = os.open(f"/proc/{holder.pid}/ns/{kind}", os.O_RDONLY)
+        except OSError:
+            spaces.close()
+            raise
+    return spaces

@@ -1,0 +1,250 @@
+"""Start, watch and end processes so that none is left behind."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+import uuid
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType
+
+import psutil
+
+from grader.errors import GraderFailure
+from grader.run.processes import supervisor
+
+PR_SET_CHILD_SUBREAPER = 36
+#: How much of a process's output is kept: this many bytes of its start and as many of its end.
+KEEP_BYTES = 32_768
+#: An environment variable that tells the processes of one run from those of others.
+MARK = "TURTLESIM_GRADER_PROCESS"
+#: What asks the grader to end: Ctrl-C, `timeout` or `docker stop`, a closed terminal.
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+#: How long a process may take to come up [s]; only a machine in distress takes so long.
+START_S = 30.0
+SUPERVISOR = (sys.executable, "-I", "-S", supervisor.__file__, "run")
+
+
+def adopt_orphans() -> None:
+    """Become the parent of grandchildren whose parent ends, so that they can be found."""
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
+
+
+_running: set[Watched] = set()
+_is_ending = threading.Event()
+
+
+def end_on_signals() -> None:
+    """Let any signal of `ENDING` end all runs in good order, and then the main thread.
+
+    It raises KeyboardInterrupt there. Runs in other threads see their processes die, and cannot
+    start others; when they are through, nothing is left behind.
+    """
+
+    def end(number: int, frame: FrameType | None) -> None:
+        for each in ENDING:
+            signal.signal(each, signal.SIG_IGN)  # cleaning up is not to be cut short
+        _is_ending.set()
+        for process in list(_running):
+            process.kill()
+        raise KeyboardInterrupt
+
+    for number in ENDING:
+        # what the caller has had ignored (nohup) stays so
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, end)
+
+
+class Watched:
+    """A process in a session of its own whose output is read as it comes.
+
+    However much it prints, only the start and the end are kept, and it never blocks on a full pipe.
+    """
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        env: Mapping[str, str],
+        cwd: Path | None = None,
+        pass_fds: tuple[int, ...] = (),
+    ) -> None:
+        self._mark = uuid.uuid4().hex
+        self._process = subprocess.Popen(
+            command,
+            env={**env, MARK: self._mark},
+            cwd=cwd,
+            pass_fds=pass_fds,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+        self._head = bytearray()
+        self._tail = bytearray()
+        self._dropped = 0
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        _running.add(self)
+        if _is_ending.is_set():
+            self.end(gently=False)
+            raise KeyboardInterrupt
+
+    @property
+    def pid(self) -> int:
+        """The process id."""
+        return self._process.pid
+
+    def poll(self) -> int | None:
+        """The exit code, negative for a signal, or None while it runs."""
+        return self._process.poll()
+
+    def wait(self, timeout_s: float) -> int | None:
+        """Wait for its end; None if it still runs then."""
+        with suppress(subprocess.TimeoutExpired):
+            return self._process.wait(timeout_s)
+        return None
+
+    def output(self) -> str:
+        """What it has printed: all of it, or its start and end with a note between."""
+        self._reader.join(1.0)  # ends with the process, unless a grandchild keeps the pipe
+        middle = f"\n[... {self._dropped} bytes left out ...]\n" if self._dropped else ""
+        return (
+            self._head.decode("utf-8", "replace") + middle + self._tail.decode("utf-8", "replace")
+        )
+
+    def kill(self) -> None:
+        """End it now, and do not wait."""
+        if self._process.poll() is None:
+            self._process.kill()
+
+    def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
+        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
+        for sent in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)[0 if gently else 2 :]:
+            if self.poll() is None:
+                with suppress(ProcessLookupError):
+                    os.killpg(self.pid, sent)
+                self.wait(patience_s)
+        _running.discard(self)
+        self._sweep(patience_s)
+
+    def _sweep(self, patience_s: float) -> None:
+        # A descendant that left the group is still below us: see adopt_orphans.
+        family = [p for p in psutil.Process().children(recursive=True) if self._owns(p)]
+        for process in family:
+            with suppress(psutil.NoSuchProcess):
+                process.kill()
+        psutil.wait_procs(family, timeout=patience_s)
+
+    def _owns(self, process: psutil.Process) -> bool:
+        with suppress(psutil.Error):
+            return bool(process.environ().get(MARK) == self._mark)
+        return False
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        with self._process.stdout as output:
+            while chunk := os.read(output.fileno(), 65536):
+                self._keep(chunk)
+
+    def _keep(self, chunk: bytes) -> None:
+        room = KEEP_BYTES - len(self._head)
+        self._head += chunk[:room]
+        self._tail += chunk[room:]
+        if len(self._tail) > KEEP_BYTES:
+            self._dropped += len(self._tail) - KEEP_BYTES
+            del self._tail[:-KEEP_BYTES]
+
+
+class Student(Watched):
+    """A submission's process, below a supervisor that holds its whole family."""
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        env: Mapping[str, str],
+        cwd: Path | None = None,
+        pass_fds: tuple[int, ...] = (),
+        entry: Sequence[str] = (),
+    ) -> None:
+        """`entry` stands before the supervisor's own command; see `.isolation`."""
+        self._report, theirs = os.pipe()
+        self._told = b""
+        self._is_silent = False
+        words = [*entry, *SUPERVISOR, str(os.getpid()), str(theirs), *command]
+        try:
+            super().__init__(words, env, cwd, (*pass_fds, theirs))
+        except BaseException:
+            self._close()
+            raise
+        finally:
+            os.close(theirs)
+
+    @property
+    def pid(self) -> int:
+        """The process id of the command itself.
+
+        Raises:
+            GraderFailure: it could not be started.
+        """
+        if not self._hear(1, START_S):
+            raise GraderFailure(f"the submission's process did not start: {self.output()}")
+        return int(self._told.split()[0])
+
+    def poll(self) -> int | None:
+        """The exit code of the command itself, negative for a signal, or None while it runs."""
+        return self.wait(0.0)
+
+    def wait(self, timeout_s: float) -> int | None:
+        """Wait for the end of the command itself; None if it still runs then."""
+        if self._hear(2, timeout_s):
+            return int(self._told.split()[1])
+        # a supervisor ends without a word only if somebody has killed it
+        return -signal.SIGKILL if self._is_silent else None
+
+    def kill(self) -> None:
+        """End it and its family now, and do not wait."""
+        if self._process.poll() is None:
+            self._process.terminate()
+
+    def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
+        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
+        for sent in (signal.SIGINT, signal.SIGTERM) if gently else ():
+            if self.poll() is None:
+                with suppress(ProcessLookupError):
+                    if sent == signal.SIGINT:
+                        os.killpg(self._process.pid, sent)  # as a terminal does
+                    else:
+                        os.kill(self.pid, sent)
+                self.wait(patience_s)
+        self.kill()
+        if super().wait(patience_s) != 0:  # somebody has stopped or killed the supervisor
+            self._process.kill()
+            super().wait(patience_s)
+            self._sweep(patience_s)
+        _running.discard(self)
+        self._close()
+
+    def _hear(self, lines: int, timeout_s: float) -> bool:
+        """Whether the supervisor has told so many lines."""
+        deadline = time.monotonic() + timeout_s
+        while self._told.count(b"\n") < lines and not self._is_silent:
+            left = max(0.0, deadline - time.monotonic())
+            if not select.select([self._report], [], [], left)[0]:
+                break
+            news = os.read(self._report, 4096)
+            self._told += news
+            self._is_silent = not news
+        return self._told.count(b"\n") >= lines
+
+    def _close(self) -> None:
+        if self._report >= 0:
+            os.close(self._report)
+        self._report, self._is_silent = -1, True

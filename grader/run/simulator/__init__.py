@@ -1,0 +1,1 @@
+"""What happens in the simulator's process of a run."""

@@ -1,0 +1,255 @@
+"""The simulator's process in a run in virtual time: it ticks when the submission's process asks.
+
+    python -m grader.run.simulator.virtual_time FD FOLDER LIMITS START LINK PID CORE PATIENCE
+
+The first four as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
+process PID, CORE the processor core to share with it (-1: any), PATIENCE a
+`grader.run.simulator.link.Patience` as JSON.
+
+Before a tick, everything that was announced as sent to us has arrived here; what is answered and
+published is announced in turn (`grader.run.lockstep.protocol`). What happens in a tick is the
+node's own business, as in real time.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import signal
+import socket
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.signals import SignalHandlerOptions
+
+from grader.exercise.loading import Limits
+from grader.recording.recording import Start
+from grader.run import stage
+from grader.run.lockstep import actions, endpoints, waitsets
+from grader.run.lockstep.protocol import TICK_NS, Advance, Hello, Reply, State
+from grader.run.processes import cores
+from grader.run.simulator.endpoints import Desk
+from grader.run.simulator.link import HostLink, Patience, Refused
+from grader.run.simulator.real_time import EndOfRun, PublishedTopics, place
+from grader.run.student import clocks
+from grader.run.student.main import die_with_parent
+from grader.scenes.turtlesim.recorder import Recorder
+from turtlesim_py.ros.node import TurtlesimNode
+
+#: How long DDS may take to connect two ends [s].
+MATCH_PATIENCE_S = 3.0
+#: How often the node is served although nothing has come [ticks]: goals expire.
+SERVE_TICKS = 63
+
+
+class LockstepNode(TurtlesimNode):
+    """A turtlesim node that lets the other side find new endpoints before a tick goes on."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.on_change: Callable[[], None] = lambda: None
+        super().__init__(["--ros-args", "-p", "turtle_image:=rolling"])
+
+    def serve(self, now_ns: int | None = None) -> int:
+        """Serve what has arrived, if anything has."""
+        if now_ns is None:
+            now_ns = int(self.get_clock().now().nanoseconds)
+        if not self.desk.has_mail() and self.arena.ticks % SERVE_TICKS:
+            self.arena.now_ns = now_ns
+            return now_ns
+        super().serve(now_ns)
+        if self.desk.changed:
+            self.on_change()
+        return now_ns
+
+
+class Lockstep:
+    """Ticks a node as its student's side asks, to the end of the run."""
+
+    def __init__(
+        self, link: HostLink, limits: Limits, start: Start | None, shared_core: int
+    ) -> None:
+        self._link = link
+        self._core = shared_core
+        self.now_ns = 0
+        self._clocks = clocks.install_in_rclpy(_rclpy, lambda: self.now_ns, lambda: None)
+        waitsets.install(_NoWaiting(self._clocks))
+        self._desk = Desk()
+        endpoints.install(self._desk, lambda: clocks.EPOCH_NS + self.now_ns)
+        actions.install()
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        self._node = LockstepNode(self._desk)
+        self._node.on_change = self._introduce
+        place(self._node.arena, start)
+        self._recorder = Recorder(self._node.arena)
+        self._topics = PublishedTopics(self._node)
+        self._end = EndOfRun(limits)
+        self._tick = 0
+        self._reason = ""
+        self._request: Advance | None = None
+        #: when the run reached which stage, on the machine's monotonic clock [s]
+        self._marks: dict[str, float] = {}
+        self._was_at_rest: bool | None = None  # when the submission stopped responding
+
+    def run(self) -> dict[str, Any]:
+        """To the end; how it came."""
+        self._link.send(self._desk.table())
+        self._request = self._next_request()
+        self._mark("connected")
+        cores.pin(self._core)
+        while self._request and not self._reason:
+            self._link.has_started()
+            if self._link.waits:
+                self._note_rest()
+            self._advance(self._request)
+            state = State.OVER if self._reason else State.RUNNING
+            self._link.send(Reply(self._tick, state, self._desk.news()))
+            if not self._reason:
+                self._request = self._next_request()
+        self._note_rest()
+        self._finish_alone()
+        self._mark("over")
+        return {
+            "reason": self._reason,
+            "silence": self._link.silence,
+            "waits": self._link.waits,
+            "was_at_rest": self._was_at_rest,
+            "flags": self._link.flags,
+            "marks": self._marks,
+        }
+
+    def _mark(self, stage: str) -> None:
+        self._marks.setdefault(stage, time.monotonic())
+
+    def _note_rest(self) -> None:
+        """Whether the turtle had done its work is asked once: when the submission stopped."""
+        if self._was_at_rest is None:
+            self._was_at_rest = self._end.is_at_rest
+
+    def save(self, folder: Path) -> None:
+        """Write the recording where the grader finds it."""
+        stage.leave(self._recorder.recording(self._topics.found()), folder)
+
+    def _next_request(self) -> Advance | None:
+        """The next `Advance`, after all `Hello`s before it."""
+        while isinstance(request := self._link.receive(), Hello):
+            self._mark("met")
+            self._desk.pair_locally()
+            self._desk.bury()
+            if not self._introduced(request):
+                self._link.flag(f"DDS did not connect everything at tick {self._tick}")
+            self._link.send(Hello([]))
+        assert request is None or isinstance(request, Advance)
+        return request
+
+    def _introduced(self, hello: Hello) -> bool:
+        """Wait until DDS knows all that the other side says that it has; False if in vain."""
+        deadline = time.monotonic() + MATCH_PATIENCE_S
+        if not self._desk.await_matches(hello.matched, deadline):
+            return False
+        while self._topics.look() < hello.publishers:
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(0.001)
+        return True
+
+    def _advance(self, request: Advance) -> None:
+        self._collect(request)
+        last = min(request.target, self._tick + request.most)
+        while self._tick < last and not self._reason:
+            self._tick_once()
+            if self._desk.answered:
+                return
+
+    def _collect(self, request: Advance) -> None:
+        for inbox in self._desk.expect(request.sent):
+            self._link.flag(f"announced messages on {inbox.wire} did not come")
+
+    def _tick_once(self) -> None:
+        self._tick += 1
+        self.now_ns = self._tick * TICK_NS
+        self._clocks.set_now(self.now_ns)
+        readings = self._node.tick()
+        self._recorder.take(readings)
+        first = readings.get("turtle1")
+        self._reason = self._end.after(self._tick, first.pose if first else None)
+
+    def _introduce(self) -> None:
+        """In the middle of a tick: have the other side find our new endpoints, and ours its."""
+        if self._request is None:
+            self._desk.table()
+            self._desk.bury()
+            return
+        self._link.send(Reply(self._tick - 1, State.CHANGED, self._desk.news()))
+        self._link.send(self._desk.table())
+        self._request = self._next_request()
+
+    def _finish_alone(self) -> None:
+        """The submission says nothing more; the turtles go on."""
+        if self._reason:
+            return
+        self._request = None
+        if not self._link.has_left:
+            time.sleep(0.05)  # its last messages were not announced, but may have been sent
+        for inbox in self._desk.inboxes:
+            inbox.drain()
+        if self._link.silence == "gone":
+            self._end.submission_gone()
+        while not self._reason:
+            self._tick_once()
+
+
+class _NoWaiting:
+    """The simulator's wait sets only look."""
+
+    graph_epoch = 0
+
+    def __init__(self, rclpy_clocks: clocks.Clocks) -> None:
+        self.tell_time = rclpy_clocks.tell
+
+    def look_first(self) -> None:
+        self.graph_epoch += 1  # QoS events may come at any time, and cost little when served
+
+    def found_work(self) -> None: ...
+
+    def found_nothing(self) -> None: ...
+
+    def wait_for(self, wait_set: Any, deadline_ns: int) -> None:
+        raise AssertionError("the simulator never waits for its node")
+
+    def deadline(self, timeout_ns: int) -> int:
+        return 0
+
+    def poke(self, cause: object) -> None: ...
+
+
+def main(argv: list[str]) -> int:
+    """Run one simulation in lockstep; the grader reads the exit code."""
+    die_with_parent()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    control = socket.socket(fileno=int(argv[0]))
+    start = json.loads(argv[3])
+    link = HostLink(
+        socket.socket(fileno=int(argv[4])), int(argv[5]), Patience(**json.loads(argv[7]))
+    )
+    limits = Limits(**json.loads(argv[2]))
+    lockstep = Lockstep(link, limits, Start(**start) if start else None, int(argv[6]))
+    gc.collect()
+    gc.freeze()
+    try:
+        ending = lockstep.run()
+        lockstep.save(Path(argv[1]))
+        message = {"say": "done", **ending}
+    except Refused as refusal:
+        message = {"say": "refused", "reason": str(refusal)}
+    control.sendall(json.dumps(message).encode() + b"\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

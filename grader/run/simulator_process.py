@@ -1,0 +1,124 @@
+"""The simulator's process as the grader sees it: started, talked with, ended."""
+
+from __future__ import annotations
+
+import json
+import selectors
+import socket
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from typing import Any
+
+from grader.errors import GraderFailure
+from grader.exercise.loading import Limits
+from grader.recording.recording import Start
+from grader.run.environment import simulator_environment
+from grader.run.processes.watched import Watched
+from grader.run.stage import Stage
+
+#: How long the simulator may take to come up, and to save the recording [s].
+SIMULATOR_PATIENCE_S = 60.0
+
+Message = dict[str, Any]
+
+
+class Simulator:
+    """The simulator's process, and the line to it."""
+
+    def __init__(self, process: Watched, ours: socket.socket) -> None:
+        self._process = process
+        self._socket = ours
+        self._text = b""
+
+    def expect(self, what: str) -> None:
+        """Wait for a message.
+
+        Raises:
+            GraderFailure: another one comes, none comes in time, or the simulator dies.
+        """
+        deadline = time.monotonic() + SIMULATOR_PATIENCE_S
+        while (message := self.next(0.2)) is None:
+            if time.monotonic() > deadline:
+                raise self.failure(f"did not say {what!r} in {SIMULATOR_PATIENCE_S:.0f} s")
+        if message["say"] != what:
+            raise self.failure(f"said {message!r} where {what!r} was expected")
+
+    def say(self, what: str) -> None:
+        """Tell it something.
+
+        Raises:
+            GraderFailure: it does not listen.
+        """
+        try:
+            self._socket.sendall(json.dumps({"say": what}).encode() + b"\n")
+        except OSError:
+            raise self.failure("stopped listening") from None
+
+    def next(self, patience_s: float) -> Message | None:
+        """The next message, or None if there is none yet.
+
+        Raises:
+            GraderFailure: it has died.
+        """
+        if b"\n" not in self._text:
+            with selectors.DefaultSelector() as selector:
+                selector.register(self._socket, selectors.EVENT_READ)
+                if not selector.select(patience_s):
+                    return None
+            try:
+                chunk = self._socket.recv(65536)
+            except ConnectionError:
+                chunk = b""
+            if not chunk:
+                raise self.failure("died")
+            self._text += chunk
+            return None
+        line, _, self._text = self._text.partition(b"\n")
+        message: Message = json.loads(line)
+        return message
+
+    def failure(self, what: str) -> GraderFailure:
+        """The exception for a simulator that did not do its work."""
+        code = self._process.wait(2.0)
+        state = "it still runs" if code is None else f"its exit code is {code}"
+        last = self._process.output().strip() or "(it printed nothing)"
+        return GraderFailure(f"the simulator {what}; {state}. Its last words:\n{last[-2000:]}")
+
+
+@contextmanager
+def start_simulator(
+    module: str,
+    stage: Stage,
+    limits: Limits,
+    start: Start | None,
+    link: socket.socket | None = None,
+    *more: str,
+) -> Iterator[Simulator]:
+    """Start `module` as the simulator's process.
+
+    Args:
+        start: where turtle1 stands at first; None for its usual place.
+        link: inherited as well; its number follows the first four arguments.
+        more: further arguments.
+    """
+    ours, theirs = socket.socketpair()
+    with ours:
+        with theirs:
+            fds = [theirs.fileno(), *([link.fileno()] if link else [])]
+            file = f"/proc/self/fd/{stage.recording}"
+            words = [
+                *(str(fds[0]), file, json.dumps(asdict(limits))),
+                json.dumps(asdict(start) if start else None),
+                *map(str, fds[1:]),
+                *more,
+            ]
+            command = [*stage.entry, sys.executable, "-m", module, *words]
+            env = simulator_environment(stage.env)
+            process = Watched(command, env, stage.folder, (*fds, stage.recording))
+        try:
+            yield Simulator(process, ours)
+        finally:
+            process.end()

@@ -1,0 +1,1 @@
+"""What happens in the submission's process of a run."""

@@ -1,0 +1,77 @@
+"""Questions about the ROS graph: answered when DDS has found all that is there."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+from grader.run.lockstep import real
+from grader.run.student.simulator_link import MATCH_PATIENCE_S, World
+
+QUESTIONS = (
+    "count_clients",
+    "count_publishers",
+    "count_services",
+    "count_subscribers",
+    "get_client_names_and_types_by_node",
+    "get_fully_qualified_node_names",
+    "get_node_names",
+    "get_node_names_and_namespaces",
+    "get_node_names_and_namespaces_with_enclaves",
+    "get_publisher_names_and_types_by_node",
+    "get_publishers_info_by_topic",
+    "get_service_names_and_types",
+    "get_service_names_and_types_by_node",
+    "get_subscriber_names_and_types_by_node",
+    "get_subscriptions_info_by_topic",
+    "get_topic_names_and_types",
+)
+#: The simulator's node.
+SIMULATOR = ("turtlesim", "/")
+
+
+def install(world: World, node_class: Any) -> None:
+    """Have a node's questions wait, in no virtual time, for the whole simulator to be found."""
+    seen_epochs: set[int] = set()
+
+    def replace(name: str) -> None:
+        ask = getattr(node_class, name)
+
+        @functools.wraps(ask)
+        def asked(self: Any, *args: Any, **kwargs: Any) -> Any:
+            world.before_question()
+            if world.graph_epoch not in seen_epochs:
+                seen_epochs.add(world.graph_epoch)
+                _await_graph(world, self.handle)
+            return ask(self, *args, **kwargs)
+
+        setattr(node_class, name, asked)
+
+    for question in QUESTIONS:
+        if hasattr(node_class, question):
+            replace(question)
+
+
+def _await_graph(world: World, node: Any) -> None:
+    deadline = real.monotonic() + MATCH_PATIENCE_S
+    while not _is_complete(world, node) and real.monotonic() < deadline:
+        real.sleep(0.001)
+
+
+def _is_complete(world: World, node: Any) -> bool:
+    from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+    if SIMULATOR not in node.get_node_names_and_namespaces():
+        return False
+    for remote in world.remotes.values():
+        if remote.wire.startswith("topic"):
+            count = node.get_count_publishers if remote.writes else node.get_count_subscribers
+        elif remote.wire.startswith("request"):
+            count = node.get_count_services
+        else:
+            continue
+        if count(remote.name) == 0:
+            return False
+    topics = {r.name for r in world.remotes.values() if r.writes and r.wire.startswith("topic")}
+    owned = _rclpy.rclpy_get_publisher_names_and_types_by_node(node, False, *SIMULATOR)
+    return topics <= {topic for topic, _ in owned}

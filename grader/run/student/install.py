@@ -1,0 +1,109 @@
+"""Puts rclpy into virtual time: the last step before a submission is run."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+import rclpy.action
+import rclpy.clock
+import rclpy.executors
+import rclpy.experimental
+import rclpy.node
+import rclpy.task
+import rclpy.timer
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+from grader.run.lockstep import actions, endpoints, waitsets
+from grader.run.lockstep.protocol import Kind
+from grader.run.student import chance, clocks, deadlock, executor, graph
+from grader.run.student.scheduler import Scheduler
+from grader.run.student.simulator_link import World
+from grader.run.student.waiting import VirtualWaiter
+
+
+def install(scheduler: Scheduler, link: socket.socket, refuse: Callable[[str], None]) -> World:
+    """Replace what tells or waits for time in rclpy; returns the world that it now lives in."""
+    world = World(scheduler, link)
+
+    def now_ns() -> int:
+        return scheduler.now_ns
+
+    rclpy_clocks = clocks.install_in_rclpy(_rclpy, now_ns, scheduler.charge)
+    scheduler.clocks.append(rclpy_clocks.set_now)
+    scheduler.world = _Guarded(world, refuse)
+    _rclpy.ClockEvent = clocks.clock_event_class(scheduler)
+    waiter = VirtualWaiter(scheduler, world, rclpy_clocks)
+    waitsets.install(waiter)
+    endpoints.install(world, lambda: clocks.EPOCH_NS + scheduler.now_ns)
+    actions.install()
+    graph.install(world, rclpy.node.Node)
+    chance.order_nodes(rclpy.node.Node)
+    _charge_for(rclpy.task.Future, "done", scheduler)
+    _charge_for(rclpy.context.Context, "ok", scheduler)
+    executor.install()
+    _replace_events_executor()
+    scheduler.on_foreign_thread = lambda: refuse(
+        "runs Python in a thread that a C extension has started"
+    )
+    world.on_standstill = lambda: _look_for_deadlock(scheduler, world, waiter)
+    return world
+
+
+class _Guarded:
+    """A mistake of ours must not become the submission's: it is then graded in real time."""
+
+    def __init__(self, world: World, refuse: Callable[[str], None]) -> None:
+        self._world = world
+        self._refuse = refuse
+
+    def advance(self, deadline_ns: int) -> None:
+        try:
+            self._world.advance(deadline_ns)
+        except Exception as error:
+            self._refuse(f"broke our virtual time ({error!r})")
+
+
+def _charge_for(owner: Any, name: str, scheduler: Scheduler) -> None:
+    """Loops that only ask this must not stop time."""
+    ask = getattr(owner, name)
+
+    def asked(self: Any) -> Any:
+        scheduler.charge()
+        return ask(self)
+
+    setattr(owner, name, asked)
+
+
+def _replace_events_executor() -> None:
+    """Events come from DDS's threads, when they like; the results are those of the other one."""
+
+    class EventsExecutor(rclpy.executors.SingleThreadedExecutor):
+        """As rclpy's, but it waits for what it serves."""
+
+    if hasattr(rclpy.experimental, "EventsExecutor"):
+        rclpy.experimental.EventsExecutor = EventsExecutor
+    module = sys.modules.get("rclpy.experimental.events_executor")
+    if module is not None:
+        setattr(module, EventsExecutor.__name__, EventsExecutor)
+
+
+def _look_for_deadlock(scheduler: Scheduler, world: World, waiter: VirtualWaiter) -> None:
+    if waiter.is_hopeful():
+        return
+    world.on_standstill = lambda: None  # once is enough
+    waits = [
+        rclpy.client.Client.call,
+        rclpy.timer.Rate.sleep,
+        rclpy.action.ActionClient.send_goal,
+        rclpy.action.ActionClient._get_result,
+        rclpy.action.ActionClient._cancel_goal,
+    ]
+    runs_callback = rclpy.task.Task.__call__.__code__
+    found = deadlock.find(scheduler, runs_callback, frozenset(w.__code__ for w in waits))
+    if found:
+        print(found, file=sys.stderr, flush=True)
+    world.note(Kind.STUCK if found else Kind.WAITING)

@@ -1,0 +1,294 @@
+"""The world outside of the student's process: the simulator, and DDS between the two.
+
+Before time moves, the simulator hears how much has been sent to it; afterwards we really wait
+until everything that it has sent is here. Where readers or writers are new, both sides first wait
+until DDS has connected them, in no virtual time.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from rclpy.qos import QoSDurabilityPolicy
+
+from grader.run.lockstep import real
+from grader.run.lockstep.protocol import (
+    FOREVER,
+    LIMIT_BYTES,
+    TICK_NS,
+    Advance,
+    Hello,
+    Kind,
+    Note,
+    Packet,
+    Reply,
+    State,
+    Table,
+    decode,
+    encode,
+)
+from grader.run.lockstep.registry import (
+    IN_FLIGHT,
+    End,
+    Inbox,
+    Office,
+    Outlet,
+    compatible,
+    policies,
+    tallies,
+)
+from grader.run.processes import cores
+from grader.run.student.scheduler import NEVER, Scheduler
+
+#: How long DDS may take to connect two ends, or to deliver a message [s].
+MATCH_PATIENCE_S = 3.0
+ARRIVAL_PATIENCE_S = 2.0
+#: How many ticks may pass at once where poses come but nobody waits for them.
+BATCH_TICKS = 16
+UNBOUNDED = 0xFFFFFFFF
+#: What sending a message costs: 20 us. What counting the ends of a wire costs.
+SEND_UNITS = 4
+QUESTION_UNITS = 4
+
+
+@dataclass(eq=False)
+class Remote(End):
+    """A reader or writer of the simulator.
+
+    Attributes:
+        id: as in the tables.
+        writes: which of the two it is.
+        sent: how much we have sent to it; it has sent so much.
+        inboxes: ours that it writes to.
+    """
+
+    id: int = 0
+    writes: bool = False
+    sent: int = 0
+    inboxes: list[Inbox] = field(default_factory=list)
+
+
+class World(Office):
+    """The student's side of the link, and all its mail."""
+
+    def __init__(self, scheduler: Scheduler, link: socket.socket) -> None:
+        super().__init__()
+        self.tick = 0
+        #: counts how often the ends were connected anew
+        self.graph_epoch = 0
+        #: whether a thread waits for what comes on these inboxes
+        self.is_listening: Callable[[], bool] = lambda: False
+        #: called after something may have arrived
+        self.on_arrival: Callable[[], None] = lambda: None
+        #: called when nothing can ever happen any more
+        self.on_standstill: Callable[[], None] = lambda: None
+        self.remotes: dict[int, Remote] = {}
+        self._scheduler = scheduler
+        self._link = link
+        #: the processor core to share with the simulator from the first tick on; -1: any
+        self.core = -1
+        self._is_connected = self._has_started = False
+        self._unannounced: dict[int, Remote] = {}
+        self._flying = 0
+
+    # Time -------------------------------------------------------------------------------------
+
+    def advance(self, deadline_ns: int) -> None:
+        """Let time move to what happens next: our deadline, or something from the simulator."""
+        scheduler = self._scheduler
+        if deadline_ns < (self.tick + 1) * TICK_NS:
+            scheduler.set_now(max(deadline_ns, scheduler.now_ns))
+            return
+        self.settle()
+        if not self._has_started:
+            self._has_started = True
+            cores.pin(self.core)
+        if deadline_ns == NEVER:
+            self.on_standstill()
+        self._exchange(min(deadline_ns // TICK_NS, FOREVER), self._most())
+        scheduler.set_now(max(scheduler.now_ns, self.tick * TICK_NS))
+        self.on_arrival()
+
+    def _most(self) -> int:
+        if self.is_listening():
+            return 1
+        return BATCH_TICKS if any(inbox.remote for inbox in self.inboxes) else UNBOUNDED
+
+    def synchronise(self) -> None:
+        """Have the simulator take everything that we have sent, in no time."""
+        if self._unannounced:
+            self._exchange(self.tick, 0)
+
+    def _exchange(self, target: int, most: int) -> None:
+        while True:
+            counts = [(remote.id, remote.sent) for remote in self._unannounced.values()]
+            self._unannounced.clear()
+            self._flying = 0
+            self._send(Advance(target, most, counts))
+            reply = self._receive(Reply)
+            self._await(reply)
+            self.tick = reply.tick
+            if reply.state == State.RUNNING:
+                return
+            if reply.state == State.OVER:
+                real.leave(0)
+            # the simulator's ends have changed in the middle of a tick
+            self._update(self._receive(Table))
+            self.settle()
+
+    def _await(self, reply: Reply) -> None:
+        """Really wait for what the simulator says that it has sent."""
+        awaited: list[Inbox] = []
+        for number, total in reply.sent:
+            remote = self.remotes[number]
+            news, remote.sent = total - remote.sent, total
+            for tally in tallies(remote.inboxes):
+                tally.expected += news
+            awaited += remote.inboxes
+        self._complain(self.await_arrivals(awaited, ARRIVAL_PATIENCE_S))
+
+    def _complain(self, late: list[Inbox]) -> None:
+        for inbox in late:
+            missing = inbox.tally.expected - inbox.tally.received
+            inbox.tally.received = inbox.tally.expected
+            if missing > 0:
+                self.note(Kind.WARNING, f"{missing} messages on {inbox.wire} did not arrive")
+
+    # Mail -------------------------------------------------------------------------------------
+
+    def before_question(self) -> None:
+        """Answers of DDS must not depend on how fast it is."""
+        self.settle()
+        self._scheduler.charge(QUESTION_UNITS)
+
+    def before_send(self, outlet: Outlet) -> None:
+        """Nothing is sent before those who should hear it are connected."""
+        if self.changed:
+            self.settle()
+
+    def after_send(self, outlet: Outlet) -> None:
+        """Count; deliver within this process; now and then have the simulator take it."""
+        super().after_send(outlet)
+        for remote in outlet.remote:
+            remote.sent += 1
+            self._unannounced[remote.id] = remote
+            self._flying += 1
+        if self._flying >= IN_FLIGHT:
+            self.synchronise()
+        if outlet.local:
+            self._complain(self.await_arrivals(outlet.local, ARRIVAL_PATIENCE_S))
+            self.on_arrival()
+        self._scheduler.charge(SEND_UNITS)
+
+    def retire(self, ends: list[End], destroy: Callable[[], None]) -> None:
+        """Nothing that was sent gets lost with its writer."""
+        self.synchronise()
+        for end in ends:
+            if isinstance(end, Inbox) and end.wire.startswith("response"):
+                asked = sum(
+                    other.sent
+                    for other in ends
+                    if isinstance(other, Outlet) and other.name == end.name
+                )
+                end.tally.received += asked - end.received  # nobody will take these answers
+        super().retire(ends, destroy)
+
+    # Connections ------------------------------------------------------------------------------
+
+    def settle(self) -> None:
+        """Really wait until DDS has connected what belongs together."""
+        if not self._is_connected:
+            self._is_connected = True
+            self._update(self._receive(Table))
+        while self.changed:
+            self.changed = False
+            self._pair()
+            matched = [(remote.id, self._partners(remote)) for remote in self.remotes.values()]
+            publishers = sum(outlet.is_stream for outlet in self.outlets)
+            self._send(Hello([count for count in matched if count[1]], publishers))
+            self._receive(Hello)
+            self._await_matches()
+            self.graph_epoch += 1
+
+    def _update(self, table: Table) -> None:
+        for number in table.removed:
+            self.remotes.pop(number, None)
+            self._unannounced.pop(number, None)
+        for entry in table.added:
+            qos = policies(entry.reliability, entry.durability)
+            self.remotes[entry.id] = Remote(
+                entry.wire, entry.type, qos, None, id=entry.id, writes=entry.writes
+            )
+        self.changed = True
+
+    def _pair(self) -> None:
+        self.pair_locally()
+        remotes: dict[str, list[Remote]] = defaultdict(list)
+        for remote in self.remotes.values():
+            remotes[remote.wire].append(remote)
+            remote.inboxes = []
+        for inbox in self.inboxes:
+            before, inbox.remote = inbox.remote, []
+            for remote in remotes[inbox.wire]:
+                if remote.writes and compatible(remote, inbox):
+                    inbox.remote.append(remote)
+                    remote.inboxes.append(inbox)
+                    if remote not in before and remote.sent and _remembers(remote, inbox):
+                        inbox.tally.expected += 1
+        for outlet in self.outlets:
+            readers = [remote for remote in remotes[outlet.wire] if not remote.writes]
+            outlet.remote = [remote for remote in readers if compatible(outlet, remote)]
+
+    def _partners(self, remote: Remote) -> int:
+        if remote.writes:
+            return len(remote.inboxes)
+        return sum(remote in outlet.remote for outlet in self.outlets)
+
+    def _await_matches(self) -> None:
+        wanted: list[tuple[End, int]] = []
+        for outlet in self.outlets:
+            wanted.append((outlet, len(outlet.remote) + len(outlet.local)))
+        for inbox in self.inboxes:
+            wanted.append((inbox, len(inbox.remote) + self.local_writers(inbox)))
+        deadline = real.monotonic() + MATCH_PATIENCE_S
+        while wanted := [(e, n) for e, n in wanted if e.matches and not e.matches(n)]:
+            if real.monotonic() > deadline:
+                for end, number in wanted:
+                    self.note(Kind.WARNING, f"{end.wire} was not connected to {number} others")
+                return
+            real.sleep(0.0002)
+        history = [inbox for inbox in self.inboxes if inbox.is_late]
+        self._complain(self.await_arrivals(history, ARRIVAL_PATIENCE_S))
+
+    # The link ---------------------------------------------------------------------------------
+
+    def note(self, kind: Kind, text: str = "") -> None:
+        """Tell the simulator something about this process."""
+        self._send(Note(kind, text))
+
+    def _send(self, packet: Packet) -> None:
+        try:
+            self._link.send(encode(packet))
+        except OSError:
+            real.leave(1)
+
+    def _receive(self, kind: type[Any]) -> Any:
+        try:
+            data = self._link.recv(LIMIT_BYTES)
+        except OSError:
+            data = b""
+        if not data:
+            real.leave(1)
+        packet = decode(data)
+        assert isinstance(packet, kind), packet
+        return packet
+
+
+def _remembers(writer: End, reader: End) -> bool:
+    """Whether a new reader still gets the writer's last message."""
+    lasting = QoSDurabilityPolicy.TRANSIENT_LOCAL
+    return bool(writer.qos.durability == lasting and reader.qos.durability == lasting)

@@ -1,0 +1,70 @@
+"""The submission's process in virtual time: replace what tells time, run what was handed in.
+
+    python main.py FD CORE ROOT module:function
+    python main.py FD CORE ROOT path/to/script.py [function]
+
+FD is the link to the simulator, CORE the processor core to share with it (-1: any). Started by
+path, like `grader.run.student.main`, whose rules for what a submission may import are the same.
+Everything of ours is imported before the submission is, and then forgotten by the import system.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path[0] = str(Path(__file__).resolve().parents[3])
+
+import atexit  # noqa: E402
+import socket  # noqa: E402
+
+from grader.run.lockstep import real  # noqa: E402
+from grader.run.lockstep.protocol import Kind, Note, encode  # noqa: E402
+from grader.run.student import (  # noqa: E402
+    chance,
+    clocks,
+    refusal,
+    signals,
+    sockets,
+    threads,
+)
+
+# ours, in the order in which they must take hold: threads and time before anything uses them
+from grader.run.student import main as student_main  # noqa: E402
+from grader.run.student.scheduler import Scheduler  # noqa: E402
+
+
+def main() -> None:
+    """Run one submission; does not return."""
+    _, fd, core, root, target, *more = sys.argv
+    student_main.die_with_parent()
+    link = socket.socket(fileno=int(fd))
+    scheduler = Scheduler()
+
+    def refuse(what: str) -> None:
+        link.send(encode(Note(Kind.UNSUPPORTED, what)))
+        real.leave(0)
+
+    try:
+        # before rclpy is imported, which uses all of it
+        clocks.install(scheduler)
+        threads.install(scheduler)
+        chance.install()
+        sockets.install(scheduler)
+        signals.install(scheduler, refuse)
+        from grader.run.student import install as inside_rclpy
+
+        world = inside_rclpy.install(scheduler, link, refuse)
+        world.core = int(core)
+    except Exception as error:  # another Python or rclpy than those that this was made for
+        refuse(f"runs on a Python or rclpy that virtual time does not know ({error!r})")
+    refusal.watch(refuse)
+    student_main.forget_ourselves(root, target)
+    code = student_main.call(root, target, more[0] if more else None)
+    threads.join_all()
+    atexit._run_exitfuncs()
+    world.synchronise()
+    world.note(Kind.LEAVING)
+    real.leave(code)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,96 @@
+"""How rclpy's wait sets wait in virtual time, and what polling costs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from grader.run.lockstep.waitsets import WaitSet
+from grader.run.student.clocks import Clocks
+from grader.run.student.scheduler import NEVER, Runner, Scheduler
+from grader.run.student.simulator_link import World
+
+#: What looking costs, and what handing out work costs on top [units].
+LOOK_UNITS = 2
+WORK_UNITS = 8
+#: What the first, second, ... of several looks in a row costs that found nothing [ns].
+EMPTY_NS = (*(250_000,) * 8, 2_000_000)
+
+
+class VirtualWaiter:
+    """Blocks the running thread in the scheduler."""
+
+    def __init__(self, scheduler: Scheduler, world: World, clocks: Clocks) -> None:
+        self._scheduler = scheduler
+        self._world = world
+        self._waiting: list[tuple[WaitSet, Runner]] = []
+        self._empty = 0
+        self.tell_time = clocks.tell
+        world.is_listening = self.is_listening
+        world.on_arrival = self.on_arrival
+
+    @property
+    def graph_epoch(self) -> int:
+        """Counts the changes of the graph."""
+        return self._world.graph_epoch
+
+    def look_first(self) -> None:
+        """Others first, if any can run."""
+        self._scheduler.charge(LOOK_UNITS)
+        self._scheduler.pass_on()
+
+    def found_work(self) -> None:
+        """Work takes time."""
+        self._empty = 0
+        self._scheduler.charge(WORK_UNITS)
+
+    def found_nothing(self) -> None:
+        """A loop of such looks must not stop time."""
+        cost_ns = EMPTY_NS[min(self._empty, len(EMPTY_NS) - 1)]
+        self._empty += 1
+        self._scheduler.sleep(cost_ns)
+
+    def wait_for(self, wait_set: WaitSet, deadline_ns: int) -> None:
+        """Block until something may be ready."""
+        self._empty = 0
+        entry = (wait_set, self._scheduler.current)
+        self._waiting.append(entry)
+        try:
+            self._scheduler.block(deadline_ns)
+        finally:
+            self._waiting.remove(entry)
+
+    def deadline(self, timeout_ns: int) -> int:
+        """When a time-out from now ends; a negative one never."""
+        return NEVER if timeout_ns < 0 else min(NEVER, self._scheduler.now_ns + timeout_ns)
+
+    def poke(self, _: object) -> None:
+        """Have all look again: they are few."""
+        for _, runner in self._waiting:
+            self._scheduler.wake(runner)
+
+    def on_arrival(self) -> None:
+        """Wake those for whom something has come."""
+        for wait_set, runner in self._waiting:
+            if any(inbox.items for inbox in wait_set.inboxes):
+                self._scheduler.wake(runner)
+
+    def is_listening(self) -> bool:
+        """Whether a blocked wait set would hear what the simulator publishes."""
+        return any(_hears(wait_set) for wait_set, _ in self._waiting)
+
+    def is_hopeful(self) -> bool:
+        """Whether anything can still wake somebody."""
+        return self.is_listening() or any(
+            inbox.tally.received < sum(remote.sent for remote in _asked(self._world, inbox))
+            for wait_set, _ in self._waiting
+            for inbox in wait_set.inboxes
+            if inbox.wire.startswith("response")
+        )
+
+
+def _hears(wait_set: WaitSet) -> bool:
+    return any(inbox.remote and inbox.wire.startswith("topic") for inbox in wait_set.inboxes)
+
+
+def _asked(world: World, inbox: Any) -> list[Any]:
+    return [r for r in world.remotes.values() if r.wire == f"request {inbox.name}"]

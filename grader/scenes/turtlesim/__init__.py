@@ -1,0 +1,1 @@
+"""The scene of turtlesim: one node, turtles, a canvas."""

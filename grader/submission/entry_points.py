@@ -1,0 +1,159 @@
+"""Which console script of a folder is the node, and where its module lies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from grader.submission.folder import HandedIn, SubmissionError, files_below, listed, near
+from grader.submission.python_source import read_source
+from grader.submission.setup_files import SETUP_FILES, ConsoleScript, Package, read_package
+
+USUAL_NAME: Final = "turtle_controller"  # the challenge asks for a node of this name
+
+_Choice = tuple[Package, ConsoleScript]
+
+
+@dataclass(frozen=True)
+class Module:
+    """The place of a console script's module."""
+
+    root: Path  # the folder to import it from
+    bare: tuple[Path, ...]  # package folders on the way, relative to root, without __init__.py
+
+
+@dataclass(frozen=True)
+class Packages:
+    """The folders of a submission that have set-up files, from the top down."""
+
+    handed_in: HandedIn
+    readable: tuple[Package, ...]
+    faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
+
+    def choose(self, executable: str | None) -> _Choice | None:
+        """Choose the script asked for, else the usual one, else the only one; None without any.
+
+        Raises:
+            SubmissionError: several or none fit, or set-up files cannot be read and might.
+        """
+        every = [(package, script) for package in self.readable for script in package.scripts]
+        wanted = executable or USUAL_NAME
+        matching = [choice for choice in every if choice[1].name == wanted]
+        if len(matching) == 1:
+            return matching[0]
+        if matching:
+            raise self._twice(matching)
+        if self.faults:
+            raise self.faults[0]
+        names = [script.name for _, script in every]
+        for package in self.readable:
+            for file in package.unread:
+                raise self._computed(file, wanted, names)
+        if executable and every:
+            raise no_such_executable(self.handed_in, "console script", executable, names)
+        if len(every) > 1:
+            raise self._several(names) if len(set(names)) > 1 else self._twice(every)
+        return every[0] if every else None
+
+    def _twice(self, matching: list[_Choice]) -> SubmissionError:
+        where = listed(self.handed_in.called(script.file) for _, script in matching)
+        return SubmissionError(
+            f"{self.handed_in.name} has the console script {matching[0][1].name} more than once: "
+            f"{where}. Hand in only one of these packages."
+        )
+
+    def _several(self, names: list[str]) -> SubmissionError:
+        return SubmissionError(
+            f"{self.handed_in.name} has several console scripts: {listed(names)}. "
+            f"Expected one called {USUAL_NAME}; choose another with --executable NAME."
+        )
+
+    def _computed(self, file: Path, wanted: str, names: list[str]) -> SubmissionError:
+        return SubmissionError(
+            f"{self.handed_in.called(file)} computes console scripts, and is not run to learn "
+            f"them. Expected to read there: {example('my_package.turtle_controller', wanted)}; "
+            f"found: {listed(names) or 'none'}. Write the entry point out in full."
+        )
+
+
+def find_packages(handed_in: HandedIn, files: list[Path]) -> Packages:
+    """Read the set-up files among `files`; not those below a folder that has a console script."""
+    readable: list[Package] = []
+    faults: list[SubmissionError] = []
+    for folder in dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES):
+        if any(found.scripts and folder.is_relative_to(found.folder) for found in readable):
+            continue
+        try:
+            package = read_package(folder, handed_in.base)
+        except SubmissionError as fault:
+            faults.append(fault)
+        else:
+            readable += [package] if package else []
+    return Packages(handed_in, tuple(readable), tuple(faults))
+
+
+def find_module(handed_in: HandedIn, package: Package, script: ConsoleScript) -> Module:
+    """Find the script's module in its package, and nowhere else.
+
+    Raises:
+        SubmissionError: it is not there, or surely does not define the function.
+    """
+    inside = Path(*script.module.split("."))
+    roots = package.roots(script.module)
+    for root in roots:
+        for file in (root / inside / "__init__.py", root / f"{inside}.py"):
+            if file.is_file():
+                _must_define(handed_in, script, file)
+                folders = list(inside.parents)[:-1]  # the last is root itself
+                bare = [f for f in folders if not (root / f / "__init__.py").exists()]
+                return Module(root, tuple(bare))
+    raise _no_module(handed_in, package, script, roots[0] / f"{inside}.py")
+
+
+def no_such_executable(
+    handed_in: HandedIn, kind: str, executable: str, names: list[str]
+) -> SubmissionError:
+    """Say that nothing has the name that was asked for."""
+    return SubmissionError(
+        f"{handed_in.name} has no {kind} {executable}; it has: {listed(names)}. "
+        "Choose one of these with --executable NAME, or correct the name."
+    )
+
+
+def example(module: str, name: str = USUAL_NAME) -> str:
+    """Show the line that a set-up file should have."""
+    return f"'console_scripts': ['{name} = {module}:main']"
+
+
+def _must_define(handed_in: HandedIn, script: ConsoleScript, file: Path) -> None:
+    source = read_source(file)
+    wanted = script.function.split(".")[0]
+    if not source.surely_lacks(wanted):
+        return
+    names = dict.fromkeys([*near(wanted, source.defined), *source.defined])
+    raise SubmissionError(
+        f"{handed_in.called(file)} defines no function {wanted} "
+        f"(it defines: {listed(names) or 'nothing'}). {_starts(handed_in, script)}: "
+        "give the function that name, or correct the entry point."
+    )
+
+
+def _no_module(
+    handed_in: HandedIn, package: Package, script: ConsoleScript, expected: Path
+) -> SubmissionError:
+    files = [handed_in.called(f) for f in files_below(package.folder) if f.suffix == ".py"]
+    wanted = handed_in.called(expected)
+    same_name = [file for file in files if Path(file).name == expected.name]
+    others = [file for file in files if Path(file).name not in ("setup.py", "__init__.py")]
+    meant = list(dict.fromkeys(near(wanted, others) + same_name))
+    there = f"Near: {listed(meant)}." if meant else f"Python files: {listed(others) or 'none'}."
+    return SubmissionError(
+        f"{_starts(handed_in, script)}, but there is no file {wanted}. {there} "
+        "Correct the entry point, or the name or place of the file."
+    )
+
+
+def _starts(handed_in: HandedIn, script: ConsoleScript) -> str:
+    target = f"{script.module}:{script.function}"
+    return f"{handed_in.called(script.file)} starts {script.name} by {target}"

@@ -1,0 +1,256 @@
+"""Console scripts in setup.py, setup.cfg and pyproject.toml, read without running anything."""
+
+from __future__ import annotations
+
+import ast
+import configparser
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final, TypeVar
+
+from grader.submission.folder import MAX_SOURCE_BYTES, SubmissionError, read_bounded
+from grader.submission.python_source import UNKNOWN, Constants, parse
+
+SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
+
+_TARGET: Final = re.compile(r"(\w+(?:\.\w+)*)\s*:\s*(\w+(?:\.\w+)*)\s*(?:\[.*\])?")
+
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True)
+class ConsoleScript:
+    """`name = module:function`, as `file` says."""
+
+    name: str
+    module: str
+    function: str
+    file: Path
+
+
+@dataclass(frozen=True)
+class Package:
+    """What the set-up files of one folder say."""
+
+    folder: Path
+    scripts: tuple[ConsoleScript, ...]
+    has_setup_py: bool  # with a call of setup()
+    unread: tuple[Path, ...]  # files whose entry points only a run could tell
+    source_folders: tuple[str, ...]  # where top-level modules lie, relative to `folder`
+    package_folders: Mapping[
+        str, str
+    ]  # where single top-level packages lie: package_dir={"a": "lib/a"}
+
+    def roots(self, module: str) -> list[Path]:
+        """List the folders to import `module` from, best first; none lies outside the package."""
+        package = module.split(".")[0]
+        lies_in = Path(self.package_folders.get(package, ""))
+        single = [str(lies_in.parent)] if lies_in.name == package else []
+        folder = self.folder.resolve()
+        roots = [
+            (folder / name).resolve() for name in (*single, *(self.source_folders or (".", "src")))
+        ]
+        return [root for root in dict.fromkeys(roots) if root.is_relative_to(folder)] or [folder]
+
+
+@dataclass
+class _Said:
+    """What one set-up file says, in its own words."""
+
+    scripts: list[tuple[str, str]] = field(default_factory=list)  # name, "module:function"
+    is_setup: bool = False
+    unread: bool = False
+    folders: dict[str, str] = field(default_factory=dict)  # package_dir
+    searched: list[str] = field(default_factory=list)  # find_packages(where=…)
+
+
+def read_package(folder: Path, base: Path) -> Package | None:
+    """Read the set-up files in a folder; None without any. Messages name them from `base` on.
+
+    Raises:
+        SubmissionError: one does not parse, or has an entry that is no `name = module:function`;
+            no tool could install such a package.
+    """
+    readers = zip(SETUP_FILES, (_read_pyproject, _read_setup_py, _read_setup_cfg), strict=True)
+    said = {
+        folder / name: _read(folder / name, base, read)
+        for name, read in readers
+        if (folder / name).is_file()
+    }
+    if not said:
+        return None
+    scripts: dict[str, ConsoleScript] = {}
+    for file, words in said.items():
+        for name, target in words.scripts:
+            scripts.setdefault(name, _console_script(name, target, file, base))
+    folders = {name: lies_in for words in said.values() for name, lies_in in words.folders.items()}
+    searched = [name for words in said.values() for name in words.searched]
+    return Package(
+        folder=folder,
+        scripts=tuple(scripts.values()),
+        has_setup_py=said.get(folder / "setup.py", _Said()).is_setup,
+        unread=tuple(file for file, words in said.items() if words.unread),
+        source_folders=tuple(
+            dict.fromkeys([folders[""], *searched] if "" in folders else searched)
+        ),
+        package_folders={name: lies_in for name, lies_in in folders.items() if name},
+    )
+
+
+def _read(file: Path, base: Path, read: Callable[[bytes], _Said]) -> _Said:
+    called = file.relative_to(base)
+    data = read_bounded(file)
+    if data is None:
+        raise SubmissionError(
+            f"{called} is larger than {MAX_SOURCE_BYTES / 1e6:.0f} MB; not a set-up file."
+        )
+    try:
+        return read(data)
+    except SyntaxError as error:
+        where = f", line {error.lineno}" if error.lineno else ""
+        raise SubmissionError(
+            f"{called} does not parse{where}: {error.msg}. "
+            "Correct it until `colcon build` succeeds."
+        ) from error
+    except (tomllib.TOMLDecodeError, configparser.Error, UnicodeDecodeError) as error:
+        why = " ".join(str(error).split())
+        raise SubmissionError(f"{called} cannot be read: {why}. Correct that line.") from error
+    except RecursionError as error:
+        raise SubmissionError(
+            f"{called} is nested too deeply to be read. Write it plainly."
+        ) from error
+
+
+def _console_script(name: str, target: str, file: Path, base: Path) -> ConsoleScript:
+    match = _TARGET.fullmatch(target.strip())
+    if not name or match is None:
+        found = f"{name} = {target}" if name else target
+        hint = " A comma seems to be missing between two entries." if "=" in target else ""
+        raise SubmissionError(
+            f"{file.relative_to(base)} has the console script '{found}'.{hint} "
+            "Expected 'name = package.module:function', "
+            "for example 'turtle_controller = my_package.turtle_controller:main'."
+        )
+    return ConsoleScript(name, match[1], match[2], file)
+
+
+def _read_setup_py(data: bytes) -> _Said:
+    tree = parse(data, "setup.py")
+    constants = Constants(tree)
+    said = _Said()
+    for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+        match call.func:
+            case ast.Name(id="setup") | ast.Attribute(attr="setup"):
+                said.is_setup = True
+                _hear_setup(constants.keywords(call.keywords), said)
+            case ast.Name(id=name) | ast.Attribute(attr=name) if name in (
+                "find_packages",
+                "find_namespace_packages",
+            ):
+                where = [k.value for k in call.keywords if k.arg == "where"] or call.args[:1]
+                said.searched += _of_type(str, [constants.value(node) for node in where])
+    return said
+
+
+def _hear_setup(arguments: object, said: _Said) -> None:
+    if not isinstance(arguments, dict):  # setup(**computed)
+        said.unread = True
+        return
+    said.folders |= _texts(arguments.get("package_dir"))
+    entry_points = arguments.get("entry_points")
+    if isinstance(entry_points, str):
+        said.scripts += _ini_scripts(entry_points)
+    elif isinstance(entry_points, dict):
+        _hear_scripts(entry_points.get("console_scripts"), said)
+    elif entry_points is not None:
+        said.unread = True
+
+
+def _hear_scripts(scripts: object, said: _Said) -> None:
+    """Take `console_scripts` of a dict: "name = target" in a list, or as lines of a string."""
+    if isinstance(scripts, str):
+        scripts = scripts.splitlines()
+    if isinstance(scripts, list):
+        said.scripts += _entries(_of_type(str, scripts))
+    said.unread |= scripts is UNKNOWN or (isinstance(scripts, list) and UNKNOWN in scripts)
+
+
+def _read_setup_cfg(data: bytes) -> _Said:
+    parser = configparser.RawConfigParser(strict=False)
+    parser.optionxform = str  # type: ignore[assignment, method-assign]  # script names keep their case
+    parser.read_string(data.decode("utf-8-sig"))
+    scripts = parser.get("options.entry_points", "console_scripts", fallback="")
+    folders = _entries(
+        parser.get("options", "package_dir", fallback="").replace(",", "\n").splitlines()
+    )
+    where = parser.get("options.packages.find", "where", fallback="")
+    return _Said(
+        scripts=_entries(scripts.splitlines()),
+        folders=dict(folders),
+        searched=[where] if where else [],
+    )
+
+
+def _read_pyproject(data: bytes) -> _Said:
+    document = tomllib.loads(data.decode("utf-8-sig"))
+    setuptools = _table(document, "tool", "setuptools")
+    poetry = _table(document, "tool", "poetry")
+    where = _table(setuptools, "packages", "find").get("where")
+    packages = poetry.get("packages")
+    lie_in = [_table(item).get("from") for item in packages] if isinstance(packages, list) else []
+    return _Said(
+        scripts=[
+            *_texts(_table(document, "project", "scripts")).items(),
+            *_poetry_scripts(_table(poetry, "scripts")),
+        ],
+        folders=_texts(setuptools.get("package-dir")),
+        searched=_of_type(str, [*(where if isinstance(where, list) else [where]), *lie_in]),
+    )
+
+
+def _poetry_scripts(table: Mapping[str, object]) -> list[tuple[str, str]]:
+    """Take `name = "module:function"`, or `reference` (`callable` before Poetry 1.2) of a table."""
+    scripts = _texts(table)
+    for name, value in table.items():
+        target = _table(value).get("reference", _table(value).get("callable"))
+        if isinstance(target, str) and _table(value).get("type") != "file":
+            scripts[name] = target
+    return list(scripts.items())
+
+
+def _ini_scripts(text: str) -> list[tuple[str, str]]:
+    """Take the section [console_scripts] of entry points that are one string in setup.py."""
+    section, lines = "", []
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith("["):
+            section = line.strip("[] ")
+        elif section == "console_scripts":
+            lines.append(line)
+    return _entries(lines)
+
+
+def _entries(lines: Iterable[str]) -> list[tuple[str, str]]:
+    """Split lines of `name = value`; one without `=` gets the name ""."""
+    wanted = [
+        line.strip() for line in lines if line.strip() and not line.strip().startswith(("#", ";"))
+    ]
+    parts = [line.partition("=") if "=" in line else ("", "", line) for line in wanted]
+    return [(name.strip(), value.strip()) for name, _, value in parts]
+
+
+def _table(value: object, *keys: str) -> Mapping[str, object]:
+    """Go down to the table below `keys`; an empty one if anything on the way is no table."""
+    for key in keys:
+        value = value.get(key) if isinstance(value, dict) else None
+    return value if isinstance(value, dict) else {}
+
+
+def _texts(value: object) -> dict[str, str]:
+    return {key: text for key, text in _table(value).items() if isinstance(text, str)}
+
+
+def _of_type(kind: type[_T], values: Iterable[object]) -> list[_T]:
+    return [value for value in values if isinstance(value, kind)]

@@ -1,0 +1,41 @@
+"""The last error is found in what a node has printed."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.exercise.sentences import last_error
+
+CRASH = """[INFO] hello
+Traceback (most recent call last):
+  File "/tmp/x/turtle_controller.py", line 3, in <module>
+    import turtlesim_messages
+ModuleNotFoundError: No module named 'turtlesim_messages'
+"""
+SYNTAX = """  File "/tmp/x/turtle_controller.py", line 12
+    def drive(self)
+                   ^
+SyntaxError: expected ':'
+"""
+
+
+@pytest.mark.parametrize(
+    ("output", "expected"),
+    [
+        (
+            CRASH,
+            "ModuleNotFoundError: No module named 'turtlesim_messages' "
+            "(turtle_controller.py, line 3)",
+        ),
+        (SYNTAX, "SyntaxError: expected ':' (turtle_controller.py, line 12)"),
+        (
+            CRASH.replace("ModuleNotFoundError: No module", "my_pkg.errors.Oops: no module"),
+            "my_pkg",
+        ),
+        ("no error at all\n", ""),
+        ("", ""),
+    ],
+)
+def test_the_last_error_is_found_with_file_and_line(output, expected):
+    assert last_error(output).startswith(expected)
+    assert bool(last_error(output)) == bool(expected)

@@ -1,0 +1,247 @@
+"""The bag is a rosbag2 of ROS 2 Jazzy: read here by other programs than the one that wrote it."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from rosbags.highlevel import AnyReader
+
+from grader.recording import bag
+from grader.recording import messages as bag_messages
+from grader.recording.recording import Recording
+from tests.grader.driving import drive, pen, twist
+
+TICK_NS = 16_000_000
+DEFINITIONS = Path(__file__).parents[3] / "interfaces" / "packages" / "turtlesim" / "msg"
+TOPICS = {
+    "/turtle1/pose": ("turtlesim/msg/Pose", 9),
+    "/turtle1/color_sensor": ("turtlesim/msg/Color", 9),
+    "/second/pose": ("turtlesim/msg/Pose", 7),
+    "/second/color_sensor": ("turtlesim/msg/Color", 7),
+    "/turtle1/cmd_vel": ("geometry_msgs/msg/Twist", 3),
+    "/second/cmd_vel": ("geometry_msgs/msg/Twist", 1),
+    "/turtlesim/events": ("std_msgs/msg/String", 4),
+    "/rosout": ("rcl_interfaces/msg/Log", 2),
+    "/turtlesim/path": ("sensor_msgs/msg/Image", 1),
+    "/turtlesim/window": ("sensor_msgs/msg/Image", 1),
+}
+READING = ("pose", "color_sensor")
+
+
+def couple(tick, _, arena):
+    """Two turtles; the second one comes in tick 3."""
+    if tick == 3:
+        twist(arena, 1.0)
+        pen(arena, (255, 0, 0))
+        arena.spawn(2.0, 3.0, 1.0, "second")
+        twist(arena, -0.1, 1 / 3)
+        arena.command("second", (0.5, float("inf"), 0.0), (0.0, 0.0, float("nan")))
+        arena.clear()
+        arena.set_pen("second", 1, 2, 3, 4, 5)
+        twist(arena, 2.0)
+
+
+@pytest.fixture(scope="module")
+def recorded() -> Recording:
+    return drive(couple, ticks=9)
+
+
+@pytest.fixture(scope="module")
+def folder(recorded, tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("bag") / "recording"
+    recorded.save(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def decoded(folder) -> list[tuple[str, int, Any]]:
+    """(topic, time, message) as the MCAP project's own reader finds them."""
+    with (folder / "recording.mcap").open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        return [
+            (channel.topic, message.log_time, ros_message)
+            for _, channel, message, ros_message in reader.iter_decoded_messages()
+        ]
+
+
+def on(topic: str, decoded: list[tuple[str, int, Any]]) -> list[tuple[int, Any]]:
+    return [(time, message) for where, time, message in decoded if where == topic]
+
+
+# The container --------------------------------------------------------------------------------
+
+
+def test_the_metadata_is_that_of_version_9_and_knows_every_topic(folder):
+    info = yaml.safe_load((folder / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    span = {
+        "starting_time": {"nanoseconds_since_epoch": TICK_NS},
+        "duration": {"nanoseconds": 8 * TICK_NS},
+        "message_count": sum(count for _, count in TOPICS.values()),
+    }
+    topics = info.pop("topics_with_message_count")
+    assert info == {
+        "version": 9,
+        "storage_identifier": "mcap",
+        "relative_file_paths": ["recording.mcap"],
+        "files": [{"path": "recording.mcap", **span}],
+        **span,
+        # Of the .mcap as a whole; its chunks are compressed, which is no matter of rosbag2.
+        "compression_format": "",
+        "compression_mode": "",
+        "custom_data": None,
+        "ros_distro": "rosbags",
+    }
+    found = {}
+    for topic in topics:
+        data = topic["topic_metadata"]
+        assert set(topic) == {"topic_metadata", "message_count"}
+        assert data.keys() == {
+            "name", "type", "serialization_format", "offered_qos_profiles", "type_description_hash"
+        }  # fmt: skip
+        assert (data["serialization_format"], data["offered_qos_profiles"]) == ("cdr", [])
+        found[data["name"]] = (data["type"], topic["message_count"])
+    assert found == TOPICS
+
+
+def test_the_type_hashes_are_those_of_the_installed_interfaces(folder):
+    from ament_index_python.packages import get_package_share_directory
+
+    info = yaml.safe_load((folder / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    for topic in info["topics_with_message_count"]:
+        package, _, name = (kind := topic["topic_metadata"]["type"]).split("/")
+        path = Path(get_package_share_directory(package), "msg", f"{name}.json")
+        hashes = json.loads(path.read_text())["type_hashes"]
+        (expected,) = (h["hash_string"] for h in hashes if h["type_name"] == kind)
+        assert topic["topic_metadata"]["type_description_hash"] == expected
+
+
+def test_the_definitions_of_turtlesim_are_those_of_our_interfaces():
+    for msgtype, text in bag_messages.DEFINITIONS.items():
+        name = msgtype.rpartition("/")[2]
+        ours = (DEFINITIONS / f"{name}.msg").read_text()
+        assert text.split() == ours.split()
+
+
+def test_mcaps_own_reader_finds_schemas_channels_and_counts(folder):
+    with (folder / "recording.mcap").open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        assert reader.get_header().profile == "ros2"
+        summary = reader.get_summary()
+    counts = summary.statistics.channel_message_counts
+    found = {}
+    for number, channel in summary.channels.items():
+        schema = summary.schemas[channel.schema_id]
+        assert (channel.message_encoding, schema.encoding) == ("cdr", "ros2msg")
+        assert channel.metadata == {"offered_qos_profiles": "[]"}
+        found[channel.topic] = (schema.name, counts[number])
+    assert found == TOPICS
+    assert {chunk.compression for chunk in summary.chunk_indexes} == {"zstd"}
+    assert all(chunk.message_index_length for chunk in summary.chunk_indexes)
+
+
+def test_rosbags_reads_it_without_being_told_the_types(folder, recorded):
+    with AnyReader([folder]) as reader:
+        assert {topic: info.msgtype for topic, info in reader.topics.items()} == {
+            topic: kind for topic, (kind, _) in TOPICS.items()
+        }
+        poses = [
+            reader.deserialize(data, connection.msgtype)
+            for connection, _, data in reader.messages()
+            if connection.topic == "/turtle1/pose"
+        ]
+    assert [pose.x for pose in poses] == recorded.published["turtle1"][:, 1].tolist()
+
+
+# The messages ---------------------------------------------------------------------------------
+
+
+def test_poses_and_colors_are_those_of_the_recording(decoded, recorded):
+    for name, rows in recorded.published.items():
+        poses, colors = (on(f"/{name}/{what}", decoded) for what in READING)
+        found = [
+            (p.x, p.y, p.theta, p.linear_velocity, p.angular_velocity, c.r, c.g, c.b)
+            for (_, p), (_, c) in zip(poses, colors, strict=True)
+        ]
+        assert np.array_equal(np.array(found), rows[:, 1:], equal_nan=True)
+
+
+def test_the_time_of_a_message_is_its_tick_times_16_ms(decoded, recorded):
+    for name, rows in recorded.published.items():
+        expected = (rows[:, 0] * TICK_NS).tolist()
+        assert [time for time, _ in on(f"/{name}/pose", decoded)] == expected
+    assert {time for time, _ in on("/turtle1/cmd_vel", decoded)} == {3 * TICK_NS}
+    assert [time for time, _ in on("/turtlesim/window", decoded)] == [9 * TICK_NS]
+
+
+def test_commands_are_twists_to_the_last_bit(decoded):
+    (_, first), (_, second), _ = on("/turtle1/cmd_vel", decoded)
+    assert (first.linear.x, first.angular.z) == (1.0, 1.0)
+    assert (second.linear.x, second.angular.z) == (-0.1, 1 / 3)
+    ((_, odd),) = on("/second/cmd_vel", decoded)
+    assert odd.linear.y == float("inf")
+    assert np.isnan(odd.angular.z)
+
+
+def test_the_inputs_of_a_tick_stand_in_their_order_and_before_their_effects(decoded):
+    tick = [(topic, message) for topic, time, message in decoded if time == 3 * TICK_NS]
+    inputs = [
+        json.loads(message.data)["op"] if topic == "/turtlesim/events" else topic
+        for topic, message in tick
+        if topic.endswith(("/cmd_vel", "/events"))
+    ]
+    one, two = "/turtle1/cmd_vel", "/second/cmd_vel"
+    assert inputs == [one, "set_pen", "spawn", one, two, "clear", "set_pen", one]
+    effects = [f"/{name}/{what}" for name in ("turtle1", "second") for what in READING]
+    assert [topic for topic, _ in tick][len(inputs) :] == ["/rosout", "/rosout", *effects]
+
+
+def test_log_lines_have_their_level_and_time(decoded):
+    (_, spawned), (_, cleared) = on("/rosout", decoded)
+    assert spawned.msg.startswith("Spawning turtle [second] at x=[2.000000]")
+    assert (cleared.level, cleared.name, cleared.msg) == (20, "turtlesim", "Clearing turtlesim.")
+    assert (cleared.stamp.sec, cleared.stamp.nanosec) == (0, 3 * TICK_NS)
+
+
+def test_the_pictures_are_images_of_the_canvas_and_the_window(decoded, recorded):
+    for topic, pixels, encoding in (
+        ("/turtlesim/path", recorded.canvas, "rgba8"),
+        ("/turtlesim/window", recorded.window, "rgb8"),
+    ):
+        ((_, image),) = on(topic, decoded)
+        assert (image.width, image.height, image.encoding) == (500, 500, encoding)
+        assert image.step == 500 * pixels.shape[2]
+        assert bytes(image.data) == pixels.tobytes()
+
+
+def test_the_real_rclpy_reads_the_messages(folder, recorded):
+    from rclpy.serialization import deserialize_message
+
+    found = Counter()
+    with AnyReader([folder]) as reader:
+        for connection, _, data in reader.messages():
+            package, _, name = connection.msgtype.split("/")
+            kind = getattr(import_module(f"{package}.msg"), name)
+            message = deserialize_message(bytes(data), kind)
+            found[connection.topic] += 1
+            if connection.topic == "/turtlesim/window":
+                assert bytes(message.data) == recorded.window.tobytes()
+            if connection.topic == "/second/cmd_vel":
+                assert (message.linear.x, message.linear.y) == (0.5, float("inf"))
+    assert found == {topic: count for topic, (_, count) in TOPICS.items()}
+
+
+def test_writing_alone_makes_the_same_bag(recorded, folder, tmp_path):
+    written = bag.write(recorded, tmp_path / "recording")
+    assert written.read_bytes() == (folder / "recording.mcap").read_bytes()
+    assert (tmp_path / "recording" / "metadata.yaml").read_bytes() == (
+        folder / "metadata.yaml"
+    ).read_bytes()

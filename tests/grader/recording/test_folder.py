@@ -1,0 +1,280 @@
+"""The folder of a recording: the same bytes every time, whole or refused with a clear text."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from pathlib import Path
+
+import pytest
+import yaml
+from rosbags.rosbag2 import StoragePlugin, Writer
+
+from grader import cli
+from grader.recording import bag
+from grader.recording import folder as storage
+from grader.recording import messages as bag_messages
+from grader.recording import recording as recordings
+from grader.recording.recording import Recording, RecordingError, Recordings
+from tests.grader.driving import Spiral, drive
+
+CIRCUMSTANCES = "circumstances.json"
+
+
+@pytest.fixture(scope="module")
+def recorded() -> Recording:
+    return drive(Spiral(), ticks=600)
+
+
+@pytest.fixture
+def folder(recorded, tmp_path):
+    recorded.save(tmp_path / "recording")
+    return tmp_path / "recording"
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+def change(path: Path, **values) -> None:
+    """Change what stands at the top of a JSON file; `run__ticks` is `ticks` in `run`."""
+    data = json.loads(path.read_text())
+    for key, value in values.items():
+        *parents, last = key.split("__")
+        place = data
+        for parent in parents:
+            place = place[parent]
+        place[last] = value
+    path.write_text(json.dumps(data))
+
+
+# The same bytes -------------------------------------------------------------------------------
+
+
+def test_two_saves_of_a_recording_are_the_same_byte_for_byte(recorded, tmp_path):
+    for name in ("one", "two"):
+        Recordings(recorded, (recorded,)).save(tmp_path / name)
+    assert contents(tmp_path / "one") == contents(tmp_path / "two")
+
+
+def test_equal_runs_make_equal_files(recorded, folder, tmp_path):
+    drive(Spiral(), ticks=600).save(tmp_path / "again")
+    assert contents(tmp_path / "again") == contents(folder)
+
+
+def test_a_loaded_recording_saves_as_the_same_files(folder, tmp_path):
+    recordings.load(folder).save(tmp_path / "again")
+    assert contents(tmp_path / "again") == contents(folder)
+
+
+def test_what_differs_between_equal_runs_stands_apart(recorded, folder, tmp_path):
+    other = recorded.finished(wall_s=12.5, isolation="ROS domain 77")
+    other.save(tmp_path / "other")
+    ours, theirs = contents(folder), contents(tmp_path / "other")
+    assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
+    assert recordings.load(tmp_path / "other").run == other.run
+
+
+def test_a_recording_can_do_without_its_circumstances(recorded, folder):
+    (folder / CIRCUMSTANCES).unlink()
+    assert recordings.load(folder).run == recorded.run
+
+
+def test_pictures_and_scenario_are_copies_that_nobody_reads(recorded, folder):
+    for name in ("path.png", "window.png", "scenario.json"):
+        (folder / name).unlink()
+    assert (recordings.load(folder).canvas == recorded.canvas).all()
+
+
+# Whole or not at all --------------------------------------------------------------------------
+
+
+def test_the_metadata_comes_last(recorded, folder, monkeypatch):
+    rename, moved = Path.replace, []
+    monkeypatch.setattr(Path, "replace", lambda a, b: moved.append(b.name) or rename(a, b))
+    recorded.save(folder)
+    assert moved[-1] == "metadata.yaml"
+
+
+@pytest.mark.parametrize("stop_at", storage.FILES)
+def test_a_save_that_is_cut_off_leaves_no_recording(recorded, tmp_path, monkeypatch, stop_at):
+    rename = Path.replace
+
+    def cut_off(source: Path, target: Path) -> Path:
+        if target == tmp_path / stop_at:
+            raise OSError("no space left on device")
+        return rename(source, target)
+
+    monkeypatch.setattr(Path, "replace", cut_off)
+    with pytest.raises(OSError, match="no space left"):
+        Recordings(recorded, (recorded,)).save(tmp_path)
+    with pytest.raises(RecordingError):
+        recordings.load_all(tmp_path)
+    assert not (tmp_path / storage.UNFINISHED).exists()
+
+
+def test_an_older_recording_stays_whole_until_the_new_one_is_written(recorded, folder, monkeypatch):
+    before = contents(folder)
+
+    def disk_full(*_):
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(bag, "write", disk_full)
+    with pytest.raises(OSError, match="no space left"):
+        recorded.save(folder)
+    assert contents(folder) == before
+
+
+def test_what_a_killed_save_left_behind_goes_with_the_next(recorded, folder):
+    before = contents(folder)
+    (folder / storage.UNFINISHED / "recording").mkdir(parents=True)
+    (folder / storage.UNFINISHED / "recording" / "metadata.yaml").write_text("half of it")
+    recorded.save(folder)
+    assert contents(folder) == before
+
+
+def test_a_new_recording_replaces_an_older_one_and_nothing_else(recorded, tmp_path):
+    Recordings(drive(Spiral(), ticks=100), (recorded,) * 3).save(tmp_path)
+    (tmp_path / "notes.txt").write_text("mine")
+    Recordings(recorded, (recorded,)).save(tmp_path)
+    loaded = recordings.load_all(tmp_path)
+    assert loaded.nominal.run == recorded.run
+    assert len(loaded.varied) == 1
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+# Damaged and foreign input --------------------------------------------------------------------
+
+
+def refused(folder: Path) -> str:
+    """The text of the error, which the command line prints with exit code 2."""
+    with pytest.raises(RecordingError) as error:
+        recordings.load_all(folder)
+    assert cli.main(["check", str(folder)]) == cli.UNUSABLE
+    return str(error.value)
+
+
+def test_a_missing_recording_is_named(tmp_path):
+    assert "cannot read the recording" in refused(tmp_path / "nowhere")
+
+
+def test_a_folder_of_something_else_is_no_recording(tmp_path):
+    assert "no recording" in refused(tmp_path)
+    (tmp_path / "turtle_controller.py").write_text("print('hello')")
+    assert "no recording" in refused(tmp_path / "turtle_controller.py")
+
+
+@pytest.mark.parametrize("name", ["recording.mcap", "metadata.yaml", "run.json", "output.txt"])
+def test_a_missing_file_is_named(folder, name):
+    (folder / name).unlink()
+    assert name in refused(folder)
+
+
+@pytest.mark.parametrize("name", ["metadata.yaml", "run.json", CIRCUMSTANCES])
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"{", b"[]", b"{}", b"null", b"3", b"\xff\xfe", b"[" * 500, b"a: [b", b"\x00" * 99],
+)
+def test_garbage_is_an_error_and_no_traceback(folder, name, content):
+    (folder / name).write_bytes(content)
+    if (name, content) == (CIRCUMSTANCES, b"{}"):
+        recordings.load(folder)
+    else:
+        refused(folder)
+
+
+@pytest.mark.parametrize("name", ["recording.mcap", "metadata.yaml"])
+@pytest.mark.parametrize("part", [0, 0.001, 0.5, 0.999])
+def test_a_truncated_bag_is_an_error(folder, name, part):
+    whole = (folder / name).read_bytes()
+    (folder / name).write_bytes(whole[: int(len(whole) * part)])
+    assert str(folder) in refused(folder)
+
+
+def test_one_changed_bit_in_the_bag_is_an_error(folder):
+    whole = bytearray((folder / "recording.mcap").read_bytes())
+    whole[len(whole) // 3] ^= 1
+    (folder / "recording.mcap").write_bytes(whole)
+    assert "damaged: it is cut off or was changed" in refused(folder)
+
+
+@pytest.mark.parametrize("place", range(0, 100, 3))
+def test_a_damaged_bag_whose_digest_fits_is_an_error_or_harmless(folder, place):
+    """The digest finds chance damage; what is left must not end in a traceback either."""
+    path = folder / "recording.mcap"
+    whole = bytearray(path.read_bytes())
+    start = len(whole) * place // 100
+    whole[start : start + 9] = b"\xff" * 9
+    path.write_bytes(whole)
+    change(folder / "run.json", bag_sha256=storage._sha256(path))
+    try:
+        recordings.load(folder)
+    except RecordingError as error:
+        assert str(folder) in str(error)
+
+
+def test_the_version_is_checked(folder):
+    change(folder / "run.json", schema="turtlesim-grader/recording/v99")
+    text = refused(folder)
+    assert "recording/v99" in text
+    assert storage.SCHEMA in text
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"run__ticks": "many"},
+        {"run__outcome": "splendid"},
+        {"run__flags": "odd"},
+        {"run__unheard_of": 1},
+        {"run": None},
+        {"start": {"x": 1.0}},
+        {"topics": [3]},
+        {"bag_sha256": 7},
+    ],
+)
+def test_facts_of_the_wrong_kind_are_an_error(folder, values):
+    change(folder / "run.json", **values)
+    assert "damaged" in refused(folder)
+
+
+def test_a_lost_varied_run_is_named(recorded, tmp_path):
+    Recordings(recorded, (recorded, recorded)).save(tmp_path)
+    (tmp_path / "varied_2").rename(tmp_path / "elsewhere")
+    assert "varied_2 is missing" in refused(tmp_path)
+
+
+def foreign_bag(folder: Path, plugin: StoragePlugin, topic: str, msgtype: str, text: str) -> None:
+    types = bag_messages.store()
+    with Writer(folder, version=9, storage_plugin=plugin) as writer:
+        connection = writer.add_connection(topic, msgtype, typestore=types)
+        message = types.types[msgtype](text)
+        writer.write(connection, 16_000_000, types.serialize_cdr(message, msgtype))
+
+
+@pytest.mark.parametrize("plugin", list(StoragePlugin))
+def test_somebody_elses_bag_is_no_recording(tmp_path, plugin):
+    foreign_bag(tmp_path / "bag", plugin, "/chatter", "std_msgs/msg/String", "hello")
+    assert "a rosbag, but no recording of the grader" in refused(tmp_path / "bag")
+
+
+@pytest.mark.parametrize("text", ["hello", "[]", "3", "{}", '{"tick": "1", "op": "clear"}'])
+def test_a_bag_of_the_right_name_with_other_messages_is_an_error(folder, tmp_path, text):
+    other = tmp_path / "other" / "recording"
+    foreign_bag(other, StoragePlugin.MCAP, "/turtlesim/events", "std_msgs/msg/String", text)
+    for name in ("recording.mcap", "metadata.yaml"):
+        (other / name).replace(folder / name)
+    change(folder / "run.json", bag_sha256=storage._sha256(folder / "recording.mcap"))
+    assert "holds no recording" in refused(folder)
+
+
+def test_a_bag_converted_to_sqlite3_is_an_error(folder):
+    with sqlite3.connect(folder / "recording.db3") as database:
+        database.execute("create table messages (id integer)")
+    database.close()
+    metadata = yaml.safe_load((folder / "metadata.yaml").read_text())
+    info = metadata["rosbag2_bagfile_information"]
+    info.update(storage_identifier="sqlite3", relative_file_paths=["recording.db3"])
+    (folder / "metadata.yaml").write_text(yaml.safe_dump(metadata))
+    assert "cannot read the bag" in refused(folder)

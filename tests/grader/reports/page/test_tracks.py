@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from grader.reports.page.tracks import film, svg_path, to_px
+from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
+from turtlesim_py.world.turtle import SIZE_M, TICK_S
+
+
+def test_metres_become_pixels_with_y_down():
+    assert to_px(0, 0) == (0, pytest.approx(499, abs=1e-4))
+    assert to_px(SIZE_M, SIZE_M) == (pytest.approx(499, abs=1e-4), 0)
+
+
+def test_a_line_is_interrupted_where_a_place_is_missing():
+    x = np.array([1, 2, np.nan, 4, 5.26])
+    assert svg_path(x, np.ones(5)) == "M1 1L2 1M4 1L5.3 1"
+
+
+def test_a_long_run_is_thinned_out_and_keeps_its_end():
+    recording = drive(Spiral())
+    shown = film(recording)
+    (track,) = shown.tracks
+    assert 500 < len(shown.times) <= 1001
+    assert shown.times[-1] == pytest.approx(recording.run.ticks * TICK_S)
+    assert track.x[-1] == pytest.approx(recording.published["turtle1"][-1, 1] * 45, abs=0.01)
+
+
+def test_ink_has_the_pens_colour_and_gaps_where_it_was_off():
+    def controller(tick, pose, arena):
+        if tick % 30 == 1:
+            twist(arena, 1.0)
+        if tick == 100:
+            pen(arena, RED, 5)
+        if tick == 200:
+            arena.set_pen("turtle1", 0, 0, 0, 0, 1)
+        if tick == 300:
+            pen(arena, GREEN)
+
+    (track,) = film(drive(controller, ticks=400)).tracks
+    found = [(s.first, s.last, s.color, s.width, s.drawn) for s in track.stretches]
+    assert found == [
+        (0, 98, "#b3b8ff", 3, True),
+        (98, 198, "#ff0000", 5, True),
+        (198, 298, "#ff0000", 5, False),
+        (298, 399, "#00ff00", 3, True),
+    ]
+    assert track.lifted().count("M") == 1
+
+
+def test_other_turtles_are_drawn_from_when_they_are_there():
+    def controller(tick, pose, arena):
+        if tick == 50:
+            arena.spawn(2.0, 3.0, 0.0, "another")
+
+    first, second = film(drive(controller, ticks=100)).tracks
+    assert (first.name, second.name) == ("turtle1", "another")
+    assert np.isnan(second.x[:48]).all()
+    assert second.x[-1] == pytest.approx(90)
+
+
+def test_what_was_cleared_is_known():
+    def controller(tick, pose, arena):
+        if tick == 50:
+            arena.clear()
+
+    assert film(drive(controller, ticks=100)).cleared == (49,)
+
+
+def test_the_rest_is_where_the_turtle_stands_at_the_end():
+    rest = film(drive(Spiral())).rest
+    assert min(rest.x, rest.y, SIZE_M - rest.x, SIZE_M - rest.y) < 0.5
+    assert rest.time_s > 30
+    assert film(drive(Spiral(), ticks=300)).rest is None
+    assert film(drive(lambda *_: None, ticks=10)).rest is None
+
+
+def test_the_background_is_what_lies_below_the_ink():
+    assert film(drive(Spiral(), ticks=200)).background == "#4556ff"

@@ -1,0 +1,116 @@
+"""No run hears another, and none leaves anything in shared memory."""
+
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from grader import scratch
+from grader.run.processes import isolation
+from grader.run.stage import Stage, open_stage
+
+#: Publishes on /x, or says what it hears there; ends without cleaning up, as a killed run does.
+TALK = """
+import os, sys, time
+import rclpy
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node(sys.argv[1])
+heard = []
+if sys.argv[1] == "talker":
+    publisher = node.create_publisher(String, "/x", 10)
+else:
+    node.create_subscription(String, "/x", lambda message: heard.append(message.data), 10)
+print("up", flush=True)
+until = time.monotonic() + float(sys.argv[2])
+while time.monotonic() < until and not heard:
+    rclpy.spin_once(node, timeout_sec=0.02)
+    if sys.argv[1] == "talker":
+        publisher.publish(String(data="hello"))
+print(*heard, flush=True)
+print(sum("fastrtps" in line or "fastdds" in line
+          for line in open("/proc/self/maps") if "/dev/shm" in line), flush=True)
+os.kill(os.getpid(), 9)
+"""
+
+
+@pytest.fixture(params=["private network", "ROS domain"])
+def kind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    if request.param == "private network":
+        if isolation.private_network() is None:
+            pytest.skip("this system allows none")
+    else:
+        monkeypatch.setattr(isolation, "_refused", {isolation._as_root, isolation._as_user})
+    return str(request.param)
+
+
+def talk(stage: Stage, role: str, seconds: float) -> "subprocess.Popen[str]":
+    words = [*stage.entry, sys.executable, "-c", TALK, role, str(seconds)]
+    return subprocess.Popen(words, env=dict(stage.env), stdout=subprocess.PIPE, text=True)
+
+
+def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind: str) -> None:
+    with ExitStack() as stack:
+        ours, other = (stack.enter_context(open_stage()) for _ in range(2))
+        assert ours.isolation.startswith(kind)
+        talker = stack.enter_context(talk(ours, "talker", 3.0))
+        listener = stack.enter_context(talk(ours, "listener", 20.0))
+        stranger = stack.enter_context(talk(other, "listener", 2.0))
+        assert listener.communicate()[0].split() == ["up", "hello", "0"]
+        assert stranger.communicate()[0].split() == ["up", "0"]
+        assert talker.communicate()[0].split() == ["up", "0"]
+
+
+@pytest.mark.parametrize("way", [isolation._as_root, isolation._as_user])
+def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
+    try:
+        namespaces = way()
+    except OSError:
+        pytest.skip("this system does not allow it")
+    shown = subprocess.run(
+        [*namespaces.entry(), "cat", "/proc/net/dev"], capture_output=True, text=True, check=True
+    )
+    namespaces.close()
+    assert [line.split(":")[0].strip() for line in shown.stdout.splitlines()[2:]] == ["lo"]
+
+
+def test_what_is_refused_once_is_not_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def refuse() -> isolation.Namespaces:
+        asked.append(1)
+        raise PermissionError
+
+    monkeypatch.setattr(isolation, "_as_root", refuse)
+    monkeypatch.setattr(isolation, "_as_user", refuse)
+    monkeypatch.setattr(isolation, "_refused", set())
+    assert isolation.private_network() is None
+    assert isolation.private_network() is None
+    assert len(asked) == 1
+
+
+def test_a_stage_leaves_nothing(kind: str) -> None:
+    fds = len(list(Path("/proc/self/fd").iterdir()))
+    with open_stage() as stage:
+        assert stage.folder.is_dir()
+    assert not stage.folder.exists()
+    assert len(list(Path("/proc/self/fd").iterdir())) == fds
+
+
+def test_the_folder_of_a_run_that_goes_on_is_left_alone() -> None:
+    with scratch.make_folder() as ours, scratch.make_folder() as other:
+        assert ours.is_dir()
+        assert other.is_dir()
+
+
+def test_runs_that_start_together_do_not_clear_each_other_away() -> None:
+    def make(_: int) -> bool:
+        with scratch.make_folder() as path:
+            (path / "tmp").mkdir()
+            return path.is_dir()
+
+    with ThreadPoolExecutor(8) as pool:
+        assert all(pool.map(make, range(200)))

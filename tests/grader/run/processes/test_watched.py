@@ -1,0 +1,177 @@
+"""Nothing that a submission starts outlives its run."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import psutil
+import pytest
+
+from grader import scratch
+from grader.run.processes import watched
+from grader.run.processes.watched import Student
+
+ROOT = Path(__file__).parents[4]
+#: Stands before a command that is not to make namespaces.
+UNPRIVILEGED = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
+#: Starts a program that hides as well as it can, says its time, and ends or waits.
+HIDES = """
+import subprocess, sys, time
+subprocess.Popen(["sleep", sys.argv[1]], env={}, start_new_session=True)
+print("hidden", flush=True)
+time.sleep(float(sys.argv[2]))
+"""
+#: A grader with one submission, that says when both are up.
+GRADER = """
+import sys
+from grader.run.stage import open_stage
+from grader.run.processes import watched
+watched.end_on_signals()
+with open_stage() as stage:
+    student = watched.Student([sys.executable, "-c", *sys.argv[1:]], stage.env)
+    try:
+        print(student.pid, stage.folder, flush=True)
+        student.wait(60.0)
+    finally:
+        student.end()
+"""
+
+
+def sleeper(seconds: int) -> list[psutil.Process]:
+    """The processes that sleep so long: the number tells whose they are."""
+    found = psutil.process_iter(["cmdline"])
+    return [p for p in found if p.info["cmdline"] == ["sleep", str(seconds)]]
+
+
+def python(code: str, *words: object) -> Student:
+    return Student([sys.executable, "-c", code, *map(str, words)], os.environ)
+
+
+@pytest.fixture(params=["own namespace", "shared namespace"])
+def namespace(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """With and without the right to make a process namespace."""
+    if request.param == "shared namespace":
+        monkeypatch.setattr(watched, "SUPERVISOR", (*UNPRIVILEGED, *watched.SUPERVISOR))
+    yield request.param
+
+
+def test_a_hidden_descendant_ends_with_the_run(namespace: str) -> None:
+    seconds = 770_000 + os.getpid() % 1000
+    student = python(HIDES, seconds, 0)
+    assert student.wait(20.0) == 0
+    assert sleeper(seconds)  # until then, what it has started may go on
+    student.end()
+    assert not sleeper(seconds)
+
+
+def test_one_run_s_end_leaves_another_alone(namespace: str) -> None:
+    first, second = 771_000 + os.getpid() % 1000, 772_000 + os.getpid() % 1000
+    with ThreadPoolExecutor(2) as pool:
+        short, long = pool.map(python, [HIDES] * 2, [first, second], [0, 1000])
+    assert long.pid
+    assert short.wait(20.0) == 0
+    read_until(long, "hidden")
+    short.end()
+    assert not sleeper(first)
+    assert sleeper(second)
+    long.end(gently=False)
+    assert not sleeper(second)
+
+
+def read_until(student: Student, text: str) -> None:
+    """Wait for what a process prints."""
+    for _ in range(1000):
+        if text in bytes(student._head).decode():
+            return
+        student.wait(0.02)
+    raise AssertionError(student.output())
+
+
+@pytest.mark.parametrize(
+    ("code", "exit_code"),
+    [
+        ("pass", 0),
+        ("raise SystemExit(3)", 3),
+        ("import os; os.kill(os.getpid(), 9)", -9),
+        ("import os; os.abort()", -6),
+    ],
+)
+def test_the_exit_code_is_the_submission_s(code: str, exit_code: int) -> None:
+    student = python(code)
+    assert student.wait(20.0) == exit_code
+    student.end()
+    assert student.poll() == exit_code
+
+
+def test_a_submission_may_clean_up_when_it_is_asked_to_end() -> None:
+    student = python(
+        "import time\ntry:\n print('up', flush=True)\n time.sleep(1000)\n"
+        "except KeyboardInterrupt: print('interrupted')\n"
+    )
+    read_until(student, "up")
+    student.end()
+    assert student.output() == "up\ninterrupted\n"
+
+
+def test_a_supervisor_that_is_killed_is_the_submission_s_end() -> None:
+    student = python("import time; time.sleep(1000)")
+    child = psutil.Process(student.pid)
+    student._process.kill()
+    assert student.wait(20.0) == -signal.SIGKILL
+    student.end()
+    assert not psutil.wait_procs([child], timeout=20)[1]
+
+
+def test_a_simulator_cannot_be_seen_by_a_submission_with_a_namespace_of_its_own() -> None:
+    if os.geteuid() != 0:
+        pytest.skip("only root is sure to get one")
+    student = python(f"import os; os.kill({os.getpid()}, 0)")
+    assert student.wait(20.0) == 1
+    student.end()
+    assert "ProcessLookupError" in student.output()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_grader_with_all_that_it_has(number: signal.Signals) -> None:
+    grader, student, folder, seconds = graded(700 + number)
+    grader.send_signal(number)
+    grader.communicate(timeout=20)
+    assert not student.is_running()
+    assert not sleeper(seconds)
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("prefix", [(), UNPRIVILEGED])
+def test_a_killed_grader_takes_its_submission_along(prefix: tuple[str, ...]) -> None:
+    grader, _, folder, seconds = graded(774, prefix)
+    family = psutil.Process(grader.pid).children(recursive=True)
+    grader.kill()
+    grader.communicate()
+    assert not psutil.wait_procs(family, timeout=20)[1]
+    assert not sleeper(seconds)
+    with scratch.make_folder():  # the next run
+        assert not folder.exists()
+
+
+def graded(
+    number: int, prefix: tuple[str, ...] = ()
+) -> tuple[subprocess.Popen[str], psutil.Process, Path, int]:
+    """A grader in the middle of its work; its submission, its folder, its hidden sleeper."""
+    seconds = number * 1000 + os.getpid() % 1000
+    grader = subprocess.Popen(
+        [*prefix, sys.executable, "-c", GRADER, HIDES, str(seconds), "1000"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        cwd=ROOT,
+    )
+    assert grader.stdout is not None
+    pid, folder = grader.stdout.readline().split()
+    for _ in range(2000):
+        if sleeper(seconds):
+            break
+    return grader, psutil.Process(int(pid)), Path(folder), seconds

@@ -1,0 +1,121 @@
+"""What surrounds the two processes of a run, whatever surrounds the grader."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.exercise.loading import Limits
+from grader.run import environment, real_time, virtual_time
+from grader.submission.opening import open_submission
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_nothing_of_the_user_s_ros_or_python_comes_along(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for name in (
+        "RMW_IMPLEMENTATION",
+        "ROS_LOCALHOST_ONLY",
+        "ROS_STATIC_PEERS",
+        "ROS_SECURITY_ENABLE",
+        "RCUTILS_CONSOLE_OUTPUT_FORMAT",
+        "CYCLONEDDS_URI",
+        "FASTRTPS_DEFAULT_PROFILES_FILE",
+        "PYTHONPATH",
+        "PYTHONSTARTUP",
+    ):
+        monkeypatch.setenv(name, "nonsense")
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    env = environment.environment(tmp_path, {"ROS_DOMAIN_ID": "50"})
+    assert "nonsense" not in env.values()
+    assert env["ROS_DOMAIN_ID"] == "50"
+    assert environment.simulator_environment(env)["PYTHONPATH"] == str(ROOT)
+
+
+def test_a_sourced_ros_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    monkeypatch.setenv("PYTHONPATH", "/opt/ros")
+    env = environment.environment(tmp_path, {})
+    assert (env["ROS_DISTRO"], env["PYTHONPATH"]) == ("jazzy", "/opt/ros")
+    assert environment.simulator_environment(env)["PYTHONPATH"] == f"{ROOT}:/opt/ros"
+
+
+MISLEADING = (
+    "turtlesim.py",
+    "numpy.py",
+    "json.py",
+    "grader/run/simulator.py",
+    "grader/__init__.py",
+)
+
+
+@pytest.mark.parametrize("time", ["virtual", "real"])
+def test_files_in_the_user_s_folder_do_not_replace_the_simulator(tmp_path: Path, time: str) -> None:
+    for name in MISLEADING:
+        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
+        (tmp_path / name).write_text("raise SystemExit('misled')\n")
+    handed_in = tmp_path / "handed_in"
+    handed_in.mkdir()
+    (handed_in / "weg_zurück.py").write_text(
+        "import os, sys\nimport rclpy\nrclpy.init()\n"
+        "print('cwd', os.path.basename(os.getcwd()), sys.argv[1:])\n"
+    )
+    code = f"""
+import sys
+sys.path.insert(0, {str(ROOT)!r})
+from pathlib import Path
+from grader.exercise.loading import Limits
+from grader.run import {time}_time
+from grader.submission.opening import open_submission
+with open_submission(Path({str(handed_in / "weg_zurück.py")!r})) as submission:
+    recording = {time}_time.run(submission, Limits(first_motion_s=1, rest_s=1, total_s=2))
+print(recording.run.outcome, recording.output)
+"""
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", code],
+        cwd=tmp_path,
+        env={
+            **os.environ,
+            "PYTHONPATH": str(tmp_path / "nowhere"),
+            "RMW_IMPLEMENTATION": "none",
+            "LC_ALL": "POSIX",
+        },
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    assert done.stdout.split() == ["exited", "cwd", "handed_in", "[]"], done.stdout + done.stderr
+
+
+LOOKS_FOR_THE_RECORDING = """
+import glob, os, time
+import rclpy
+from geometry_msgs.msg import Twist
+rclpy.init()
+publisher = rclpy.create_node("driver").create_publisher(Twist, "/turtle1/cmd_vel", 10)
+twist = Twist()
+twist.linear.x = 1.0
+publisher.publish(twist)
+folder = os.path.dirname(os.environ["TMPDIR"])
+for _ in range(20):
+    time.sleep(0.1)
+    found = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
+    found += glob.glob("/proc/self/fd/*")
+    found = [path for path in found if "recording" in os.path.realpath(path)]
+    if found:
+        print(found, flush=True)
+"""
+
+
+@pytest.mark.parametrize("clock", [virtual_time, real_time])
+def test_the_recording_is_out_of_the_submission_s_reach(tmp_path: Path, clock) -> None:
+    script = tmp_path / "looks.py"
+    script.write_text(LOOKS_FOR_THE_RECORDING)
+    with open_submission(script) as submission:
+        recording = clock.run(submission, Limits(first_motion_s=2, rest_s=0.3, total_s=9))
+    assert recording.calls("cmd_vel")
+    assert recording.output == ""

@@ -1,0 +1,297 @@
+"""A submission is found, or refused in words that a student can act on; it is never run."""
+
+import os
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from grader.errors import UsageError
+from grader.submission.folder import HAND_IN
+from grader.submission.opening import (
+    EntryPoint,
+    Script,
+    Submission,
+    SubmissionError,
+    open_submission,
+)
+
+NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
+GUARDED = NODE + '\n\nif __name__ == "__main__":\n    main()\n'
+SETUP = "setup(entry_points={'console_scripts': ['turtle_controller = spiral.node:main']})\n"
+PACKAGE = {
+    "package.xml": "",
+    "setup.py": SETUP,
+    "spiral/__init__.py": "",
+    "spiral/node.py": GUARDED,
+}
+
+
+def lay(root: Path, files: dict[str, str]) -> Path:
+    """Write files below a folder."""
+    for name, text in files.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return root
+
+
+def below(folder: str, files: dict[str, str]) -> dict[str, str]:
+    return {f"{folder}/{name}": text for name, text in files.items()}
+
+
+def pack(archive: Path, files: dict[str, str]) -> Path:
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, text in files.items():
+            packed.writestr(name, text)
+    return archive
+
+
+def found_in(path: Path, executable: str | None = None) -> Submission:
+    with open_submission(path, executable) as submission:
+        return submission
+
+
+def refused(path: Path, executable: str | None = None) -> str:
+    with pytest.raises(SubmissionError) as error, open_submission(path, executable):
+        pass
+    assert "Traceback" not in str(error.value)
+    return str(error.value)
+
+
+# one file
+
+
+def test_a_file_with_a_guard_runs_as_a_script(tmp_path: Path) -> None:
+    file = lay(tmp_path, {"turtle_controller.py": GUARDED}) / "turtle_controller.py"
+    assert found_in(file) == Submission(
+        "turtle_controller.py", tmp_path, Script(file), "file turtle_controller.py"
+    )
+
+
+def test_a_file_that_only_defines_main_is_imported_and_called(tmp_path: Path) -> None:
+    submission = found_in(lay(tmp_path, {"controller.py": NODE}) / "controller.py")
+    assert submission.start == EntryPoint("controller", "main")
+    assert submission.found == "function main of controller.py"
+
+
+@pytest.mark.parametrize("name", ["my-controller.py", "1_ctrl.py", "controller (1).py"])
+def test_a_name_that_no_import_statement_could_use_is_imported_all_the_same(
+    tmp_path: Path, name: str
+) -> None:
+    assert found_in(lay(tmp_path, {name: NODE}) / name).start == EntryPoint(name[:-3], "main")
+
+
+@pytest.mark.parametrize("name", ["controller.v2.py", "random.py"])
+def test_a_file_that_an_import_would_not_find_is_loaded_by_its_path(
+    tmp_path: Path, name: str
+) -> None:
+    assert found_in(lay(tmp_path, {name: NODE}) / name).start == Script(tmp_path / name, "main")
+
+
+def test_a_file_that_calls_main_itself_runs_as_a_script(tmp_path: Path) -> None:
+    file = lay(tmp_path, {"a.py": NODE + "\nimport sys\nsys.exit(main())\n"}) / "a.py"
+    assert found_in(file).start == Script(file)
+
+
+def test_a_file_without_main_runs_as_a_script(tmp_path: Path) -> None:
+    file = lay(tmp_path, {"a.py": "import rospy\nrospy.init_node('x')\n"}) / "a.py"
+    assert found_in(file).start == Script(file)
+
+
+@pytest.mark.parametrize(
+    "data", [b"def main(:\n", b"\0def main(): pass\n", b"# coding: klingon\n", b"x = '\xff'\n"]
+)
+def test_a_file_that_does_not_parse_is_left_to_the_interpreter(tmp_path: Path, data: bytes) -> None:
+    file = tmp_path / "a.py"
+    file.write_bytes(data)
+    assert found_in(file).start == Script(file)
+
+
+def test_the_root_is_absolute_where_the_path_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lay(tmp_path, PACKAGE)
+    monkeypatch.chdir(tmp_path)
+    assert found_in(Path("spiral/node.py")).root == tmp_path / "spiral"
+    assert found_in(Path()).root == tmp_path
+    assert found_in(Path()).name == tmp_path.name
+
+
+# folders without set-up files
+
+
+def test_nothing_of_a_submission_is_executed(tmp_path: Path) -> None:
+    files = dict(PACKAGE)
+    trap = f"open({str(tmp_path / 'executed')!r}, 'w').close()\n"
+    for name in ("setup.py", "spiral/__init__.py", "spiral/node.py"):
+        files[name] = trap + files[name]
+    found_in(lay(tmp_path / "ws", files))
+    found_in(tmp_path / "ws/spiral/node.py")
+    found_in(pack(tmp_path / "ws.zip", files))
+    assert not (tmp_path / "executed").exists()
+
+
+def test_the_only_file_that_starts_itself_is_taken_from_a_folder(tmp_path: Path) -> None:
+    lay(tmp_path, {"scripts/spiral.py": GUARDED, "scripts/geometry.py": "PI = 3\n"})
+    submission = found_in(tmp_path)
+    assert submission.start == Script(tmp_path / "scripts/spiral.py")
+    assert submission.root == tmp_path / "scripts"
+    assert submission.found == "file scripts/spiral.py"
+
+
+def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path: Path) -> None:
+    lay(tmp_path, {"a.py": GUARDED, "main.py": GUARDED})
+    assert found_in(tmp_path).start == Script(tmp_path / "main.py")
+    lay(tmp_path, {"turtle_controller.py": GUARDED})
+    assert found_in(tmp_path).start == Script(tmp_path / "turtle_controller.py")
+    assert found_in(tmp_path, "a").start == Script(tmp_path / "a.py")
+
+
+def test_several_files_to_start_are_listed(tmp_path: Path) -> None:
+    lay(tmp_path, {"a.py": GUARDED, "b.py": NODE, "helper.py": "X = 1\n"})
+    assert "several Python files to start: a.py, b.py. " in refused(tmp_path)
+    assert "no Python file c; it has: a.py, b.py" in refused(tmp_path, "c")
+
+
+def test_a_lone_file_needs_neither_guard_nor_main(tmp_path: Path) -> None:
+    lay(tmp_path, {"node.py": "import rclpy\nrclpy.init()\n", "README.md": ""})
+    assert found_in(tmp_path).start == Script(tmp_path / "node.py")
+
+
+def test_a_file_that_does_not_parse_still_counts_by_its_text(tmp_path: Path) -> None:
+    lay(tmp_path, {"node.py": "x = (\n" + GUARDED, "helper.py": "X = 1\n"})
+    assert found_in(tmp_path).start == Script(tmp_path / "node.py")
+
+
+def test_what_is_not_the_students_node_is_passed_over(tmp_path: Path) -> None:
+    others = [
+        *(".git/a.py", ".venv/a.py", "__pycache__/a.py", "__MACOSX/a.py", "._node.py"),
+        *("venv/a.py", "my_env/a.py", "build/a.py", "install/a.py", "log/a.py"),
+        *("test/a.py", "tests/a.py", "pkg/__init__.py", "x.launch.py", "launch/y_launch.py"),
+    ]
+    lay(tmp_path, dict.fromkeys(others, GUARDED) | {"my_env/pyvenv.cfg": "", "node.py": GUARDED})
+    assert found_in(tmp_path).start == Script(tmp_path / "node.py")
+
+
+# zips
+
+
+def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path: Path) -> None:
+    archive = pack(tmp_path / "alice.zip", below("hw1/ws/src/spiral", PACKAGE))
+    with open_submission(archive) as submission:
+        assert submission.name == "alice.zip"
+        assert submission.found.endswith(" in hw1/ws/src/spiral/setup.py")
+        assert (submission.root / "spiral/node.py").read_text() == GUARDED
+    assert not submission.root.exists()
+
+
+def test_a_zip_goes_away_after_an_error_in_the_run(tmp_path: Path) -> None:
+    archive = pack(tmp_path / "a.zip", {"node.py": GUARDED})
+    with (
+        pytest.raises(FileNotFoundError, match="of the run"),
+        open_submission(archive) as submission,
+    ):
+        raise FileNotFoundError("of the run")
+    assert not submission.root.exists()
+
+
+def test_a_zip_may_hold_one_file(tmp_path: Path) -> None:
+    submission = found_in(pack(tmp_path / "a.zip", {"node.py": NODE}))
+    assert submission.start == EntryPoint("node", "main")
+
+
+# refusals
+
+
+def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path: Path) -> None:
+    lay(tmp_path, {"turtle_controller.py": NODE, "notes.txt": ""})
+    text = refused(tmp_path / "turtle_controler.py")
+    assert text.endswith("does not exist. Did you mean turtle_controller.py?")
+    assert refused(tmp_path / "zzz.py").endswith("Check the name and the folder.")
+    assert "there is no folder" in refused(tmp_path / "no" / "a.py")
+
+
+def test_an_empty_folder_says_what_to_hand_in(tmp_path: Path) -> None:
+    lay(tmp_path, {".git/config": ""})
+    assert refused(tmp_path).endswith("is an empty folder. " + HAND_IN)
+
+
+def test_a_folder_without_python_lists_what_it_holds(tmp_path: Path) -> None:
+    text = refused(lay(tmp_path, {"report.pdf": "", "old.zip": "", "test/a.py": ""}))
+    assert "no Python file that could be the node (it holds: old.zip, report.pdf)" in text
+
+
+def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path: Path) -> None:
+    files = {"package.xml": "", "CMakeLists.txt": "", "src/node.cpp": "", "launch/a.launch.py": ""}
+    assert "Only Python can be graded" in refused(lay(tmp_path, files))
+    assert "Only Python can be graded" in refused(tmp_path / "src/node.cpp")
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        *(("a.tar.gz", "as a .zip"), ("a.rar", "as a .zip"), ("a.ipynb", "(.py)")),
+        *(("a.PY", "call it a.py"), ("a.txt", HAND_IN), ("README", HAND_IN)),
+    ],
+)
+def test_another_kind_of_file_says_what_to_hand_in(tmp_path: Path, name: str, advice: str) -> None:
+    text = refused(lay(tmp_path, {name: "x"}) / name)
+    assert text.startswith(f"{name} is neither a .py file, nor a folder, nor a .zip.")
+    assert advice in text
+
+
+def test_a_pipe_called_like_a_python_file_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.py")
+    assert "not an ordinary file" in refused(tmp_path / "a.py")
+
+
+@pytest.mark.parametrize("name", ["node.py", "spiral/node.py"])
+def test_an_unreadable_file_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    lay(tmp_path, {"node.py": NODE} if name == "node.py" else PACKAGE)
+    forbid(monkeypatch, tmp_path / name)
+    assert refused(tmp_path).startswith(f"{name} cannot be read: Permission denied.")
+
+
+def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
+    """Make a file unreadable, also for root."""
+    really_open: Callable[..., object] = Path.open
+
+    def open_or_not(self: Path, *args: object, **options: object) -> object:
+        if self == path:
+            raise PermissionError(13, "Permission denied", str(self))
+        return really_open(self, *args, **options)
+
+    monkeypatch.setattr(Path, "open", open_or_not)
+
+
+def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("grader.submission.opening.unpack", full)
+    archive = pack(tmp_path / "a.zip", {"node.py": NODE})
+    with pytest.raises(OSError, match="No space left"), open_submission(archive):
+        pass
+
+
+def test_a_message_has_no_control_characters(tmp_path: Path) -> None:
+    text = refused(lay(tmp_path, {"\x1b[31mred.txt": ""}))
+    assert "?[31mred.txt" in text
+
+
+def test_a_folder_with_too_many_files_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("grader.submission.folder.MAX_ENTRIES", 2)
+    assert "more than 2 files" in refused(lay(tmp_path, dict.fromkeys(("a", "b", "c"), "")))
+
+
+def test_a_refusal_is_an_error_of_the_call(tmp_path: Path) -> None:
+    with pytest.raises(UsageError), open_submission(tmp_path):
+        pass

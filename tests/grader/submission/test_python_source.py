@@ -1,0 +1,89 @@
+"""A student's file is seen as it would run, without running."""
+
+from pathlib import Path
+
+import pytest
+
+from grader.submission.python_source import Source, read_source
+
+
+def seen(tmp_path: Path, text: str) -> Source:
+    file = tmp_path / "node.py"
+    file.write_text(text)
+    return read_source(file)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'if __name__ == "__main__": run()',
+        'if "__main__" == __name__: run()',
+        'if (__name__ == "__main__") and True: run()',
+        'try:\n    pass\nfinally:\n    if __name__ == "__main__": run()',
+    ],
+)
+def test_a_guard_is_seen(tmp_path: Path, line: str) -> None:
+    assert seen(tmp_path, line).has_guard
+
+
+@pytest.mark.parametrize(
+    "line", ["# if __name__ == '__main__':", "def f():\n    if __name__ == '__main__': pass"]
+)
+def test_what_only_looks_like_a_guard_is_none(tmp_path: Path, line: str) -> None:
+    assert not seen(tmp_path, line).has_guard
+
+
+def test_only_a_main_at_module_level_counts(tmp_path: Path) -> None:
+    assert seen(tmp_path, "if True:\n    async def main(): ...").has_main
+    assert not seen(tmp_path, "class Node:\n    def main(self): ...").has_main
+
+
+@pytest.mark.parametrize("line", ["main()", "sys.exit(main())", "Thread(target=main).start()"])
+def test_a_call_of_main_is_seen(tmp_path: Path, line: str) -> None:
+    assert seen(tmp_path, line).calls_main
+    assert not seen(tmp_path, f"def other():\n    {line}").calls_main
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def main(): ...",
+        "async def main(): ...",
+        "class main: ...",
+        "main = print",
+        "a, main = 1, print",
+        "main: object = print",
+        "from a import main",
+        "from a import b as main",
+        "from a import *",
+        "if a:\n    pass\nelse:\n    main = print",
+        "with a as main: pass",
+        "def f():\n    global main\n    main = print",
+        "globals()['main'] = print",
+        "exec('main = print')",
+        "def __getattr__(name): ...",
+        "def main(:",
+    ],
+)
+def test_a_name_that_may_be_there_is_not_surely_missing(tmp_path: Path, text: str) -> None:
+    assert not seen(tmp_path, text).surely_lacks("main")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "class A:\n    def main(self): ...", "def f():\n    main = 1", "import a.main"]
+)
+def test_a_name_that_cannot_be_there_is_surely_missing(tmp_path: Path, text: str) -> None:
+    assert seen(tmp_path, text).surely_lacks("main")
+
+
+def test_definitions_come_in_the_order_of_the_file(tmp_path: Path) -> None:
+    text = "import os\nB = 1\ndef c(): ...\nif B:\n    class A: ...\n"
+    assert seen(tmp_path, text).defined == ("B", "c", "A")
+
+
+def test_a_warning_of_the_parser_is_left_to_the_run(tmp_path: Path) -> None:
+    assert seen(tmp_path, "x = '\\d'\n").parses
+
+
+def test_a_file_of_megabytes_is_not_looked_into(tmp_path: Path) -> None:
+    assert not seen(tmp_path, "#" * 1_000_001).parses

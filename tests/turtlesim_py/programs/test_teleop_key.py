@@ -1,0 +1,158 @@
+"""turtle_teleop_key on a terminal of its own, with a real simulator at the other end."""
+
+from __future__ import annotations
+
+import os
+import pty
+import signal
+import subprocess
+import termios
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+from std_srvs.srv import Empty
+from turtlesim.msg import Pose
+
+from tests.graph import Graph
+from tests.programs import DEADLINE_S, Program
+
+
+class Teleop:
+    """The program and the user's end of its terminal."""
+
+    def __init__(self, *arguments: str) -> None:
+        self._user, self._terminal = pty.openpty()
+        self.found = termios.tcgetattr(self._terminal)
+        self.program = Program(
+            "tests.shell",
+            "turtlesim_py.programs.teleop_key",
+            *arguments,
+            stdin=self._terminal,
+            stdout=self._terminal,
+        )
+
+    def close(self) -> None:
+        self.program.__exit__()
+        for end in (self._user, self._terminal):
+            os.close(end)
+
+    def wait_for_help(self) -> str:
+        """What is on the screen when the help is."""
+        shown = b""
+        while b"quit" not in shown:
+            shown += os.read(self._user, 1024)
+        return shown.decode()
+
+    def type(self, keys: str) -> None:
+        os.write(self._user, keys.encode())
+
+    def attributes(self) -> list[object]:
+        return termios.tcgetattr(self._terminal)
+
+    def shows_keys(self) -> bool:
+        return bool(termios.tcgetattr(self._terminal)[3] & termios.ECHO)
+
+
+@contextmanager
+def teleop(*arguments: str) -> Iterator[Teleop]:
+    running = Teleop(*arguments)
+    try:
+        running.wait_for_help()
+        yield running
+    finally:
+        running.close()
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + DEADLINE_S
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+
+
+def test_keys_drive_and_turn_the_turtle(graph: Graph, simulator: Program) -> None:
+    graph.call(Empty, "/reset")
+    with teleop("--ros-args", "-p", "scale_linear:=1.0", "-p", "scale_angular:=3.0") as driver:
+        # the simulator hears it, and the reverse
+        graph.until(lambda: graph.node.count_publishers("/turtle1/cmd_vel") == 1, "the driver")
+        poses = graph.listen(Pose, "/turtle1/pose")
+
+        def wait_for_speeds(linear: float, angular: float) -> None:
+            def has_them() -> bool:
+                last = poses[-1] if poses else Pose()
+                return (last.linear_velocity, last.angular_velocity) == (linear, angular)
+
+            graph.until(has_them, f"speeds {linear}, {angular}")
+
+        first = len(poses)
+
+        def drives() -> bool:
+            driver.type("\x1b[A")  # again: the first may be before the simulator listens
+            return any(pose.linear_velocity == 1.0 for pose in poses[first:])
+
+        graph.until(drives, "motion")
+        driver.type("\x1b[D")
+        wait_for_speeds(0.0, 3.0)
+        driver.type("\x1b[C")
+        wait_for_speeds(0.0, -3.0)
+        driver.type("\x1b[B")
+        wait_for_speeds(1.0, 0.0)  # the pose shows no sign
+        begin = len(simulator.lines)
+        driver.type("t")
+        simulator.wait_for_line("Rotation goal completed successfully", begin)
+        graph.until(lambda: abs(poses[-1].theta - 0.7854) < 0.03, "the heading")
+        driver.type("c")
+        graph.until(lambda: poses[-1].angular_velocity != 0.0, "another rotation")
+        driver.type("F")
+        simulator.wait_for_line("Rotation goal canceled", begin)
+        driver.type("q")
+        assert driver.program.wait() == 0
+        assert driver.attributes() == driver.found
+
+
+@pytest.mark.parametrize(
+    "end",
+    [
+        pytest.param(lambda d: d.type("\x03"), id="Ctrl-C"),
+        pytest.param(lambda d: d.program.process.send_signal(signal.SIGTERM), id="SIGTERM"),
+        pytest.param(lambda d: d.program.process.send_signal(signal.SIGHUP), id="SIGHUP"),
+    ],
+)
+def test_the_terminal_is_restored_however_it_ends(end: Callable[[Teleop], None]) -> None:
+    with teleop("--ros-args", "-r", "__ns:=/alone") as driver:
+        assert not driver.shows_keys()
+        end(driver)
+        assert driver.program.wait() == 0
+        assert driver.attributes() == driver.found
+        assert driver.program.text() == ""
+
+
+def test_ctrl_z_gives_the_terminal_back_for_the_pause() -> None:
+    with teleop("--ros-args", "-r", "__ns:=/alone") as driver:
+        for _ in range(2):
+            begin = len(driver.program.lines)
+            driver.type("\x1a")
+            driver.program.wait_for_line("stopped", begin)
+            assert driver.attributes() == driver.found
+            driver.program.process.send_signal(signal.SIGUSR1)
+            wait_until(lambda: not driver.shows_keys())
+        driver.type("q")
+        assert driver.program.wait() == 0
+        assert driver.attributes() == driver.found
+
+
+def test_it_says_where_there_is_no_simulator() -> None:
+    with teleop("--ros-args", "-r", "__ns:=/alone") as driver:
+        driver.type("g")
+        driver.program.wait_for_line("is turtlesim_node running?")
+
+
+def test_without_a_terminal_it_is_one_line_and_exit_code_2() -> None:
+    with Program("turtlesim_py.programs.teleop_key", stdin=subprocess.DEVNULL) as program:
+        assert program.wait() == 2
+        (line,) = program.lines
+        assert line == (
+            "turtle_teleop_key: standard input is not a terminal: start it in one of its own\n"
+        )

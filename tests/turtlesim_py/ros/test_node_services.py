@@ -1,0 +1,225 @@
+"""A real node's services: what they do, what they answer, what is logged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from geometry_msgs.msg import Twist, Vector3
+from PIL import Image
+from rcl_interfaces.msg import Log
+from std_srvs.srv import Empty, Trigger
+from turtlesim.msg import Color, Pose
+from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+
+from tests.graph import ROSOUT_QOS, Graph
+from tests.programs import Program
+
+#: `Log.WARN`, a byte or a number depending on who built the message.
+WARN = 30
+
+
+@pytest.fixture
+def emptied(graph: Graph, simulator: Program) -> None:
+    """The simulator with turtle1 alone."""
+    graph.call(Empty, "/reset")
+
+
+def test_the_graph_shows_the_originals_services_and_one_for_pictures(
+    graph: Graph, turtle: str
+) -> None:
+    def services() -> dict[str, list[str]]:
+        found = graph.node.get_service_names_and_types_by_node("turtlesim", "/")
+        return {name: types for name, types in found if "/_" not in name}
+
+    graph.until(lambda: f"/{turtle}/set_pen" in services(), "the turtle")
+    found = services()
+    assert found["/clear"] == found["/reset"] == ["std_srvs/srv/Empty"]
+    assert found["/spawn"] == ["turtlesim/srv/Spawn"]
+    assert found["/kill"] == ["turtlesim/srv/Kill"]
+    assert found[f"/{turtle}/set_pen"] == ["turtlesim/srv/SetPen"]
+    assert found[f"/{turtle}/teleport_absolute"] == ["turtlesim/srv/TeleportAbsolute"]
+    assert found[f"/{turtle}/teleport_relative"] == ["turtlesim/srv/TeleportRelative"]
+    assert sorted(name for name in found if name.startswith("/turtlesim/")) == [
+        "/turtlesim/describe_parameters",
+        "/turtlesim/get_parameter_types",
+        "/turtlesim/get_parameters",
+        "/turtlesim/get_type_description",
+        "/turtlesim/list_parameters",
+        "/turtlesim/save_canvas",
+        "/turtlesim/set_parameters",
+        "/turtlesim/set_parameters_atomically",
+    ]
+
+
+def test_teleports_move_the_turtle(graph: Graph, turtle: str) -> None:
+    poses = graph.listen(Pose, f"/{turtle}/pose")
+    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=2.0, y=3.0, theta=0.5)
+    graph.until(lambda: poses and (poses[-1].x, poses[-1].y) == (2.0, 3.0), "the first place")
+    graph.call(TeleportRelative, f"/{turtle}/teleport_relative", linear=1.0, angular=-0.5)
+    graph.until(lambda: (poses[-1].x, poses[-1].theta) == (3.0, 0.0), "the second place")
+
+
+def test_simultaneous_requests_of_one_service_are_executed_one_a_tick(
+    graph: Graph, turtle: str
+) -> None:
+    poses = graph.listen(Pose, f"/{turtle}/pose")
+    graph.until(lambda: poses, "a pose")
+    places = [1.0, 2.0, 3.0, 4.0]
+    asked = [
+        graph.ask(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=x, y=5.0) for x in places
+    ]
+    graph.until(lambda: all(future.done() for future in asked), "all answers")
+    graph.until(lambda: poses[-1].x == places[-1], "the last place")
+    assert [pose.x for pose in poses if pose.y == 5.0][: len(places)] == places
+
+
+def test_set_pen_changes_what_is_drawn(graph: Graph, turtle: str) -> None:
+    colors = graph.listen(Color, f"/{turtle}/color_sensor")
+    graph.call(SetPen, f"/{turtle}/set_pen", r=10, g=20, b=30, width=9, off=0)
+    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=7.0, y=5.5)
+    graph.until(lambda: colors and (colors[-1].r, colors[-1].g, colors[-1].b) == (10, 20, 30), "it")
+
+
+def test_a_spawned_turtle_is_logged_and_lives(graph: Graph, simulator: Program) -> None:
+    begin = len(simulator.lines)
+    assert graph.call(Spawn, "/spawn", x=1.5, y=2.5, theta=0.5, name="eve").name == "eve"
+    line = simulator.wait_for_line("[eve]", begin)
+    assert line.startswith("[INFO] [")
+    assert "]: Spawning turtle [eve] at x=[1.500000], y=[2.500000], theta=[0.500000]" in line
+    poses = graph.listen(Pose, "/eve/pose")
+    graph.until(lambda: poses, "a pose")
+    assert (poses[0].x, poses[0].y, poses[0].theta) == (1.5, 2.5, 0.5)
+    graph.call(Kill, "/kill", name="eve")
+
+
+@pytest.mark.usefixtures("emptied")
+def test_a_turtle_without_a_name_gets_the_next_free_number(graph: Graph) -> None:
+    assert graph.call(Spawn, "/spawn", x=1.0, y=1.0).name == "turtle2"
+    graph.call(Kill, "/kill", name="turtle1")
+    assert graph.call(Spawn, "/spawn", x=1.0, y=1.0).name == "turtle3"
+    graph.call(Empty, "/reset")
+
+
+def test_a_name_that_is_taken_is_answered_with_none(graph: Graph, simulator: Program) -> None:
+    assert graph.call(Spawn, "/spawn", x=1.0, y=1.0, name="turtle1").name == ""
+    line = simulator.wait_for_line("A turtle named [turtle1] already exists")
+    assert line.startswith("[ERROR]")
+
+
+def test_killing_nobody_is_an_error_in_the_log_only(graph: Graph, simulator: Program) -> None:
+    assert graph.call(Kill, "/kill", name="nobody") == Kill.Response()
+    line = simulator.wait_for_line("Tried to kill turtle [nobody], which does not exist")
+    assert line.startswith("[ERROR]")
+
+
+@pytest.mark.parametrize(
+    "name", ["bad name", "1abc", "a-b", "é", "~x", "a/", "/", "{nothing}", "n" * 250, "a\nb"]
+)
+def test_an_invalid_name_is_an_error_and_the_node_lives_on(
+    graph: Graph, simulator: Program, name: str
+) -> None:
+    begin = len(simulator.lines)
+    assert graph.call(Spawn, "/spawn", x=1.0, y=1.0, name=name).name == ""
+    line = simulator.wait_for_line("Cannot spawn a turtle named [", begin)
+    assert line.startswith("[ERROR]")
+    assert simulator.process.poll() is None
+
+
+@pytest.mark.parametrize(
+    ("name", "prefix"),
+    [
+        ("a/b", "/a/b"),
+        ("/abs", "/abs"),
+        ("~/x", "/turtlesim/x"),
+        ("{node}", "/turtlesim"),
+        ("_u", "/_u"),
+        ("a__b", "/a__b"),
+        ("Turtle", "/Turtle"),
+    ],
+)
+@pytest.mark.usefixtures("simulator")
+def test_every_name_that_topics_can_have_is_good(graph: Graph, name: str, prefix: str) -> None:
+    assert graph.call(Spawn, "/spawn", x=1.0, y=1.0, name=name).name == name
+    poses = graph.listen(Pose, f"{prefix}/pose")
+    graph.until(lambda: poses, "a pose")
+    graph.call(Kill, "/kill", name=name)
+
+
+def test_a_killed_turtle_leaves_the_graph(graph: Graph, simulator: Program) -> None:
+    graph.call(Spawn, "/spawn", x=1.0, y=1.0, name="gone")
+    count = graph.node.count_publishers
+    graph.until(lambda: count("/gone/pose") == 1, "the turtle")
+    graph.call(Kill, "/kill", name="gone")
+    graph.until(lambda: count("/gone/pose") == count("/gone/color_sensor") == 0, "its end")
+    graph.until(
+        lambda: "/gone" not in str(graph.node.get_service_names_and_types()), "its services' end"
+    )
+
+
+@pytest.mark.usefixtures("emptied")
+def test_reset_leaves_one_turtle_in_the_centre_and_an_empty_canvas(
+    graph: Graph, simulator: Program
+) -> None:
+    graph.call(Spawn, "/spawn", x=1.0, y=1.0, name="other")
+    graph.call(TeleportAbsolute, "/turtle1/teleport_absolute", x=1.0, y=1.0)
+    begin = len(simulator.lines)
+    graph.call(Empty, "/reset")
+    simulator.wait_for_line("Resetting turtlesim.", begin)
+    simulator.wait_for_line("Spawning turtle [turtle1] at x=[5.544445], y=[5.544445]", begin)
+    graph.until(lambda: graph.node.count_publishers("/other/pose") == 0, "the end of the other")
+    poses = graph.listen(Pose, "/turtle1/pose")
+    graph.until(lambda: poses, "a pose")
+    assert poses[-1].x == poses[-1].y == 5.544444561004639
+
+
+def test_clear_wipes_what_was_drawn(graph: Graph, simulator: Program, turtle: str) -> None:
+    colors = graph.listen(Color, f"/{turtle}/color_sensor")
+    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=7.0, y=5.5)
+    graph.until(lambda: colors and colors[-1].g == 184, "paint")
+    begin = len(simulator.lines)
+    graph.call(Empty, "/clear")
+    assert simulator.wait_for_line("Clearing turtlesim.", begin).startswith("[INFO]")
+    graph.until(lambda: colors[-1].g == 255, "none")
+
+
+def test_hitting_the_wall_warns_in_every_tick_and_on_rosout(
+    graph: Graph, simulator: Program, turtle: str
+) -> None:
+    logs: list[Log] = graph.listen(Log, "/rosout", ROSOUT_QOS)
+    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=11.0, y=5.5)
+    begin = len(simulator.lines)
+    command = Twist(linear=Vector3(x=2.0))
+    graph.publisher(Twist, f"/{turtle}/cmd_vel").publish(command)
+    text = "Oh no! I hit the wall! (Clamping from [x="
+
+    def warnings() -> list[Log]:
+        return [log for log in logs if text in log.msg]
+
+    graph.until(lambda: len(warnings()) >= 10, "ten warnings on /rosout")
+    assert {(log.level, log.name) for log in warnings()} == {(WARN, "turtlesim")}
+    assert simulator.wait_for_line(text, begin).startswith("[WARN]")
+
+
+def test_logs_go_to_stderr_and_nothing_to_stdout() -> None:
+    level = ["--log-level", "quiet.turtlesim:=debug"]
+    with Program("turtlesim_py.ros.node", "--ros-args", "-r", "__ns:=/quiet", *level) as program:
+        program.wait_for_line("Spawning turtle [turtle1]")
+        line = program.wait_for_line("[DEBUG]")
+        # The original has the namespace in these brackets, and y grows downwards.
+        assert line.endswith("[/quiet]: pos_x: 5.544445 pos_y: 5.544445 theta: 0.000000\n")
+        program.stop()
+        assert program.process.stdout is not None
+        assert program.process.stdout.read() == ""
+
+
+def test_save_canvas_writes_numbered_pictures(graph: Graph, simulator: Program) -> None:
+    first: Any = graph.call(Trigger, "/turtlesim/save_canvas")
+    second: Any = graph.call(Trigger, "/turtlesim/save_canvas")
+    assert first.success and second.success
+    paths = [Path(first.message), Path(second.message)]
+    assert [path.name for path in paths] == ["canvas_001.png", "canvas_002.png"]
+    with Image.open(paths[0]) as image:
+        assert (image.size, image.mode) == ((500, 500), "RGB")
+        assert image.getpixel((0, 0)) == (69, 86, 255)

@@ -1,0 +1,125 @@
+"""The picture as data: the topic ~/image of a real node."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+import pytest
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.time import Time
+from sensor_msgs.msg import CompressedImage, Image
+from turtlesim.srv import TeleportAbsolute
+
+from tests.graph import Graph
+from turtlesim_py.ros.node import TurtlesimNode
+from turtlesim_py.world import picture
+from turtlesim_py.world.arena import TICK_NS
+
+PEN = [179, 184, 255]
+
+
+def raw(image: Image) -> npt.NDArray[np.uint8]:
+    return np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3)
+
+
+def compressed(image: CompressedImage) -> npt.NDArray[np.uint8]:
+    with PIL.Image.open(BytesIO(bytes(image.data))) as opened:
+        return np.asarray(opened)
+
+
+@pytest.mark.parametrize(
+    ("kind", "topic", "decoded", "reliability"),
+    [
+        (Image, "image", raw, ReliabilityPolicy.RELIABLE),
+        (CompressedImage, "image/compressed", compressed, ReliabilityPolicy.BEST_EFFORT),
+    ],
+)
+@pytest.mark.usefixtures("simulator")
+def test_a_subscriber_sees_the_window(
+    graph: Graph,
+    turtle: str,
+    kind: type,
+    topic: str,
+    decoded: Callable[[Any], npt.NDArray[np.uint8]],
+    reliability: ReliabilityPolicy,
+) -> None:
+    qos = QoSProfile(depth=1, reliability=reliability)
+    images = graph.listen(kind, f"/turtlesim/{topic}", qos)
+    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=2.0, y=10.0)
+    # half way between (5.5, 5.5) and (2, 10)
+    row, column = 499 - round(7.75 * 45), round(3.75 * 45)
+    graph.until(
+        lambda: images and decoded(images[-1])[row, column].tolist() == PEN,
+        "the line that the turtle has drawn",
+    )
+    pixels = decoded(images[-1])
+    assert pixels.shape == (500, 500, 3)
+    assert pixels[0, 0].tolist() == [69, 86, 255]
+    assert images[-1].header.frame_id == "window"
+
+
+class Rate:
+    """A node in this process, told when to tick."""
+
+    def __init__(self, graph: Graph) -> None:
+        self.graph = graph
+        arguments = ["-r", "__ns:=/filmed", "-p", "image_rate:=12.5"]
+        self.node = TurtlesimNode(["--ros-args", *arguments])
+        self.ticks = 0
+
+    def tick(self, count: int) -> None:
+        for _ in range(count):
+            self.ticks += 1
+            self.node.tick(self.ticks * TICK_NS)
+
+
+@pytest.fixture
+def rate(graph: Graph) -> Iterator[Rate]:
+    rate = Rate(graph)
+    yield rate
+    rate.node.destroy_node()
+
+
+@pytest.fixture
+def renderings(monkeypatch: pytest.MonkeyPatch) -> list[None]:
+    """One entry for each picture that has been made."""
+    made: list[None] = []
+    original = picture.render
+
+    def render(*arguments: object) -> object:
+        made.append(None)
+        return original(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(picture, "render", render)
+    return made
+
+
+def test_nothing_is_rendered_while_nobody_looks(rate: Rate, renderings: list[None]) -> None:
+    rate.tick(20)
+    assert not renderings
+
+
+def test_pictures_come_at_the_rate_of_the_parameter(rate: Rate, renderings: list[None]) -> None:
+    images: list[Image] = rate.graph.listen(Image, "/filmed/turtlesim/image")
+    rate.tick(50)  # 0.8 s
+    assert len(renderings) == 10
+    rate.graph.until(lambda: len(images) == 10, "all pictures")
+    assert (images[0].encoding, images[0].step) == ("rgb8", 1500)
+    stamps = [Time.from_msg(image.header.stamp) for image in images]
+    assert stamps == sorted(stamps)
+
+
+def test_a_rate_of_zero_means_no_pictures(rate: Rate, renderings: list[None]) -> None:
+    rate.graph.listen(Image, "/filmed/turtlesim/image")
+    rate.node.set_parameters([Parameter("image_rate", value=0.0)])
+    rate.tick(20)
+    assert not renderings
+    rate.node.set_parameters([Parameter("image_rate", value=62.5)])
+    rate.tick(5)
+    assert len(renderings) == 5

@@ -1,0 +1,1 @@
+"""The original's other programs: teleop_key, draw_square, mimic."""

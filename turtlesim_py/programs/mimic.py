@@ -1,0 +1,38 @@
+"""Let one turtle do what another does: the original's mimic.
+
+mimic --ros-args -r input/pose:=turtle1/pose -r output/cmd_vel:=turtle2/cmd_vel
+"""
+
+from __future__ import annotations
+
+import sys
+
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from turtlesim.msg import Pose
+
+from turtlesim_py.ros import program
+
+
+class Mimic(Node):
+    """The node `/turtle_mimic`: the speeds of `input/pose` become commands on `output/cmd_vel`."""
+
+    def __init__(self) -> None:
+        super().__init__("turtle_mimic")
+        self._velocity = self.create_publisher(Twist, "output/cmd_vel", 1)
+        self.create_subscription(Pose, "input/pose", self._on_pose, 1)
+
+    def _on_pose(self, pose: Pose) -> None:
+        twist = Twist()
+        twist.linear.x = pose.linear_velocity
+        twist.angular.z = pose.angular_velocity
+        self._velocity.publish(twist)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run until SIGINT or SIGTERM."""
+    return program.run("mimic", Mimic, program.spin, argv)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,190 @@
+"""Serve a node the way the original does: once a tick, each ready entity at most once.
+
+rclpy's executors serve one entity for each wait set that they build, and building one costs more
+than everything else in a tick. This one keeps its wait set until the node's entities change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Coroutine
+from contextlib import suppress
+from typing import Any
+
+from rclpy.event_handler import EventHandler
+from rclpy.exceptions import InvalidHandle
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.node import Node
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.waitable import NumberOfEntities, Waitable
+
+from turtlesim_py.ros.arrivals import Doorbell
+
+#: How often it looks for what does not ring [spins]: QoS events, which bring no more than a
+#: warning in the log, and old goals that can be forgotten.
+QUIET_SPINS = 16
+
+
+class TickExecutor:
+    """Serves the subscriptions, services and waitables of one node; it has no others.
+
+    It never waits: the pacer does. It stands where rclpy's nodes keep their executor, because
+    that is what they `wake` when an entity appears or disappears.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._wait_set: Any = None
+        self._subscriptions: dict[int, Subscription] = {}
+        self._services: dict[int, Service] = {}
+        self._actions: list[Waitable] = []
+        self._events: list[Waitable] = []
+        self._spins = 0
+        self._found_something = True
+        self._doorbell: Doorbell | None = None
+        node.executor = self
+
+    def hang_doorbell(self) -> None:
+        """From now on, look for arrivals only when the doorbell has rung: much cheaper.
+
+        Only where nobody else has rcl tell him of arrivals: it has one listener for each entity.
+        """
+        with suppress(OSError):  # without rcl's libraries it looks in every spin
+            self._doorbell = Doorbell()
+        self.wake()
+
+    def spin_some(self) -> None:
+        """Take at most one message or request from every entity that has one.
+
+        In rclcpp's order: subscriptions, services, waitables (actions and QoS events), those of a
+        kind as they were created. A burst of commands is therefore consumed one a tick, as in the
+        original. Exceptions of callbacks are raised to the caller.
+        """
+        if self._wait_set is None:
+            self._collect()
+        self._spins += 1
+        waitables = self._actions
+        if self._spins % QUIET_SPINS == 0:
+            waitables = waitables + self._events
+        elif not self._something_may_have_arrived():
+            return
+        wait_set = self._polled(waitables)
+        subscriptions = wait_set.get_ready_entities("subscription")
+        services = wait_set.get_ready_entities("service")
+        ready = [waitable for waitable in waitables if waitable.is_ready(wait_set)]
+        self._found_something = bool(subscriptions or services or ready)
+        # What is not in these dictionaries belongs to an action.
+        for pointer in subscriptions:
+            if pointer in self._subscriptions:
+                _take_message(self._subscriptions[pointer])
+        for pointer in services:
+            if pointer in self._services:
+                _take_request(self._services[pointer])
+        for waitable in ready:
+            _take_data(waitable)
+
+    def _something_may_have_arrived(self) -> bool:
+        # after a look that found something: it takes one of each only, there may be more
+        return self._doorbell is None or self._found_something or self._doorbell.has_rung()
+
+    def wait_for(self, topic: str, patience_ns: int) -> None:
+        """Serve the subscription to `topic` alone, as soon as it has a message.
+
+        Waits at most so long [ns]; not at all where there is no such subscription.
+        """
+        for subscription in self._node.subscriptions:
+            if subscription.topic == topic:
+                wait_set = _rclpy.WaitSet(1, 0, 0, 0, 0, 0, self._node.context.handle)
+                wait_set.clear_entities()
+                wait_set.add_subscription(subscription.handle)
+                wait_set.wait(patience_ns)
+                _take_message(subscription)
+                return
+
+    def wake(self) -> None:
+        """The node's entities have changed."""
+        self._wait_set = None
+        self._found_something = True
+
+    def add_node(self, node: Node) -> None:
+        """Called by the node that sets this executor as its own."""
+        assert node is self._node, "this executor serves one node"
+
+    def _polled(self, waitables: list[Waitable]) -> Any:
+        """A wait set that knows what is ready now."""
+        wait_set = self._wait_set
+        # rcl forgets, in each wait, what was not ready
+        wait_set.clear_entities()
+        for subscription in self._subscriptions.values():
+            wait_set.add_subscription(subscription.handle)
+        for service in self._services.values():
+            wait_set.add_service(service.handle)
+        for waitable in waitables:
+            waitable.add_to_wait_set(wait_set)
+        wait_set.wait(0)
+        return wait_set
+
+    def _collect(self) -> None:
+        node = self._node
+        assert not [*node.timers, *node.clients, *node.guards], "not served by this executor"
+        self._subscriptions = {item.handle.pointer: item for item in node.subscriptions}
+        self._services = {item.handle.pointer: item for item in node.services}
+        self._events = [item for item in node.waitables if isinstance(item, EventHandler)]
+        self._actions = [item for item in node.waitables if item not in self._events]
+        count = NumberOfEntities()
+        for waitable in node.waitables:
+            count += waitable.get_num_entities()
+        if self._doorbell is not None:
+            for entity in (*node.subscriptions, *node.services, *self._actions):
+                self._doorbell.hang(entity)
+        self._wait_set = _rclpy.WaitSet(
+            len(self._subscriptions) + count.num_subscriptions,
+            count.num_guard_conditions,
+            count.num_timers,
+            count.num_clients,
+            len(self._services) + count.num_services,
+            count.num_events,
+            node.context.handle,
+        )
+
+
+# What a callback of the same tick has destroyed raises InvalidHandle and is left alone.
+
+
+def _take_message(subscription: Subscription) -> None:
+    try:
+        with subscription.handle:
+            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+    except InvalidHandle:
+        return
+    if taken is not None:
+        subscription.callback(taken[0])
+
+
+def _take_request(service: Service) -> None:
+    try:
+        with service.handle:
+            request, header = service.handle.service_take_request(service.srv_type.Request)
+    except InvalidHandle:
+        return
+    if header is not None:
+        response = service.callback(request, service.srv_type.Response())
+        service.send_response(response, header)
+
+
+def _take_data(waitable: Waitable) -> None:
+    try:
+        with waitable:
+            data = waitable.take_data()
+    except InvalidHandle:
+        return
+    _run(waitable.execute(data))
+
+
+def _run(coroutine: Coroutine[Any, Any, None]) -> None:
+    """Run a coroutine that never really waits: rclpy's are, where the callbacks are functions."""
+    try:
+        coroutine.send(None)
+    except StopIteration:
+        return
+    raise RuntimeError("a callback of this node awaits something")

@@ -1,0 +1,275 @@
+"""The ROS face of an arena: topics, services, action, parameters, logs."""
+
+from __future__ import annotations
+
+import gc
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+from rcl_interfaces.msg import ParameterEvent
+from rclpy.exceptions import NameValidationException
+from rclpy.expand_topic_name import expand_topic_name
+from rclpy.logging import LoggingSeverity
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.time_source import CLOCK_TOPIC, USE_SIM_TIME_NAME
+from rclpy.validate_full_topic_name import validate_full_topic_name
+from std_srvs.srv import Empty
+from turtlesim.srv import Kill, Spawn
+
+from turtlesim_py.ros import pacer, program, window
+from turtlesim_py.ros.executor import TickExecutor
+from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableParameter
+from turtlesim_py.ros.turtle_endpoints import TurtleEndpoints
+from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.events import Event, GoalFeedback, GoalResult, LogLine
+from turtlesim_py.world.floats import printf_f
+from turtlesim_py.world.parameters import BY_NAME, PARAMETERS
+from turtlesim_py.world.sprites import NAMES
+from turtlesim_py.world.turtle import Reading
+
+#: The longest name that rotate_absolute's hidden services add to a turtle's.
+LONGEST_SUFFIX = "/rotate_absolute/_action/cancel_goal"
+#: How the original listens to changes of parameters.
+PARAMETER_EVENTS_QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class TurtlesimNode(RclcppNode):
+    """The node `/turtlesim`: owns an arena and serves it; somebody else calls `tick`.
+
+    Args:
+        arguments: ROS arguments (`--ros-args ...`) of this node alone; the global ones count too.
+
+    Attributes:
+        arena: the turtles and what they have drawn.
+        tick_executor: serves the node, once in a tick.
+        follows_ros_clock: whether the time comes from /clock: the parameter `use_sim_time`.
+
+    Raises:
+        UnusableParameter: a parameter override is out of range or of the wrong type.
+        InvalidParameterTypeException: the same, for a parameter of every ROS node.
+    """
+
+    def __init__(self, arguments: list[str] | None = None) -> None:
+        super().__init__("turtlesim", cli_args=arguments)
+        for parameter in PARAMETERS:
+            low, high = parameter.low, parameter.high
+            limits = None if low is None or high is None else (low, high)
+            self.declare(parameter.name, parameter.default, parameter.description, limits)
+        sprite = self._declare_sprite()
+        window.declare_parameters(self)
+        self.get_logger().info(
+            f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
+        )
+        self.arena = Arena((self._on_event,), sprite=sprite)
+        self._window = window.Window(self, self.arena)
+        self._endpoints: dict[str, TurtleEndpoints] = {}
+        self._logs_positions = self.get_logger().is_enabled_for(LoggingSeverity.DEBUG)
+        self._last_ns = 0
+        self._set_back_ns = 0
+        self.follows_ros_clock: bool = self.get_clock().ros_time_is_active
+        self._set_time(self._now_ns())
+        self._sync_endpoints()
+        for parameter in PARAMETERS:
+            self.arena.set_parameter(parameter.name, self.get_parameter(parameter.name).value)
+        self.add_post_set_parameters_callback(self._on_parameters)
+        # The original repaints on these; here it only completes the graph.
+        self.create_subscription(
+            ParameterEvent, "/parameter_events", lambda _: None, PARAMETER_EVENTS_QOS, raw=True
+        )
+        self.create_service(Empty, "clear", self._on_clear)
+        self.create_service(Empty, "reset", self._on_reset)
+        self.create_service(Spawn, "spawn", self._on_spawn)
+        self.create_service(Kill, "kill", self._on_kill)
+        self.tick_executor = TickExecutor(self)
+
+    def destroy_node(self) -> None:
+        """Leave the graph."""
+        self._drop_endpoints(set(self._endpoints))  # rclpy forgets actions
+        super().destroy_node()
+
+    # Time -------------------------------------------------------------------------------------
+
+    def tick(self, now_ns: int | None = None) -> dict[str, Reading]:
+        """Serve what has arrived, update the turtles, publish; return what was published.
+
+        Args:
+            now_ns: the time [ns]; without it, the node's clock is asked. While that does not know
+                the time (`use_sim_time` without /clock), the turtles are not updated.
+        """
+        if not self.serve(now_ns):
+            return {}
+        readings = self.arena.tick()
+        for name, reading in readings.items():
+            self._endpoints[name].publish(reading)
+        if self._logs_positions:
+            self._log_positions()
+        self._window.publish_if_due()
+        return readings
+
+    def serve(self, now_ns: int | None = None) -> int:
+        """Serve what has arrived without an update; return the time [ns], 0 where not known."""
+        if now_ns is None:
+            now_ns = self._now_ns()
+        self._set_time(now_ns)
+        self.tick_executor.spin_some()
+        return now_ns
+
+    def hear_clock(self, patience_ns: int) -> int:
+        """Wait for a message on /clock, at most so long; return the node's time [ns]."""
+        self.tick_executor.wait_for(CLOCK_TOPIC, patience_ns)
+        return self._now_ns()
+
+    def _now_ns(self) -> int:
+        now_ns: int = self.get_clock().now().nanoseconds
+        return now_ns
+
+    def _set_time(self, now_ns: int) -> None:
+        """Tell the arena the time.
+
+        There it never goes back: commands would else keep turtles moving until a clock that was
+        set back is again where it was.
+        """
+        self._set_back_ns += max(0, self._last_ns - now_ns)
+        self._last_ns = now_ns
+        self.arena.now_ns = now_ns + self._set_back_ns
+
+    # Parameters -------------------------------------------------------------------------------
+
+    def _declare_sprite(self) -> str:
+        expected = f"one of {', '.join(NAMES)}"
+        sprite = self.declare(
+            "turtle_image",
+            "",
+            f"Picture of every turtle, {expected}; empty: a random one",
+            read_only=True,
+        )
+        if sprite and sprite not in NAMES:
+            raise UnusableParameter("turtle_image", sprite, expected)
+        return sprite
+
+    def _on_parameters(self, parameters: list[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name in BY_NAME:
+                self.arena.set_parameter(parameter.name, parameter.value)
+            elif parameter.name == USE_SIM_TIME_NAME:
+                self.follows_ros_clock = parameter.value
+
+    # Services ---------------------------------------------------------------------------------
+
+    def _on_clear(self, _: Any, response: Any) -> Any:
+        self.arena.clear()
+        return response
+
+    def _on_reset(self, _: Any, response: Any) -> Any:
+        self.arena.reset()
+        # The new turtle1 is another turtle: its topics appear anew, as in the original.
+        self._drop_endpoints(set(self._endpoints))
+        self._sync_endpoints()
+        return response
+
+    def _on_spawn(self, request: Any, response: Any) -> Any:
+        problem = self._problem_with_name(request.name)
+        if problem:
+            self.get_logger().error(f"Cannot spawn a turtle named [{request.name}]: {problem}")
+            response.name = ""
+            return response
+        response.name = self.arena.spawn(request.x, request.y, request.theta, request.name)
+        self._sync_endpoints()
+        return response
+
+    def _on_kill(self, request: Any, response: Any) -> Any:
+        self.arena.kill(request.name)
+        self._sync_endpoints()
+        return response
+
+    # Helpers ----------------------------------------------------------------------------------
+
+    def _problem_with_name(self, name: str) -> str:
+        """Why no topics can carry this turtle name; '' where they can."""
+        if not name:
+            return ""
+        try:
+            full = expand_topic_name(name + LONGEST_SUFFIX, self.get_name(), self.get_namespace())
+            validate_full_topic_name(full, is_service=True)
+        except (ValueError, NameValidationException) as error:
+            return str(error).replace("\n", " ").strip()
+        return ""
+
+    def _sync_endpoints(self) -> None:
+        """Give every turtle of the arena its endpoints and take away those of the others."""
+        self._drop_endpoints(self._endpoints.keys() - self.arena.turtles.keys())
+        for name in self.arena.turtles:
+            if name not in self._endpoints:
+                self._endpoints[name] = TurtleEndpoints(self, self.arena, name)
+
+    def _drop_endpoints(self, names: set[str]) -> None:
+        for name in names:
+            self._endpoints.pop(name).destroy()
+
+    def _on_event(self, event: Event) -> None:
+        match event:
+            case LogLine(severity, text):
+                logger = self.get_logger()
+                # One call a severity: rclpy refuses a call site that changes its severity.
+                if severity == "INFO":
+                    logger.info(text)
+                elif severity == "WARN":
+                    logger.warning(text)
+                else:
+                    logger.error(text)
+            case GoalFeedback(turtle):
+                self._endpoints[turtle].action.feedback(event)
+            case GoalResult(turtle):
+                self._endpoints[turtle].action.finish(event)
+
+    def _log_positions(self) -> None:
+        for name in sorted(self.arena.turtles):
+            turtle = self.arena.turtles[name]
+            numbers = (turtle.x_m, turtle.y_down_m, turtle.heading_rad)
+            x, y, theta = map(printf_f, numbers)
+            # In brackets stands the namespace, not the turtle: so does the original.
+            self.get_logger().debug(
+                f"[{self.get_namespace()}]: pos_x: {x} pos_y: {y} theta: {theta}"
+            )
+
+
+def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
+    """Let the clock that the node follows move the turtles until it is stopped."""
+    # What exists now stays: no search through it in the middle of a tick
+    gc.collect()
+    gc.freeze()
+    node.tick_executor.hang_doorbell()
+
+    def goes_on(follows_ros_clock: bool) -> bool:
+        return not stopped() and node.follows_ros_clock == follows_ros_clock
+
+    def tick() -> bool:
+        # the time of the node's clock, which takes ten times as long to tell it
+        node.tick(time.time_ns())
+        return goes_on(follows_ros_clock=False)
+
+    def ros_tick(now_ns: int) -> bool:
+        node.tick(now_ns)
+        return goes_on(follows_ros_clock=True)
+
+    def serve() -> bool:
+        node.serve()
+        return goes_on(follows_ros_clock=True)
+
+    while not stopped():
+        if node.follows_ros_clock:
+            pacer.follow_ros_clock(node.hear_clock, serve, ros_tick)
+        else:
+            pacer.follow_wall_clock(tick)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the simulator until SIGINT or SIGTERM; 2 where its arguments cannot be used."""
+    return program.run("turtlesim_node", TurtlesimNode, simulate, argv)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+"""The window that the original opens, as data: a picture on a topic, and in a file on request."""
+
+from __future__ import annotations
+
+from array import array
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+from numpy.typing import NDArray
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import CompressedImage, Image
+from std_srvs.srv import Trigger
+
+from turtlesim_py.ros.rclcpp_node import RclcppNode
+from turtlesim_py.world import picture
+from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.turtle import TICK_S
+
+#: Pictures a second, unless the parameter says otherwise.
+DEFAULT_RATE_HZ = 10.0
+
+
+def declare_parameters(node: RclcppNode) -> None:
+    """Declare what a `Window` on this node reads."""
+    node.declare(
+        "image_rate",
+        DEFAULT_RATE_HZ,
+        "Pictures a second on ~/image while somebody subscribes [Hz]; 0: none",
+        limits=(0.0, 1.0 / TICK_S),
+    )
+    node.declare("canvas_folder", ".", "Where save_canvas writes its pictures")
+
+
+class Window:
+    """The topics `~/image` and `~/image/compressed` and the service `~/save_canvas`.
+
+    Whoever can, takes the raw picture reliably: it is larger than what the middleware carries in
+    one piece (0.75 MB), and without repetition most of them arrive incomplete, which is not at
+    all. The compressed one (PNG, the same pixels, about 10 kB) also suits best-effort subscribers
+    and slow networks; where it stands and how it is called is the custom of image_transport.
+    """
+
+    def __init__(self, node: RclcppNode, arena: Arena) -> None:
+        self._node = node
+        self._arena = arena
+        self._rate_hz: float = node.get_parameter("image_rate").value
+        self._due_ns = 0
+        node.add_post_set_parameters_callback(self._on_parameters)
+        only_the_newest = QoSProfile(depth=1)
+        self._raw = node.create_publisher(Image, "~/image", only_the_newest)
+        self._compressed = node.create_publisher(
+            CompressedImage, "~/image/compressed", only_the_newest
+        )
+        node.create_service(Trigger, "~/save_canvas", self._on_save)
+
+    def publish_if_due(self) -> None:
+        """Send the picture if somebody looks and the last one is old enough; after each tick."""
+        late_ns = self._arena.now_ns - self._due_ns
+        if late_ns < 0 or self._rate_hz == 0.0:
+            return
+        period_ns = round(1e9 / self._rate_hz)
+        # counted from when it was due: waiting for a tick does not make pictures rarer
+        self._due_ns += period_ns if late_ns < period_ns else late_ns + period_ns
+        raw = self._raw.get_subscription_count()
+        compressed = self._compressed.get_subscription_count()
+        if not (raw or compressed):
+            return
+        pixels = self._picture()
+        if raw:
+            self._publish(self._raw, _raw_image(pixels))
+        if compressed:
+            self._publish(self._compressed, _compressed_image(pixels))
+
+    def _publish(self, publisher: Publisher, message: Image | CompressedImage) -> None:
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.header.frame_id = "window"
+        publisher.publish(message)
+
+    def _on_parameters(self, parameters: list[Parameter]) -> None:
+        for parameter in parameters:
+            if parameter.name == "image_rate":
+                self._rate_hz = parameter.value
+                self._due_ns = 0
+
+    def _on_save(self, _: Any, response: Any) -> Any:
+        folder = Path(self._node.get_parameter("canvas_folder").value).expanduser().resolve()
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            path = _next_free(folder)
+            picture.save_png(self._picture(), path)
+        except OSError as error:
+            response.success = False
+            response.message = f"cannot write the canvas to {folder}: {error.strerror}"
+        else:
+            response.success = True
+            response.message = str(path)
+        return response
+
+    def _picture(self) -> NDArray[np.uint8]:
+        arena = self._arena
+        return picture.render(arena.canvas, arena.background, arena.sprites())
+
+
+def _raw_image(pixels: NDArray[np.uint8]) -> Image:
+    height, width, channels = pixels.shape
+    image = Image(height=height, width=width, encoding="rgb8", step=width * channels)
+    # rclpy copies an array of bytes as a whole, anything else byte by byte
+    image.data = array("B", pixels.tobytes())
+    return image
+
+
+def _compressed_image(pixels: NDArray[np.uint8]) -> CompressedImage:
+    file = BytesIO()
+    PIL.Image.fromarray(pixels).save(file, format="PNG")
+    return CompressedImage(format="png", data=array("B", file.getvalue()))
+
+
+def _next_free(folder: Path) -> Path:
+    """canvas_001.png, or the first number that is not taken yet."""
+    number = 1
+    while (path := folder / f"canvas_{number:03}.png").exists():
+        number += 1
+    return path
