@@ -1,8 +1,12 @@
-"""The two ways in which grading fails without a verdict."""
+"""The ways in which grading fails without a verdict."""
 
 
 class UsageError(Exception):
     """The call, or what was handed in, cannot be used; the text says what to do (exit code 2)."""
+
+
+class RecordingError(Exception):
+    """The folder holds no recording that can be judged; the text says why."""
 
 
 class GraderFailure(Exception):

@@ -9,27 +9,25 @@ from dataclasses import replace
 from typing import Protocol
 
 from grader.errors import GraderFailure
-from grader.exercise.loading import Exercise, Limits
-from grader.recording.recording import Recording, Recordings, Start
+from grader.exercise.loading import Exercise
+from grader.recording.recording import Recording, Recordings
+from grader.run.plan import Plan
 from grader.submission.opening import Submission
 
 Progress = Callable[[float], None]
+REPEATED = "repeated, because the first try failed in the grader"
 
 
 class Runner(Protocol):
     """Runs a submission once; see `grader.run.virtual_time` and `grader.run.real_time`."""
 
     def __call__(
-        self,
-        submission: Submission,
-        limits: Limits,
-        start: Start | None = None,
-        progress: Progress | None = None,
+        self, submission: Submission, plan: Plan, progress: Progress | None = None
     ) -> Recording:
         """Return what happened."""
 
 
-def grade(
+def run_all(
     submission: Submission,
     exercise: Exercise,
     run: Runner,
@@ -46,21 +44,18 @@ def grade(
     Raises:
         GraderFailure: a run could not be made, twice.
     """
-    starts = [None, *exercise.varied.starts(seed)]
+    starts = exercise.starts(seed)
+    used = exercise.varied.seed if seed is None else seed
+    nominal_plan = Plan(exercise.limits, scene=exercise.scene, seed=used if starts else None)
+    plans = [nominal_plan, *(replace(nominal_plan, start=s, seed=None) for s in starts)]
 
-    def run_from(start: Start | None) -> Recording:
-        show = progress if start is None else None
+    def run_twice_at_most(plan: Plan) -> Recording:
+        show = progress if plan is nominal_plan else None
         try:
-            recording = run(submission, exercise.limits, start, show)
+            return run(submission, plan, show)
         except GraderFailure:
-            recording = run(submission, exercise.limits, start, show)
-            flags = (*recording.run.flags, "repeated, because the first try failed in the grader")
-            recording = replace(recording, run=replace(recording.run, flags=flags))
-        return recording
+            return run(submission, replace(plan, flags=(REPEATED,)), show)
 
-    with ThreadPoolExecutor(max_workers=min(len(starts), max(2, os.cpu_count() or 1))) as pool:
-        nominal, *varied = pool.map(run_from, starts)
-    if varied:
-        used = exercise.varied.seed if seed is None else seed
-        nominal = replace(nominal, run=replace(nominal.run, seed=used))
+    with ThreadPoolExecutor(max_workers=min(len(plans), max(2, os.cpu_count() or 1))) as pool:
+        nominal, *varied = pool.map(run_twice_at_most, plans)
     return Recordings(nominal, tuple(varied))

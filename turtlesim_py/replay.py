@@ -2,24 +2,43 @@
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import Any
 
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.canvas import Canvas
-from turtlesim_py.world.events import Event, GoalFeedback, GoalResult, LogLine
-from turtlesim_py.world.floats import float32
+from turtlesim_py.world.events import (
+    KINDS,
+    Cancel,
+    Clear,
+    CmdVel,
+    Event,
+    EventError,
+    GoalId,
+    Kill,
+    Reset,
+    RotateAbsolute,
+    SetParameter,
+    SetPen,
+    Snapshot,
+    SnapshotNow,
+    Spawn,
+    TeleportAbsolute,
+    TeleportRelative,
+    from_json,
+)
+from turtlesim_py.world.floats import float32, json_number
+from turtlesim_py.world.notices import GoalFeedback, GoalResult, LogLine, Notice
 from turtlesim_py.world.parameters import BY_NAME, refusal
+from turtlesim_py.world.trajectory import COLUMNS
 from turtlesim_py.world.turtle import METER_PX, SIZE_M, TICK_S
 
-COLUMNS = ["tick", "x", "y", "theta", "linear_velocity", "angular_velocity", "r", "g", "b"]
 INTERNAL_COLUMNS = ["tick", "pos_x", "pos_y_down", "orient", "lin_vel_x", "lin_vel_y", "ang_vel"]
 #: Where the things of one tick stand in a recording: a goal's result reaches its client last.
 ACTION_ORDER = {"accepted": 0, "cancel_response": 0, "feedback": 1, "result": 2}
 #: Inputs that reach a turtle, if it is there.
-_TURTLE_OPS = {"cmd_vel", "set_pen", "teleport_absolute", "teleport_relative", "rotate_absolute"}
+TO_TURTLE = (CmdVel, SetPen, TeleportAbsolute, TeleportRelative, RotateAbsolute)
 #: What a cancel request answers for a goal that is not running any more.
 ERROR_GOAL_TERMINATED = 3
 
@@ -41,14 +60,6 @@ class Replay:
     result: dict[str, Any]
     arena: Arena
     snapshots: dict[str, Canvas] = field(default_factory=dict)
-
-
-def number(value: float, digits: int = 9) -> float | int | str:
-    """A value as the recordings write it: `digits` significant digits, NaN and inf as strings."""
-    if not math.isfinite(value):
-        return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
-    rounded = float(f"{value:.{digits}g}")
-    return int(rounded) if rounded.is_integer() and abs(rounded) < 1e15 else rounded
 
 
 def replay(scenario: dict[str, Any]) -> Replay:
@@ -85,70 +96,80 @@ class _Player:
                 self._take(index, event)
             self._advance()
             for _, event in by_tick[tick]:
-                if event["op"] == "snapshot":
-                    self._snapshot(event)
+                if isinstance(event, Snapshot):
+                    self._keep_drawing(event.name)
         return Replay(self._result(), self.arena, self.snapshots)
 
-    def _events_by_tick(self) -> dict[int, list[tuple[int, dict[str, Any]]]]:
+    def _events_by_tick(self) -> dict[int, list[tuple[int, Event]]]:
         ticks, events = self.scenario.get("ticks"), self.scenario.get("events", [])
         if type(ticks) is not int or ticks < 0 or not isinstance(events, list):
             raise ScenarioError(
                 "a scenario needs 'ticks', a whole number from 0, and 'events', a list"
             )
-        by_tick: dict[int, list[tuple[int, dict[str, Any]]]] = defaultdict(list)
-        for index, event in enumerate(events):
-            tick = event.get("tick") if isinstance(event, dict) else None
+        by_tick: dict[int, list[tuple[int, Event]]] = defaultdict(list)
+        for index, words in enumerate(events):
+            tick = words.get("tick") if isinstance(words, dict) else None
             if type(tick) is not int or not 1 <= tick <= ticks:
                 raise ScenarioError(
                     f"event {index}: 'tick' must be from 1 to {ticks}, found {tick!r}"
                 )
-            by_tick[tick].append((index, event))
+            try:
+                by_tick[tick].append((index, from_json(words)))
+            except EventError as error:
+                known = f", {words['op']}" if words.get("op") in KINDS else ""
+                raise ScenarioError(f"event {index} (tick {tick}{known}): {error}") from None
         return by_tick
 
-    def _take(self, index: int, event: dict[str, Any]) -> None:
-        op = event.get("op")
-        handler = getattr(self, f"_on_{op}", None)
-        if handler is None:
-            raise ScenarioError(f"event {index} (tick {self.tick}): unknown op {op!r}")
+    def _take(self, index: int, event: Event) -> None:
         # Nobody listens on the topics and services of a turtle that is not there.
-        turtle = event.get("turtle", "turtle1")
-        if op in _TURTLE_OPS and turtle not in self.arena.turtles:
+        if isinstance(event, TO_TURTLE) and event.turtle not in self.arena.turtles:
             return
         try:
-            answer = handler(event, turtle)
-        except KeyError as missing:
-            raise ScenarioError(
-                f"event {index} (tick {self.tick}, {op}): no field {missing}"
-            ) from None
-        except (TypeError, ValueError) as error:
-            raise ScenarioError(f"event {index} (tick {self.tick}, {op}): {error}") from None
+            answer = self._input(event)
+        except ValueError as error:
+            where = f"event {index} (tick {self.tick}, {event.op})"
+            raise ScenarioError(f"{where}: {error}") from None
         if answer is not None:
             self.responses.append({"tick": self.tick, "event": index, **answer})
 
-    def _on_cmd_vel(self, event: dict[str, Any], turtle: str) -> None:
-        lx, ly, lz = map(float, event["linear"])
-        ax, ay, az = map(float, event["angular"])
-        self.arena.command(turtle, (lx, ly, lz), (ax, ay, az))
+    def _input(self, event: Event) -> dict[str, Any] | None:
+        """Hand an event to the arena; what its caller hears, if anything."""
+        arena = self.arena
+        match event:
+            case CmdVel():
+                arena.command(event.turtle, event.linear, event.angular)
+            case SetPen(turtle=turtle, r=r, g=g, b=b, width=width, off=off):
+                arena.set_pen(turtle, r, g, b, width, off)
+            case TeleportAbsolute(turtle=turtle):
+                place = (float32(value) for value in (event.x, event.y, event.theta))
+                arena.teleport_absolute(turtle, *place)
+            case TeleportRelative(turtle=turtle, linear=linear, angular=angular):
+                arena.teleport_relative(turtle, float32(linear), float32(angular))
+            case RotateAbsolute():
+                self._rotate(event)
+            case Cancel():
+                return self._cancel(event.id)
+            case Spawn():
+                name = arena.spawn(event.x, event.y, event.theta, event.name)
+                return {"response": {"callback_return": bool(name), "name": name}}
+            case Kill(name=name):
+                return {"response": {"callback_return": arena.kill(name)}}
+            case Clear():
+                arena.clear()
+            case Reset():
+                arena.reset()
+            case SetParameter():
+                return {"response": self._set_parameter(event)}
+            case SnapshotNow(name=name):
+                self._keep_drawing(name)
+        return None
 
-    def _on_set_pen(self, event: dict[str, Any], turtle: str) -> None:
-        self.arena.set_pen(turtle, *(int(event[k]) for k in ("r", "g", "b", "width", "off")))
+    def _rotate(self, event: RotateAbsolute) -> None:
+        self._act(event.id, "accepted")
+        self.known_goals.add(event.id)
+        self.arena.rotate_absolute(event.turtle, float32(event.theta), event.id)
 
-    def _on_teleport_absolute(self, event: dict[str, Any], turtle: str) -> None:
-        x, y, theta = (float32(float(event[k])) for k in ("x", "y", "theta"))
-        self.arena.teleport_absolute(turtle, x, y, theta)
-
-    def _on_teleport_relative(self, event: dict[str, Any], turtle: str) -> None:
-        linear, angular = (float32(float(event[k])) for k in ("linear", "angular"))
-        self.arena.teleport_relative(turtle, linear, angular)
-
-    def _on_rotate_absolute(self, event: dict[str, Any], turtle: str) -> None:
-        goal_id = event["id"]
-        self._act(goal_id, "accepted")
-        self.known_goals.add(goal_id)
-        self.arena.rotate_absolute(turtle, float32(float(event["theta"])), goal_id)
-
-    def _on_cancel(self, event: dict[str, Any], _: str) -> dict[str, Any] | None:
-        goal_id = event["id"]
+    def _cancel(self, goal_id: GoalId) -> dict[str, Any] | None:
         if goal_id not in self.known_goals:
             return {"client_exception": "Goal handle is not known to this client."}
         running = self.arena.cancel(goal_id)
@@ -156,59 +177,37 @@ class _Player:
         self._act(goal_id, "cancel_response", return_code=code, goals_canceling=int(running))
         return None
 
-    def _on_spawn(self, event: dict[str, Any], _: str) -> dict[str, Any]:
-        x, y, theta = (float(event[k]) for k in ("x", "y", "theta"))
-        name = self.arena.spawn(x, y, theta, event["name"])
-        return {"response": {"callback_return": bool(name), "name": name}}
-
-    def _on_kill(self, event: dict[str, Any], _: str) -> dict[str, Any]:
-        return {"response": {"callback_return": self.arena.kill(event["name"])}}
-
-    def _on_clear(self, _event: dict[str, Any], _: str) -> None:
-        self.arena.clear()
-
-    def _on_reset(self, _event: dict[str, Any], _: str) -> None:
-        self.arena.reset()
-
-    def _on_param(self, event: dict[str, Any], _: str) -> dict[str, Any]:
-        name = event["name"]
-        value: Any = float(event["value"]) if event.get("double") else event["value"]
-        if name not in BY_NAME:
-            text = f"parameter '{name}' cannot be set because it was not declared"
-            return {"response": {"exception": text}}
-        reason = refusal(BY_NAME[name], value)
+    def _set_parameter(self, event: SetParameter) -> dict[str, Any]:
+        if event.name not in BY_NAME:
+            text = f"parameter '{event.name}' cannot be set because it was not declared"
+            return {"exception": text}
+        reason = refusal(BY_NAME[event.name], event.value)
         if not reason:
-            self.arena.set_parameter(name, value)
-        return {"response": {"successful": not reason, "reason": reason}}
+            self.arena.set_parameter(event.name, event.value)  # type: ignore[arg-type]
+        return {"successful": not reason, "reason": reason}
 
-    def _on_snapshot(self, event: dict[str, Any], _: str) -> None:
-        """Taken after the tick; see play."""
-
-    def _on_snapshot_now(self, event: dict[str, Any], _: str) -> None:
-        self._snapshot(event)
-
-    def _snapshot(self, event: dict[str, Any]) -> None:
-        self.snapshots[event["name"]] = self.arena.canvas.copy()
+    def _keep_drawing(self, name: str) -> None:
+        self.snapshots[name] = self.arena.canvas.copy()
 
     def _advance(self) -> None:
         for name, ((*pose,), color) in self.arena.tick().items():
             turtle = self.arena.turtles[name]
-            self.published[name].append([self.tick, *map(number, pose), *color])
+            self.published[name].append([self.tick, *map(json_number, pose), *color])
             inside = (turtle.x_m, turtle.y_down_m, turtle.heading_rad)
             speeds = (turtle.lin_x, turtle.lin_y, turtle.ang)
-            self.internal[name].append([self.tick, *(number(v, 17) for v in inside + speeds)])
+            self.internal[name].append([self.tick, *(json_number(v, 17) for v in inside + speeds)])
         for entry in self.action:
             if entry["type"] == "result":
                 self.known_goals.discard(entry["id"])
 
-    def _listen(self, event: Event) -> None:
-        match event:
+    def _listen(self, notice: Notice) -> None:
+        match notice:
             case LogLine(severity, text):
                 self.logs.append([self.tick, severity, "turtlesim", text])
             case GoalFeedback(_, goal_id, remaining):
-                self._act(goal_id, "feedback", remaining=number(remaining))
+                self._act(goal_id, "feedback", remaining=json_number(remaining))
             case GoalResult(_, goal_id, status, delta):
-                self._act(goal_id, "result", status=status, delta=number(delta))
+                self._act(goal_id, "result", status=status, delta=json_number(delta))
 
     def _act(self, goal_id: Any, kind: str, **more: Any) -> None:
         self.action.append({"tick": self.tick, "id": goal_id, "type": kind, **more})
@@ -218,7 +217,7 @@ class _Player:
         return {
             "scenario": self.scenario,
             "tick_seconds": TICK_S,
-            "columns": COLUMNS,
+            "columns": list(COLUMNS),
             "published": dict(self.published),
             "internal_columns": INTERNAL_COLUMNS,
             "internal": dict(self.internal),
@@ -226,7 +225,7 @@ class _Player:
             "action": self.action,
             "logs": self.logs,
             "turtles_at_end": sorted(self.arena.turtles),
-            "meter": number(METER_PX),
-            "width_in_meters": number(SIZE_M),
-            "height_in_meters": number(SIZE_M),
+            "meter": json_number(METER_PX),
+            "width_in_meters": json_number(SIZE_M),
+            "height_in_meters": json_number(SIZE_M),
         }

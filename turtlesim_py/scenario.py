@@ -28,6 +28,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from turtlesim_py.png import save_png
 from turtlesim_py.replay import Replay, ScenarioError, replay
 from turtlesim_py.world import picture
 
@@ -76,10 +77,10 @@ def write(outcome: Replay, folder: Path) -> list[Path]:
         *((canvas, f"{snapshot}.path") for snapshot, canvas in outcome.snapshots.items()),
     ]:
         written.append(folder / f"{name}.{suffix}.png")
-        canvas.save_png(written[-1])
+        save_png(canvas.rgba(), written[-1])
     written.append(folder / f"{name}.png")
     arena = outcome.arena
-    picture.save_png(picture.render(arena.canvas, arena.background, arena.sprites()), written[-1])
+    save_png(picture.render(arena.canvas, arena.background, arena.sprites()), written[-1])
     return written
 
 

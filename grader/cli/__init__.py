@@ -14,8 +14,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from grader.cli import check, new, report, run
-from grader.errors import GraderFailure, UsageError
-from grader.recording.recording import RecordingError
+from grader.errors import GraderFailure, RecordingError, UsageError
 from grader.run.processes import watched
 from grader.submission.opening import SubmissionError
 

@@ -11,8 +11,7 @@ from rich.console import Console
 from grader.cli.run import points
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
-from grader.recording.folder import WINDOW_PICTURE
-from grader.recording.recording import load_all
+from grader.recording.folder import WINDOW_PICTURE, load_all
 from grader.reports import terminal
 from grader.result import result as results
 

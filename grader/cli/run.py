@@ -16,12 +16,14 @@ from grader.cli.watch import each_save
 from grader.errors import GraderFailure, UsageError
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
-from grader.grading import Runner, grade
+from grader.grading import Runner, run_all
+from grader.recording import folder
 from grader.recording.recording import Recordings
 from grader.reports import terminal
 from grader.result import result as results
 from grader.result.result import Result
 from grader.run import real_time, virtual_time
+from grader.scenes import load_scene
 from grader.submission.opening import open_submission
 
 RUNNERS: dict[str, Runner] = {"real": real_time.run, "virtual": virtual_time.run}
@@ -85,7 +87,7 @@ def _grade(args: argparse.Namespace) -> int:
         _prepare(out, args.json)
         messages.print(f"Running it beside a simulator, in {args.time} time ...")
         with progress.shown(messages, "running") as show:
-            recordings = grade(
+            recordings = run_all(
                 submission, exercise, RUNNERS[args.time], seed=args.seed, progress=show
             )
         name = submission.name
@@ -132,8 +134,10 @@ def _prepare(out: Path, copy: Path | None) -> None:
 
 def _write(recordings: Recordings, out: Path) -> dict[str, str]:
     """Write everything but the result; name -> path relative to it."""
-    recordings.save(out / "recording")
-    Image.fromarray(recordings.nominal.window).save(out / "canvas.png")
+    folder.save_all(recordings, out / "recording")
+    scene = load_scene(recordings.nominal.scene)
+    window = scene.pictures(recordings.nominal.trace).window
+    Image.fromarray(window).save(out / "canvas.png")
     (out / "output.txt").write_text(recordings.nominal.output, encoding="utf-8")
     return {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
 

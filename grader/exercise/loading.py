@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import math
-import random
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -15,19 +14,11 @@ import yaml
 
 from grader.errors import UsageError
 from grader.exercise.check import Checks
-from grader.recording.recording import Start
-from turtlesim_py.world.turtle import SIZE_M
+from grader.scenes import NAMES as SCENES
+from grader.scenes import load_scene
+from grader.scenes.scene import Limits, Start
 
 DEFAULT = "turtlesim_challenge"
-
-
-@dataclass(frozen=True)
-class Limits:
-    """When a run ends, in simulated seconds."""
-
-    first_motion_s: float
-    rest_s: float
-    total_s: float
 
 
 @dataclass(frozen=True)
@@ -38,18 +29,6 @@ class VariedRuns:
     seed: int = 0
     nearest_m: float = 0.0
     farthest_m: float = 0.0
-
-    def starts(self, seed: int | None = None) -> list[Start]:
-        """Where they start; the same for the same seed."""
-        chance = random.Random(self.seed if seed is None else seed)
-        starts = []
-        for _ in range(self.count):
-            distance = chance.uniform(self.nearest_m, self.farthest_m)
-            angle = chance.uniform(-math.pi, math.pi)
-            x, y = (SIZE_M / 2 + distance * f(angle) for f in (math.cos, math.sin))
-            theta = chance.uniform(-math.pi, math.pi)
-            starts.append(Start(round(x, 3), round(y, 3), round(theta, 3)))
-        return starts
 
 
 @dataclass(frozen=True)
@@ -64,6 +43,7 @@ class Exercise:
         points: check name -> points, in the order of the report.
         tolerances: what the checks may read; their names are the checks' own business.
         checks: the exercise's check functions.
+        scene: the name of what runs beside the submission.
     """
 
     name: str
@@ -73,6 +53,19 @@ class Exercise:
     points: Mapping[str, float]
     tolerances: Mapping[str, Any]
     checks: Checks
+    scene: str = "turtlesim"
+
+    @property
+    def max_score(self) -> float:
+        """The sum of all points."""
+        return round(sum(self.points.values()), 2)
+
+    def starts(self, seed: int | None = None) -> list[Start]:
+        """Where the varied runs start; None takes the exercise's own seed."""
+        varied = self.varied
+        used = varied.seed if seed is None else seed
+        scene = load_scene(self.scene)
+        return scene.starts(varied.count, used, varied.nearest_m, varied.farthest_m)
 
 
 def names() -> list[str]:
@@ -173,6 +166,9 @@ def _build(data: dict[str, Any]) -> Exercise:
             )
         if not _is_amount(value):
             raise ExerciseError(f"points: {check}: expected a number from 0, found {value!r}")
+    scene = data.get("scene", "turtlesim")
+    if scene not in SCENES:
+        raise ExerciseError(f"scene: expected one of {', '.join(SCENES)}, found {scene!r}")
     return Exercise(
         name=name,
         title=str(data["title"]),
@@ -181,4 +177,5 @@ def _build(data: dict[str, Any]) -> Exercise:
         points={check: float(value) for check, value in points.items()},
         tolerances=data.get("tolerances", {}),
         checks=checks,
+        scene=scene,
     )

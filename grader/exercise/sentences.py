@@ -6,17 +6,8 @@ import re
 from pathlib import PurePath
 
 from grader.recording.recording import Recording
-from turtlesim_py.world.turtle import TICK_S
+from grader.scenes import load_scene
 
-#: Calls that change the arena other than by driving, and what they do.
-_INTERVENTIONS = {
-    "teleport_absolute": "it moves a turtle without driving",
-    "teleport_relative": "it moves a turtle without driving",
-    "spawn": "it adds a turtle",
-    "kill": "it removes a turtle",
-    "reset": "it starts the arena anew",
-    "clear": "it wipes the drawing",
-}
 _FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
 
@@ -55,16 +46,8 @@ def remarks(recording: Recording) -> list[str]:
     found = []
     if recording.run.outcome == "crashed":
         found.append(how_it_ended(recording).strip())
-    for op, effect in _INTERVENTIONS.items():
-        calls = [event for event in recording.events if event["op"] == op]
-        if calls:
-            first = calls[0]["tick"] * TICK_S
-            times = "once" if len(calls) == 1 else f"{len(calls)} times"
-            found.append(f"The node called {op} {times}, first at {first:.2f} s: {effect}.")
-    if any(topic["topic"] == "/turtle1/pose" for topic in recording.topics):
-        found.append(
-            "The node published on /turtle1/pose itself. Judged is where the turtle really was."
-        )
+    published = [topic.topic for topic in recording.topics]
+    found += load_scene(recording.scene).remarks(recording.trace, published)
     return found
 
 

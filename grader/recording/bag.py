@@ -1,43 +1,37 @@
 """A recording as a rosbag2: real ROS messages in an MCAP file, and back. No ROS is needed.
 
-| topic | type | one message is |
-|---|---|---|
-| /NAME/pose | turtlesim/msg/Pose | what turtle NAME published in a tick |
-| /NAME/color_sensor | turtlesim/msg/Color | ... and the colour under it |
-| /NAME/cmd_vel | geometry_msgs/msg/Twist | a velocity command that reached it |
-| /turtlesim/events | std_msgs/msg/String | any other input: a scenario event as JSON |
-| /rosout | rcl_interfaces/msg/Log | a line of the simulator's log |
-| /turtlesim/path | sensor_msgs/msg/Image | at the end: what the pens drew, rgba8 |
-| /turtlesim/window | sensor_msgs/msg/Image | at the end: the original's window, rgb8 |
+Which topics hold what is told by the scene: `grader.scenes.turtlesim.messages`.
 
-A message's time is its tick times 16 ms, counted from the start of the run: the turtle's own time.
-A date would be the only thing in the bag that differs between equal runs. Messages of one tick have
-equal times and stand in the file in the order in which they happened.
+A message's time is its tick times the tick's length, counted from the start of the run: the scene's
+own time. A date would be the only thing in the bag that differs between equal runs. Messages of one
+tick have equal times and stand in the file in the order in which they happened.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
-from grader.recording.messages import POSE, Contents, Item, contents, items, store, topics
-from grader.recording.recording import Recording, RecordingError
-from turtlesim_py.world.arena import TICK_NS
+from grader.errors import RecordingError
+from grader.scenes.scene import Message, Scene, Trace
 
 METADATA = "metadata.yaml"
 
 
-def write(recording: Recording, folder: Path) -> Path:
+def write(trace: Trace, scene: Scene, folder: Path) -> Path:
     """Write a bag; returns its .mcap, which is named like the folder. Last comes `METADATA`.
 
-    The same recording gives the same bytes.
+    The same trace gives the same bytes.
 
     Raises:
         OSError: it cannot be written, e.g. because the disk is full.
     """
-    types = store()
+    types = _store(scene.message_definitions())
     writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
     # Chunks inside the file: 0.2 MB instead of 2 MB a run, and every reader of MCAP can unpack it.
     writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
@@ -50,39 +44,47 @@ def write(recording: Recording, folder: Path) -> Path:
         return connections[topic]
 
     with writer:
-        for turtle in recording.published:  # also those without a row, and all in this order
-            for topic, msgtype in topics(turtle).items():
-                connection(topic, msgtype)
-        for tick, topic, msgtype, message in items(recording):
+        for topic, msgtype in scene.bag_topics(trace):
+            connection(topic, msgtype)
+        for tick, topic, msgtype, message in scene.to_messages(trace):
             data = types.serialize_cdr(message, msgtype, little_endian=True)
-            writer.write(connection(topic, msgtype), tick * TICK_NS, data)
+            writer.write(connection(topic, msgtype), tick * scene.tick_ns, data)
     return folder / f"{folder.name}.mcap"
 
 
-def read(folder: Path) -> Contents:
-    """Read a bag that `write` has written.
+def read(folder: Path, scene: Scene, ticks: int) -> Trace:
+    """Read a bag that `write` has written; `ticks` is how many were recorded.
 
     Raises:
         RecordingError: it is damaged, or is another one.
     """
-    types = store()
+    types = _store(scene.message_definitions())
     try:
         with Reader(folder) as reader:
-            turtles = [
-                c.topic.removeprefix("/").removesuffix("/pose")
-                for c in reader.connections
-                if c.msgtype == POSE
-            ]
+            topics = {c.topic: c.msgtype for c in reader.connections}
             found = [
-                Item(time_ns // TICK_NS, c.topic, c.msgtype, types.deserialize_cdr(data, c.msgtype))
+                Message(
+                    time_ns // scene.tick_ns,
+                    c.topic,
+                    c.msgtype,
+                    types.deserialize_cdr(data, c.msgtype),
+                )
                 for c, time_ns, data in reader.messages()
             ]
     except Exception as error:  # where a bag is damaged, rosbags may raise anything
         raise RecordingError(f"cannot read the bag in {folder}: {_brief(error)}") from error
     try:
-        return contents(found, turtles)
+        return scene.from_messages(found, topics, ticks)
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise RecordingError(f"the bag in {folder} holds no recording: {_brief(error)}") from error
+
+
+def _store(definitions: Mapping[str, str]) -> Typestore:
+    """The types of ROS 2 Jazzy and the scene's own."""
+    types = get_typestore(Stores.ROS2_JAZZY)
+    for msgtype, text in definitions.items():
+        types.register(get_types_from_msg(text, msgtype))
+    return types
 
 
 def _brief(error: Exception) -> str:

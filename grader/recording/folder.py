@@ -29,14 +29,19 @@ from typing import Any
 import jsonschema
 from PIL import Image
 
+from grader.errors import RecordingError
 from grader.recording import bag
-from grader.recording.recording import Recording, RecordingError, Recordings, Run, Start
+from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
+from grader.scenes import load_scene
+from grader.scenes.scene import Scene, Start
 
 SCHEMA = "turtlesim-grader/recording/v2"
 NAME = "recording"
 BAG, METADATA, RUN, OUTPUT = f"{NAME}.mcap", bag.METADATA, "run.json", "output.txt"
 CIRCUMSTANCES_FILE, SCENARIO = "circumstances.json", "scenario.json"
 PATH_PICTURE, WINDOW_PICTURE = "path.png", "window.png"
+#: The scene of a recording that names none.
+FIRST_SCENE = "turtlesim"
 #: In the order in which they come into the folder.
 FILES = (BAG, RUN, OUTPUT, CIRCUMSTANCES_FILE, SCENARIO, PATH_PICTURE, WINDOW_PICTURE, METADATA)
 #: What of a `Run` is chance: the same run on another day has others.
@@ -118,7 +123,8 @@ def _withdraw(folder: Path) -> None:
 
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
-    mcap = bag.write(recording, folder)
+    scene = load_scene(recording.scene)
+    mcap = bag.write(recording.trace, scene, folder)
     run = asdict(recording.run)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     facts = {
@@ -126,23 +132,21 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
         "bag_sha256": _sha256(mcap),
         "varied_runs": varied_runs,
         "start": asdict(recording.start) if recording.start else None,
-        "topics": recording.topics,
+        "topics": [asdict(topic) for topic in recording.topics],
         "run": run,
     }
+    if recording.scene != FIRST_SCENE:
+        facts["scene"] = recording.scene
     _write_json(folder / RUN, facts)
     _write_json(folder / CIRCUMSTANCES_FILE, circumstances)
     # Bytes: a student's line ends stay as they are.
     (folder / OUTPUT).write_bytes(recording.output.encode("utf-8", "surrogatepass"))
-    Image.fromarray(recording.canvas).save(folder / PATH_PICTURE)
-    Image.fromarray(recording.window).save(folder / WINDOW_PICTURE)
+    pictures = scene.pictures(recording.trace)
+    for name, pixels in {"window": pictures.window, **pictures.others}.items():
+        Image.fromarray(pixels).save(folder / f"{name}.png")
     if recording.start is None:  # a scenario cannot put the turtle elsewhere without a stroke
-        _write_json(folder / SCENARIO, _scenario(recording), indent=None)
-
-
-def _scenario(recording: Recording) -> dict[str, Any]:
-    ticks = recording.run.ticks
-    events = [event for event in recording.events if 1 <= event["tick"] <= ticks]
-    return {"name": NAME, "description": "a graded run", "ticks": ticks, "events": events}
+        scenario = {"name": NAME, "description": "a graded run", **scene.scenario(recording.trace)}
+        _write_json(folder / SCENARIO, scenario, indent=None)
 
 
 def _write_json(path: Path, data: dict[str, Any], indent: int | None = 2) -> None:
@@ -199,14 +203,22 @@ def _load(folder: Path, facts: dict[str, Any]) -> Recording:
         raise RecordingError(
             f"{folder / BAG} is damaged: it is cut off or was changed since it was saved"
         )
-    contents = bag.read(folder)
+    scene = _scene(folder, facts.get("scene", FIRST_SCENE))
     return Recording(
-        **contents._asdict(),
-        topics=tuple(facts["topics"]),
-        output=output,
+        trace=bag.read(folder, scene, run.ticks),
         run=run,
+        topics=tuple(PublishedTopic(**topic) for topic in facts["topics"]),
+        output=output,
         start=Start(**facts["start"]) if facts["start"] else None,
+        scene=scene.name,
     )
+
+
+def _scene(folder: Path, name: str) -> Scene:
+    try:
+        return load_scene(name)
+    except KeyError as error:
+        raise RecordingError(f"{folder} cannot be read: {error.args[0]}") from None
 
 
 def _read_json(path: Path) -> dict[str, Any]:
@@ -227,5 +239,5 @@ def _sha256(path: Path) -> str:
 
 @cache
 def _validator() -> jsonschema.Draft202012Validator:
-    text = (files("grader.recording") / "recording.schema.json").read_text(encoding="utf-8")
+    text = (files(__package__) / "recording.schema.json").read_text(encoding="utf-8")
     return jsonschema.Draft202012Validator(json.loads(text))

@@ -9,11 +9,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from grader.recording import recording as recordings
-from grader.recording.recording import Recording, RecordingError
+from grader.errors import RecordingError
+from grader.recording import folder as recordings
+from grader.recording.recording import Recording
 from grader.reports import text
 from grader.result import result as results
 from grader.result.result import Result
+from grader.scenes import load_scene
+from grader.scenes.scene import Scene
 
 #: How the three verdicts are called.
 WORDS = {"passed": "passed", "failed": "failed", "not_judged": "not judged"}
@@ -210,6 +213,12 @@ class Report:
     def recordings(self) -> dict[int, Recording]:
         """The recordings that can be read, by run: 0 nominal, 1, 2, ... varied."""
         return {run: r for run, r in self._loaded.items() if isinstance(r, Recording)}
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What ran beside the submission; where no recording tells, the first there was."""
+        known = self.recordings.get(0)
+        return load_scene(known.scene if known else recordings.FIRST_SCENE)
 
     def no_recording(self, run: int) -> str:
         """Why a run has no recording."""

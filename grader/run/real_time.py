@@ -2,64 +2,69 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from collections.abc import Callable
 
-from grader.exercise.loading import Limits
-from grader.recording.recording import Recording, Start
-from grader.run import stage
+from grader.recording.recording import Recording
+from grader.run import handover, stage
+from grader.run.finish import Ending, outcome, record
+from grader.run.plan import Plan
 from grader.run.processes.watched import Student
 from grader.run.simulator_process import Simulator, start_simulator
 from grader.run.student import main as student_main
+from grader.scenes import load_scene
+from grader.scenes.scene import Introduction, Reason
 from grader.submission.opening import Submission
+
+#: Told the simulated time [s] now and then.
+Progress = Callable[[float], None]
 
 #: What runs as the simulator's process.
 MODULE = "grader.run.simulator.real_time"
 
 
-def run(
-    submission: Submission,
-    limits: Limits,
-    start: Start | None = None,
-    progress: Callable[[float], None] | None = None,
-) -> Recording:
+def run(submission: Submission, plan: Plan, progress: Progress | None = None) -> Recording:
     """Run a submission once beside a simulator of its own.
 
     Args:
-        start: where turtle1 stands at first; None for its usual place.
         progress: called about once a second with the simulated time [s].
 
     Raises:
         GraderFailure: the simulator could not be started or died.
     """
     started = time.monotonic()
+    scene = load_scene(plan.scene)
     with stage.open_stage() as place:
-        with start_simulator(MODULE, place, limits, start) as simulator:
+        with start_simulator(MODULE, place, plan) as simulator:
             simulator.expect("ready")
-            student = place.student(command(submission), submission)
+            student = place.student(command(submission, scene.introduction), submission)
             try:
                 reason, exit_code = _watch(simulator, student, progress)
             finally:
                 student.end()
-        recording = stage.fetch(place, start, student.output())
-    return recording.finished(
+        trace, topics = handover.fetch(place.recording, scene)
+    ending = Ending(
         time="real",
-        outcome=stage.outcome(reason, exit_code),
+        outcome=outcome(reason, exit_code),
         exit_code=exit_code,
-        wall_s=round(time.monotonic() - started, 3),
+        wall_s=time.monotonic() - started,
         isolation=place.isolation,
+        output=student.output(),
     )
+    return record(plan, trace, topics, ending)
 
 
-def command(submission: Submission) -> list[str]:
+def command(submission: Submission, introduction: Introduction) -> list[str]:
     """How the submission's process is started."""
-    return [sys.executable, student_main.__file__, *stage.target(submission)]
+    awaited = json.dumps([introduction.topics, introduction.services])
+    return [sys.executable, student_main.__file__, awaited, *stage.target(submission)]
 
 
 def _watch(
-    simulator: Simulator, student: Student, progress: Callable[[float], None] | None
-) -> tuple[str, int | None]:
+    simulator: Simulator, student: Student, progress: Progress | None
+) -> tuple[Reason, int | None]:
     """Start the clock of the run, wait for its end; the reason and the student's exit code."""
     simulator.say("start")
     exit_code: int | None = None

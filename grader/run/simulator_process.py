@@ -9,13 +9,11 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict
 from typing import Any
 
 from grader.errors import GraderFailure
-from grader.exercise.loading import Limits
-from grader.recording.recording import Start
 from grader.run.environment import simulator_environment
+from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
 from grader.run.stage import Stage
 
@@ -92,16 +90,14 @@ class Simulator:
 def start_simulator(
     module: str,
     stage: Stage,
-    limits: Limits,
-    start: Start | None,
+    plan: Plan,
     link: socket.socket | None = None,
     *more: str,
 ) -> Iterator[Simulator]:
     """Start `module` as the simulator's process.
 
     Args:
-        start: where turtle1 stands at first; None for its usual place.
-        link: inherited as well; its number follows the first four arguments.
+        link: inherited as well; its number follows the first three arguments.
         more: further arguments.
     """
     ours, theirs = socket.socketpair()
@@ -110,8 +106,7 @@ def start_simulator(
             fds = [theirs.fileno(), *([link.fileno()] if link else [])]
             file = f"/proc/self/fd/{stage.recording}"
             words = [
-                *(str(fds[0]), file, json.dumps(asdict(limits))),
-                json.dumps(asdict(start) if start else None),
+                *(str(fds[0]), file, plan.to_json()),
                 *map(str, fds[1:]),
                 *more,
             ]

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import os
-import pickle
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from grader import scratch
-from grader.recording.recording import Outcome, Recording, Start
 from grader.run.environment import environment
 from grader.run.processes import isolation
 from grader.run.processes.watched import Student, adopt_orphans
@@ -73,27 +71,3 @@ def open_stage() -> Iterator[Stage]:
             yield Stage(folder, recording, isolated.name, env, isolated.entry)
         finally:
             os.close(recording)
-
-
-def outcome(reason: str, exit_code: int | None) -> Outcome:
-    """How a run ended: what the simulator saw, and how the submission's process ended."""
-    if exit_code is None:
-        return "finished" if reason == "rest" else "time_limit"
-    if exit_code < 0:
-        return "killed"
-    if exit_code > 0:
-        return "crashed"
-    return "finished" if reason == "rest" else "exited"
-
-
-def leave(recording: Recording, path: Path) -> None:
-    """In the simulator's process: leave the recording for the grader."""
-    path.write_bytes(pickle.dumps(recording))
-
-
-def fetch(stage: Stage, start: Start | None, output: str) -> Recording:
-    """In the grader's process: the recording that the simulator left."""
-    with open(stage.recording, "rb", closefd=False) as file:
-        file.seek(0)
-        recording: Recording = pickle.load(file)
-    return replace(recording, start=start, output=output)

@@ -10,36 +10,38 @@ import json
 import socket
 import sys
 import time
-from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from grader.exercise.loading import Limits
-from grader.recording.recording import Outcome, Recording, Start
-from grader.run import real_time, stage
+from grader.recording.recording import Outcome, Recording
+from grader.run import handover, real_time, stage
+from grader.run.finish import Ending, outcome, record
+from grader.run.plan import Plan
 from grader.run.processes import cores
+from grader.run.real_time import Progress
 from grader.run.simulator.link import Patience
 from grader.run.simulator_process import SIMULATOR_PATIENCE_S, Message, Simulator, start_simulator
 from grader.run.student import __path__ as student_folder
+from grader.scenes import load_scene
 from grader.submission.opening import Submission
 
 WAITS_FOR_EVER = "every thread of the node waits for something that will not come"
 STUCK = "the node waits for something that can no longer happen; its output says where"
 PATIENCE = Patience()
+#: What runs as the simulator's process.
+MODULE = "grader.run.simulator.virtual_time"
 
 
 def run(
     submission: Submission,
-    limits: Limits,
-    start: Start | None = None,
-    progress: Callable[[float], None] | None = None,
+    plan: Plan,
+    progress: Progress | None = None,
     patience: Patience = PATIENCE,
     marks: dict[str, float] | None = None,
 ) -> Recording:
     """Run a submission once in virtual time, or in real time if it must be.
 
     Args:
-        start: where turtle1 stands at first; None for its usual place.
         progress: called now and then with the simulated time [s], if the run takes so long.
         patience: how long the submission's process is waited for, in real seconds.
         marks: told when, on the machine's monotonic clock [s], the two processes first heard of
@@ -48,25 +50,26 @@ def run(
     Raises:
         GraderFailure: the simulator could not be started or died.
     """
-    recording, why = _try(submission, limits, start, patience, {} if marks is None else marks)
+    recording, why = _try(submission, plan, patience, {} if marks is None else marks)
     if recording is not None:
         return recording
-    recording = real_time.run(submission, limits, start, progress)
     flag = f"graded in real time, because the submission {why}"
-    return replace(recording, run=replace(recording.run, flags=(*recording.run.flags, flag)))
+    return real_time.run(submission, replace(plan, flags=(flag, *plan.flags)), progress)
 
 
 def _try(
-    submission: Submission,
-    limits: Limits,
-    start: Start | None,
-    patience: Patience,
-    marks: dict[str, float],
+    submission: Submission, plan: Plan, patience: Patience, marks: dict[str, float]
 ) -> tuple[Recording | None, str]:
     """The recording of a run in virtual time, or why there is none."""
     started = time.monotonic()
+    scene = load_scene(plan.scene)
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with stage.open_stage() as place, cores.reserve_core(ours.fileno()) as core_id, ours, theirs:
+    with (
+        stage.open_stage() as place,
+        cores.reserve_core(ours.fileno()) as core_id,
+        ours,
+        theirs,
+    ):
         student = place.student(
             command(submission, ours.fileno(), core_id),
             submission,
@@ -76,26 +79,27 @@ def _try(
         ours.close()
         try:
             more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
-            module = "grader.run.simulator.virtual_time"
-            with start_simulator(module, place, limits, start, theirs, *more) as simulator:
+            with start_simulator(MODULE, place, plan, theirs, *more) as simulator:
                 theirs.close()
-                ending = _watch(simulator, patience.run_s)
-                exit_code = student.wait(2.0) if ending.get("silence") == "gone" else None
+                message = _watch(simulator, patience.run_s)
+                exit_code = student.wait(2.0) if message.get("silence") == "gone" else None
         finally:
             student.end(gently=False)
-        if ending["say"] == "refused":
-            return None, ending["reason"]
-        marks.update(ending["marks"])
-        recording = stage.fetch(place, start, student.output())
-    outcome, flags = _judge(ending, exit_code, patience)
-    return recording.finished(
+        if message["say"] == "refused":
+            return None, message["reason"]
+        marks.update(message["marks"])
+        trace, topics = handover.fetch(place.recording, scene)
+    how, flags = _judge(message, exit_code, patience)
+    ending = Ending(
         time="virtual",
-        outcome=outcome,
+        outcome=how,
         exit_code=exit_code,
-        wall_s=round(time.monotonic() - started, 3),
+        wall_s=time.monotonic() - started,
         isolation=place.isolation,
-        flags=(*flags, *ending["flags"]),
-    ), ""
+        output=student.output(),
+        flags=(*flags, *message["flags"]),
+    )
+    return record(plan, trace, topics, ending), ""
 
 
 def command(submission: Submission, link_fd: int, core_id: int) -> list[str]:
@@ -127,4 +131,4 @@ def _judge(ending: Message, exit_code: int | None, patience: Patience) -> tuple[
         return "time_limit", [f"the run took more than {patience.run_s:.0f} s"]
     if silence == "broken":
         return "killed", []
-    return stage.outcome(ending["reason"], exit_code), []
+    return outcome(ending["reason"], exit_code), []

@@ -24,8 +24,8 @@ from turtlesim_py.ros.executor import TickExecutor
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableParameter
 from turtlesim_py.ros.turtle_endpoints import TurtleEndpoints
 from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.events import Event, GoalFeedback, GoalResult, LogLine
 from turtlesim_py.world.floats import printf_f
+from turtlesim_py.world.notices import GoalFeedback, GoalResult, LogLine, Notice
 from turtlesim_py.world.parameters import BY_NAME, PARAMETERS
 from turtlesim_py.world.sprites import NAMES
 from turtlesim_py.world.turtle import Reading
@@ -63,7 +63,7 @@ class TurtlesimNode(RclcppNode):
         self.get_logger().info(
             f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
         )
-        self.arena = Arena((self._on_event,), sprite=sprite)
+        self.arena = Arena((self._on_notice,), sprite=sprite)
         self._window = window.Window(self, self.arena)
         self._endpoints: dict[str, TurtleEndpoints] = {}
         self._logs_positions = self.get_logger().is_enabled_for(LoggingSeverity.DEBUG)
@@ -209,8 +209,8 @@ class TurtlesimNode(RclcppNode):
         for name in names:
             self._endpoints.pop(name).destroy()
 
-    def _on_event(self, event: Event) -> None:
-        match event:
+    def _on_notice(self, notice: Notice) -> None:
+        match notice:
             case LogLine(severity, text):
                 logger = self.get_logger()
                 # One call a severity: rclpy refuses a call site that changes its severity.
@@ -221,9 +221,9 @@ class TurtlesimNode(RclcppNode):
                 else:
                     logger.error(text)
             case GoalFeedback(turtle):
-                self._endpoints[turtle].action.feedback(event)
+                self._endpoints[turtle].action.feedback(notice)
             case GoalResult(turtle):
-                self._endpoints[turtle].action.finish(event)
+                self._endpoints[turtle].action.finish(notice)
 
     def _log_positions(self) -> None:
         for name in sorted(self.arena.turtles):

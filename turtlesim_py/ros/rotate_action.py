@@ -8,7 +8,7 @@ from rclpy.node import Node
 from turtlesim.action import RotateAbsolute
 
 from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.events import GoalFeedback, GoalResult
+from turtlesim_py.world.notices import GoalFeedback, GoalResult
 
 #: How long a result can still be asked for [s]: rclcpp's default, which the original leaves alone.
 RESULT_TIMEOUT_S = 10

@@ -16,6 +16,7 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import CompressedImage, Image
 from std_srvs.srv import Trigger
 
+from turtlesim_py.png import save_png
 from turtlesim_py.ros.rclcpp_node import RclcppNode
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
@@ -92,7 +93,7 @@ class Window:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             path = _next_free(folder)
-            picture.save_png(self._picture(), path)
+            save_png(self._picture(), path)
         except OSError as error:
             response.success = False
             response.message = f"cannot write the canvas to {folder}: {error.strerror}"

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from typing import Any
 
 from turtlesim_py.world.canvas import Canvas
-from turtlesim_py.world.events import Event, Input, LogLine, Severity
+from turtlesim_py.world.events import (
+    Cancel,
+    Clear,
+    CmdVel,
+    Kill,
+    Reset,
+    RotateAbsolute,
+    SetParameter,
+    SetPen,
+    Spawn,
+    TeleportAbsolute,
+    TeleportRelative,
+)
 from turtlesim_py.world.floats import float32, printf_f
+from turtlesim_py.world.notices import LogLine, Notice, Severity
 from turtlesim_py.world.picture import Sprite
 from turtlesim_py.world.sprites import NAMES
 from turtlesim_py.world.turtle import METER_PX, SIZE_M, Reading, Teleport, Turtle
@@ -35,7 +47,7 @@ class Arena:
     Attributes:
         turtles: name -> turtle. `tick` visits them in the byte-wise order of their names.
         canvas: what the pens have drawn, 500 x 500 pixels.
-        listeners: called with every `Event`, in the order in which things happen.
+        listeners: called with every `Notice`, in the order in which things happen.
         now_ns: the time [ns] at which inputs arrive and the watchdog looks. The owner sets it
             before each tick; left alone, it advances by 16 ms a tick.
         ticks: how often the turtles have been updated.
@@ -44,12 +56,12 @@ class Arena:
     """
 
     def __init__(
-        self, listeners: tuple[Callable[[Event], None], ...] = (), sprite: str = ""
+        self, listeners: tuple[Callable[[Notice], None], ...] = (), sprite: str = ""
     ) -> None:
         """Create the arena with turtle1 in its centre; `sprite` fixes every turtle's picture."""
         self.turtles: dict[str, Turtle] = {}
         self.canvas = Canvas()
-        self.listeners: list[Callable[[Event], None]] = list(listeners)
+        self.listeners: list[Callable[[Notice], None]] = list(listeners)
         self.now_ns = 0
         self.ticks = 0
         self.holonomic = False
@@ -71,33 +83,35 @@ class Arena:
         Raises:
             UnknownTurtle: nobody has this name.
         """
-        self._note("cmd_vel", turtle=turtle, linear=linear, angular=angular)
+        self._emit(CmdVel(tick=self.ticks + 1, turtle=turtle, linear=linear, angular=angular))
         linear_y = linear[1] if self.holonomic else None
         self._get(turtle).command(linear[0], linear_y, angular[2], self.now_ns)
 
     def set_pen(self, turtle: str, r: int, g: int, b: int, width: int, off: int) -> None:
         """Change a turtle's pen: colour and width [px], each 0-255; `off` other than 0 lifts it."""
-        self._note("set_pen", turtle=turtle, r=r, g=g, b=b, width=width, off=off)
+        self._emit(SetPen(tick=self.ticks + 1, turtle=turtle, r=r, g=g, b=b, width=width, off=off))
         self._get(turtle).set_pen(r, g, b, width, off)
 
     def teleport_absolute(self, turtle: str, x: float, y: float, theta: float) -> None:
         """Put a turtle at (x, y) [m] with heading theta [rad] at the next tick."""
-        self._note("teleport_absolute", turtle=turtle, x=x, y=y, theta=theta)
+        self._emit(TeleportAbsolute(tick=self.ticks + 1, turtle=turtle, x=x, y=y, theta=theta))
         self._get(turtle).teleport(Teleport(x, y, theta, relative=False))
 
     def teleport_relative(self, turtle: str, linear: float, angular: float) -> None:
         """Turn by `angular` [rad], then go ahead by `linear` [m], at the next tick."""
-        self._note("teleport_relative", turtle=turtle, linear=linear, angular=angular)
+        self._emit(
+            TeleportRelative(tick=self.ticks + 1, turtle=turtle, linear=linear, angular=angular)
+        )
         self._get(turtle).teleport(Teleport(linear, 0.0, angular, relative=True))
 
     def rotate_absolute(self, turtle: str, theta: float, goal_id: object) -> None:
         """Start a rotation goal towards heading theta [rad]."""
-        self._note("rotate_absolute", turtle=turtle, theta=theta, id=goal_id)
+        self._emit(RotateAbsolute(tick=self.ticks + 1, turtle=turtle, theta=theta, id=goal_id))
         self._get(turtle).rotate_to(goal_id, theta)
 
     def cancel(self, goal_id: object) -> bool:
         """Ask for the end of a goal; False where it is not running (any more)."""
-        self._note("cancel", id=goal_id)
+        self._emit(Cancel(tick=self.ticks + 1, id=goal_id))
         for turtle in self.turtles.values():
             goal = turtle.goal
             if goal is not None and goal.goal_id == goal_id:
@@ -110,7 +124,7 @@ class Arena:
 
         An empty name becomes "turtleN" with the next free N.
         """
-        self._note("spawn", x=x, y=y, theta=theta, name=name)
+        self._emit(Spawn(tick=self.ticks + 1, x=x, y=y, theta=theta, name=name))
         if name in self.turtles:
             self._log("ERROR", f"A turtle named [{name}] already exists")
             return ""
@@ -118,7 +132,7 @@ class Arena:
 
     def kill(self, name: str) -> bool:
         """Remove a turtle; False where there is none of that name."""
-        self._note("kill", name=name)
+        self._emit(Kill(tick=self.ticks + 1, name=name))
         turtle = self.turtles.pop(name, None)
         if turtle is None:
             self._log("ERROR", f"Tried to kill turtle [{name}], which does not exist")
@@ -128,13 +142,13 @@ class Arena:
 
     def clear(self) -> None:
         """Wipe the drawing; turtles, pens and parameters stay."""
-        self._note("clear")
+        self._emit(Clear(tick=self.ticks + 1))
         self._log("INFO", "Clearing turtlesim.")
         self.canvas.clear()
 
     def reset(self) -> None:
         """Start again with turtle1 in the centre and an empty canvas; parameters stay."""
-        self._note("reset")
+        self._emit(Reset(tick=self.ticks + 1))
         self._log("INFO", "Resetting turtlesim.")
         for turtle in self.turtles.values():
             turtle.abandon_goal()
@@ -145,7 +159,7 @@ class Arena:
 
     def set_parameter(self, name: str, value: bool | int) -> None:
         """Set a parameter that `turtlesim_py.world.parameters` has found acceptable."""
-        self._note("param", name=name, value=value)
+        self._emit(SetParameter(tick=self.ticks + 1, name=name, value=value))
         if name == "holonomic":
             self.holonomic = bool(value)
         else:
@@ -200,12 +214,9 @@ class Arena:
             if name not in self.turtles:
                 return name
 
-    def _emit(self, event: Event) -> None:
+    def _emit(self, notice: Notice) -> None:
         for listener in self.listeners:
-            listener(event)
-
-    def _note(self, op: str, **args: Any) -> None:
-        self._emit(Input(op, args))
+            listener(notice)
 
     def _log(self, severity: Severity, text: str) -> None:
         self._emit(LogLine(severity, text))

@@ -6,13 +6,11 @@ from array import array
 from dataclasses import dataclass
 from functools import cached_property
 from math import floor
-from pathlib import Path
 from sys import byteorder
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from turtlesim_py.world.stroke import spans
 
@@ -101,10 +99,6 @@ class Canvas:
         """Return a copy of the pixels, shape (height, width, 4); unpainted is 255, 255, 255, 0."""
         pixels = np.frombuffer(self._pixels, dtype=np.uint8)
         return pixels.reshape(self.height, self.width, 4).copy()
-
-    def save_png(self, path: Path | str) -> None:
-        """Write the pixels as an RGBA picture."""
-        Image.fromarray(self.rgba()).save(path, format="PNG")
 
 
 def _pixel_number(coordinate: float, size: int) -> int | None:

@@ -1,51 +1,266 @@
-"""What an arena tells its listeners while it works."""
+"""Inputs to an arena: what came in at which tick. Their JSON form is the scenario's.
+
+One frozen dataclass a kind, with the kind's `op` and fields; `to_json` and `from_json` are the only
+place that knows the JSON. There, not-a-number and the infinities are the strings "nan", "inf" and
+"-inf", and whole numbers have no decimal point; in an event they are floats.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass, fields
+from typing import Any, ClassVar, Final, TypeVar
 
-Severity = Literal["INFO", "WARN", "ERROR"]
-GoalStatus = Literal["SUCCEEDED", "CANCELED", "ABORTED"]
+from turtlesim_py.world.floats import json_number
 
-
-@dataclass(frozen=True, slots=True)
-class LogLine:
-    """A line that the original writes to its log."""
-
-    severity: Severity
-    text: str
+Vector = tuple[float, float, float]
+#: What a rotation goal is known by: bytes from ROS, anything else from a scenario.
+GoalId = object
 
 
-@dataclass(frozen=True, slots=True)
-class Input:
-    """Something that came in from outside, before it has any effect.
+class EventError(ValueError):
+    """JSON that describes no event; the text says what is missing or wrong."""
 
-    `op` and the names in `args` are those of a scenario event (see `turtlesim_py.scenario`), so
-    that the inputs of any run can be replayed as a scenario.
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Event:
+    """An input that takes effect with tick `tick` (1, 2, ...)."""
+
+    op: ClassVar[str]
+
+    tick: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CmdVel(Event):
+    """A velocity command: linear [m/s], angular [rad/s]."""
+
+    op: ClassVar[str] = "cmd_vel"
+
+    turtle: str = "turtle1"
+    linear: Vector
+    angular: Vector
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetPen(Event):
+    """A change of the pen: colour and width [px], each 0-255; `off` other than 0 lifts it."""
+
+    op: ClassVar[str] = "set_pen"
+
+    turtle: str = "turtle1"
+    r: int
+    g: int
+    b: int
+    width: int
+    off: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TeleportAbsolute(Event):
+    """A jump to x, y [m] with heading theta [rad]."""
+
+    op: ClassVar[str] = "teleport_absolute"
+
+    turtle: str = "turtle1"
+    x: float
+    y: float
+    theta: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TeleportRelative(Event):
+    """A turn by `angular` [rad], then a jump ahead by `linear` [m]."""
+
+    op: ClassVar[str] = "teleport_relative"
+
+    turtle: str = "turtle1"
+    linear: float
+    angular: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RotateAbsolute(Event):
+    """A rotation goal towards heading theta [rad]."""
+
+    op: ClassVar[str] = "rotate_absolute"
+
+    turtle: str = "turtle1"
+    theta: float
+    id: GoalId
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cancel(Event):
+    """A request to end a rotation goal."""
+
+    op: ClassVar[str] = "cancel"
+
+    id: GoalId
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spawn(Event):
+    """A new turtle at x, y [m] with heading theta [rad]; an empty name gets one."""
+
+    op: ClassVar[str] = "spawn"
+
+    x: float
+    y: float
+    theta: float
+    name: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kill(Event):
+    """The end of a turtle."""
+
+    op: ClassVar[str] = "kill"
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Clear(Event):
+    """The drawing is wiped."""
+
+    op: ClassVar[str] = "clear"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reset(Event):
+    """Everything starts again."""
+
+    op: ClassVar[str] = "reset"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetParameter(Event):
+    """A parameter is to be set; `value` is a bool, int, float or str."""
+
+    op: ClassVar[str] = "param"
+
+    name: str
+    value: bool | int | float | str
+    #: in JSON only: a whole number that is meant as a double
+    double: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Snapshot(Event):
+    """Of a scenario: keep the drawing as it is after this tick."""
+
+    op: ClassVar[str] = "snapshot"
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SnapshotNow(Event):
+    """Of a scenario: keep the drawing as it is now, before this tick."""
+
+    op: ClassVar[str] = "snapshot_now"
+
+    name: str
+
+
+KINDS: Final[Mapping[str, type[Event]]] = {
+    kind.op: kind
+    for kind in (
+        *(CmdVel, SetPen, TeleportAbsolute, TeleportRelative, RotateAbsolute, Cancel),
+        *(Spawn, Kill, Clear, Reset, SetParameter, Snapshot, SnapshotNow),
+    )
+}
+SomeEvent = TypeVar("SomeEvent", bound=Event)
+
+
+def to_json(event: Event) -> dict[str, Any]:
+    """The event as a scenario holds it: `{"tick", "op", ...}` in the order of the fields."""
+    words: dict[str, Any] = {"tick": event.tick, "op": event.op}
+    for name in _FIELDS[event.op]:
+        words[name] = _json_value(getattr(event, name))
+    if isinstance(event, SetParameter) and not event.double:
+        del words["double"]
+    return words
+
+
+def from_json(words: Mapping[str, Any]) -> Event:
+    """The event that a scenario's object means.
+
+    Raises:
+        EventError: it means none.
     """
-
-    op: str
-    args: dict[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class GoalFeedback:
-    """A rotation goal still has `remaining_rad` to turn."""
-
-    turtle: str
-    goal_id: object
-    remaining_rad: float
-
-
-@dataclass(frozen=True, slots=True)
-class GoalResult:
-    """A rotation goal ended; `delta_rad` is start minus end, the original's sign."""
-
-    turtle: str
-    goal_id: object
-    status: GoalStatus
-    delta_rad: float
+    tick, op = words.get("tick"), words.get("op")
+    if type(tick) is not int:
+        raise EventError(f"'tick' must be a whole number, found {tick!r}")
+    kind = KINDS.get(op) if isinstance(op, str) else None
+    if kind is None:
+        raise EventError(f"unknown op {op!r}")
+    values: dict[str, Any] = {"tick": tick}
+    for name, (read, is_needed) in _FIELDS[kind.op].items():
+        if name in words:
+            try:
+                values[name] = read(words[name])
+            except (TypeError, ValueError, OverflowError) as error:
+                raise EventError(f"{name}: {error}") from None
+        elif is_needed:
+            raise EventError(f"no field {name!r}")
+    if kind is SetParameter and values.get("double"):
+        values["value"] = _number(values["value"])
+    return kind(**values)
 
 
-Event = LogLine | Input | GoalFeedback | GoalResult
+def _json_value(value: object) -> Any:
+    """What JSON can hold: goal ids of ROS as hexadecimal."""
+    if isinstance(value, float):
+        return json_number(value, 17)
+    if isinstance(value, tuple):
+        return [json_number(number, 17) for number in value]
+    return value.hex() if isinstance(value, bytes) else value
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, bool):
+        raise ValueError(f"expected a number, found {value!r}")
+    return float(value)
+
+
+def _vector(value: Any) -> Vector:
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise ValueError(f"expected three numbers, found {value!r}")
+    x, y, z = map(_number, value)
+    return x, y, z
+
+
+def _whole(value: Any) -> int:
+    if not isinstance(value, int | float) or value != int(value):
+        raise ValueError(f"expected a whole number, found {value!r}")
+    return int(value)
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"expected a text, found {value!r}")
+    return value
+
+
+def _as_it_is(value: Any) -> Any:
+    return value
+
+
+_READERS: Final[Mapping[str, Callable[[Any], Any]]] = {
+    "str": _text,
+    "int": _whole,
+    "float": _number,
+    "bool": bool,
+    "Vector": _vector,
+}
+#: op -> its fields but the tick, in order: how each is read from JSON, and whether it is needed.
+_FIELDS: Final = {
+    kind.op: {
+        field.name: (_READERS.get(str(field.type), _as_it_is), field.default is MISSING)
+        for field in fields(kind)
+        if field.name != "tick"
+    }
+    for kind in KINDS.values()
+}

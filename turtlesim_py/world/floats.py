@@ -46,3 +46,11 @@ def fuzzy_equal(p: float, q: float) -> bool:
     if p == 0.0 or q == 0.0:
         return abs(p - q) <= 1e-12
     return abs(p - q) * 1e12 <= min(abs(p), abs(q))
+
+
+def json_number(value: float, digits: int = 9) -> float | int | str:
+    """A value as JSON files hold it: `digits` significant digits, NaN and inf as strings."""
+    if not math.isfinite(value):
+        return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
+    rounded = float(f"{value:.{digits}g}")
+    return int(rounded) if rounded.is_integer() and abs(rounded) < 1e15 else rounded

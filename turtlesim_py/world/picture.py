@@ -6,11 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, cos, floor, isfinite, radians, sin
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from turtlesim_py.world import sprites
 from turtlesim_py.world.canvas import Canvas
@@ -69,11 +67,6 @@ def render(
                 top=_first_pixel(turtle.y_px, picture.shape[0]),
             )
     return window
-
-
-def save_png(window: NDArray[np.uint8], path: Path | str) -> None:
-    """Write a picture that `render` made."""
-    Image.fromarray(window).save(path, format="PNG")
 
 
 def _first_pixel(center: float, size: int) -> int:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from turtlesim_py.world.canvas import Canvas, Pen
-from turtlesim_py.world.events import Event, GoalFeedback, GoalResult, GoalStatus, LogLine
 from turtlesim_py.world.floats import cos, float32, fuzzy_equal, normalize_angle, printf_f, sin
+from turtlesim_py.world.notices import GoalFeedback, GoalResult, GoalStatus, LogLine, Notice
 
 #: Pixels in a metre: the height of the original's turtle pictures.
 METER_PX = 45.0
@@ -75,7 +75,7 @@ class Turtle:
         y: float,
         theta: float,
         now_ns: int,
-        emit: Callable[[Event], None],
+        emit: Callable[[Notice], None],
         sprite: str = "",
     ) -> None:
         self.name = name

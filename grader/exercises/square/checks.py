@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +18,8 @@ from grader.exercises.square.shape import (
 )
 from grader.exercises.square.way import Way
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.turtlesim.trace import TurtleTrace
+from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 
 #: The row of a command's own tick shows what it did: after a stop at tick t the last row that
@@ -31,7 +32,7 @@ checks = Checks()
 def drives(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """The node drives turtle1."""
     recording = recordings.nominal
-    commands = recording.calls("cmd_vel")
+    commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
     if not commands:
         return Finding(
             0,
@@ -136,16 +137,16 @@ def anywhere(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def stop_command(recording: Recording, last_motion: int) -> int | None:
     """The tick of the command that stopped turtle1, if one did."""
     found = None
-    for command in reversed(recording.calls("cmd_vel")):
+    for command in reversed(TurtleTrace.of(recording.trace).of_kind(CmdVel)):
         if not is_stop(command):
             break
-        found = int(command["tick"])
+        found = command.tick
     return found if found is not None and found <= last_motion + STOP_SHOWS else None
 
 
-def is_stop(command: dict[str, Any]) -> bool:
+def is_stop(command: CmdVel) -> bool:
     """Whether a velocity command says to stand still."""
-    return bool(command["linear"][0] == 0 and command["angular"][2] == 0)
+    return command.linear[0] == 0 and command.angular[2] == 0
 
 
 def start_of(recording: Recording) -> str:

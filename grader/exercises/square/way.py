@@ -15,7 +15,9 @@ import numpy.typing as npt
 
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence
-from grader.recording.recording import Recording, Start
+from grader.recording.recording import Recording
+from grader.scenes.scene import Start
+from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 FloatArray = npt.NDArray[np.float64]
@@ -67,7 +69,7 @@ class Way:
     """
 
     def __init__(self, recording: Recording) -> None:
-        rows = recording.published.get("turtle1", np.empty((0, 9)))
+        rows = TurtleTrace.of(recording.trace).trajectory().rows()
         self.broken_by = ""
         finite = np.isfinite(rows[:, 1:4]).all(axis=1)
         if not finite.all():

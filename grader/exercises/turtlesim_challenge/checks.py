@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +14,8 @@ from grader.exercises.turtlesim_challenge import ink, pens, shape
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, NAMES, Path
 from grader.exercises.turtlesim_challenge.stops import judge_stop
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.turtlesim.trace import TurtleTrace
+from turtlesim_py.world.events import CmdVel, SetPen
 from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
 
 checks = Checks()
@@ -26,7 +29,7 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
     """The node starts and moves turtle1."""
     recording = recordings.nominal
     path = Path(recording)
-    commands = recording.calls("cmd_vel")
+    commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
     seconds = f"{recording.run.simulated_s:.1f} s"
     ending = how_it_ended(recording)
     if not commands:
@@ -42,7 +45,7 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
             f"Your node published velocity commands ({len(commands)} in {seconds}), "
             f"but they never moved turtle1.{foreign}{ending}",
             "Is linear.x of the Twist different from zero?",
-            (path.at(commands[0]["tick"], "the first command"),),
+            (path.at(commands[0].tick, "the first command"),),
         )
     start = path.at(int(path.ticks[path.first]), "here it starts to move")
     return Finding(
@@ -54,8 +57,8 @@ def _foreign(path: Path) -> str:
     """A sentence about motion that was no driving."""
     if not path.foreign:
         return ""
-    names = ", ".join(sorted({event["op"] for event in path.foreign}))
-    first = path.foreign[0]["tick"] * TICK_S
+    names = ", ".join(sorted({event.op for event in path.foreign}))
+    first = path.foreign[0].tick * TICK_S
     return (
         f" It was also moved by {names} ({len(path.foreign)} calls, the first at {first:.2f} s); "
         "only the longest stretch without them is judged."
@@ -63,9 +66,9 @@ def _foreign(path: Path) -> str:
 
 
 def _where_it_published(recording: Recording) -> str:
-    twists = [t["topic"] for t in recording.topics if t["type"].endswith("/Twist")]
+    twists = [t.topic for t in recording.topics if t.type.endswith("/Twist")]
     others = [topic for topic in twists if topic != "/turtle1/cmd_vel"]
-    types = [t["type"] for t in recording.topics if t["topic"] == "/turtle1/cmd_vel"]
+    types = [t.type for t in recording.topics if t.topic == "/turtle1/cmd_vel"]
     if others:
         return f"It publishes velocities on {', '.join(others)}: compare the topic's name."
     if types and types[0] != "geometry_msgs/msg/Twist":
@@ -123,7 +126,7 @@ def spiral(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def steady_rate(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """Commands come at a fixed rate, without pauses."""
     path = Path(recordings.nominal)
-    ticks = np.array([c["tick"] for c in path.calls("cmd_vel") if c["tick"] <= path.stop_tick + 1])
+    ticks = np.array([c.tick for c in path.calls(CmdVel) if c.tick <= path.stop_tick + 1])
     if len(ticks) < 3:
         return Finding(0, f"Fewer than three commands ({len(ticks)}) have no rate.", "Use a timer.")
     gaps = np.diff(ticks)
@@ -175,7 +178,7 @@ def edge_stop(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """Each quadrant entered gets its own pen colour."""
     path = Path(recordings.nominal)
-    if not path.calls("set_pen"):
+    if not path.calls(SetPen):
         return Finding(
             0,
             "The pen was never changed.",
@@ -241,7 +244,7 @@ def picture(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def no_redundant_calls(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """set_pen is called on entering a quadrant only."""
     path = Path(recordings.nominal)
-    calls = path.calls("set_pen")
+    calls = path.calls(SetPen)
     if not calls:
         return Finding(0, "set_pen was never called.", "Call it once for each quadrant entered.")
     # Near the start the count of entries depends on where exactly the centre is taken to be.
@@ -254,11 +257,11 @@ def no_redundant_calls(recordings: Recordings, tolerances: Tolerances) -> Findin
     return Finding(
         0,
         f"set_pen was called {len(calls)} times; {counts[0]} were needed. The first needless call "
-        f"came at {first['tick'] * TICK_S:.2f} s.",
+        f"came at {first.tick * TICK_S:.2f} s.",
         "Remember the quadrant of the last call, and call only when it changes.",
-        (path.at(first["tick"], "a call that was not needed"),),
+        (path.at(first.tick, "a call that was not needed"),),
     )
 
 
-def _same_pen(earlier: dict[str, int], later: dict[str, int]) -> bool:
-    return all(earlier[key] == later[key] for key in ("r", "g", "b", "width", "off"))
+def _same_pen(earlier: SetPen, later: SetPen) -> bool:
+    return replace(earlier, tick=later.tick) == later

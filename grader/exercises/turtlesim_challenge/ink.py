@@ -10,7 +10,9 @@ import numpy.typing as npt
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.pens import colors_by_tick
 from grader.recording.recording import Recording
+from grader.scenes.turtlesim.trace import FIRST_TURTLE
 from turtlesim_py.world.canvas import Canvas, Pen
+from turtlesim_py.world.events import Clear
 from turtlesim_py.world.turtle import METER_PX, SIZE_M
 
 #: A band around the dividing lines in which colours may mix [px]: a late answer and a pen's width.
@@ -37,9 +39,10 @@ def own_drawing(recording: Recording) -> Pixels:
     path is drawn again, from the recorded poses.
     """
     path = Path(recording)
-    wiped = any(event["op"] == "clear" for event in recording.events)
-    if not path.foreign and not wiped and set(recording.published) == {"turtle1"}:
-        return recording.canvas
+    trace = path.trace
+    wiped = any(isinstance(event, Clear) for event in trace.events)
+    if not path.foreign and not wiped and set(trace.trajectories) == {FIRST_TURTLE}:
+        return trace.canvas
     canvas = Canvas()
     colors = colors_by_tick(recording)
     x, y = path.x * METER_PX, (SIZE_M - path.y) * METER_PX

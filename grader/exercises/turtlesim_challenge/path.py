@@ -4,14 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from grader.exercise.verdict import Evidence
 from grader.recording.recording import Recording
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from turtlesim_py.world.events import (
+    Event,
+    Kill,
+    Reset,
+    SomeEvent,
+    Spawn,
+    TeleportAbsolute,
+    TeleportRelative,
+)
 from turtlesim_py.world.floats import float32
+from turtlesim_py.world.trajectory import Trajectory
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 CENTRE_M = SIZE_M / 2.0
@@ -54,23 +65,24 @@ class Path:
     way is nobody's driving. Every array has one row a tick; `ticks` tells which.
 
     Attributes:
-        foreign: the calls that ended stretches, as scenario events.
+        foreign: the calls that ended stretches, as they came.
         lost_tick: from here on the position is not a number, and the path ends; None: never.
         number: of the run, for evidence.
     """
 
     def __init__(self, recording: Recording, number: int = 0) -> None:
-        rows = recording.published.get("turtle1", np.zeros((0, 9)))
-        nowhere = ~np.isfinite(rows[:, 1:4]).all(axis=1)
-        self.lost_tick = int(rows[np.argmax(nowhere), 0]) if nowhere.any() else None
-        rows = rows[: np.argmax(nowhere)] if nowhere.any() else rows
+        self.trace = TurtleTrace.of(recording.trace)
+        way = self.trace.trajectory()
+        nowhere = ~np.isfinite((way.x, way.y, way.theta)).all(axis=0)
+        self.lost_tick = int(way.ticks[np.argmax(nowhere)]) if nowhere.any() else None
+        way = way[: int(np.argmax(nowhere))] if nowhere.any() else way
         self.recording = recording
         self.number = number
-        self.foreign = [event for event in recording.events if _is_foreign(event)]
-        rows = _longest_stretch(rows, [int(event["tick"]) for event in self.foreign])
-        self.ticks = rows[:, 0].astype(np.int64)
-        self.x, self.y = rows[:, 1], rows[:, 2]
-        self.speed, self.turning = rows[:, 4], rows[:, 5]
+        self.foreign = [event for event in self.trace.events if _is_foreign(event)]
+        way = _longest_stretch(way, [event.tick for event in self.foreign])
+        self.ticks = way.ticks
+        self.x, self.y = way.x, way.y
+        self.speed, self.turning = way.linear, way.angular
 
     def __len__(self) -> int:
         return len(self.ticks)
@@ -119,12 +131,12 @@ class Path:
         """The tick of the last motion."""
         return int(self.ticks[self.last]) if len(self) else 0
 
-    def calls(self, op: str) -> list[dict[str, Any]]:
+    def calls(self, kind: type[SomeEvent]) -> list[SomeEvent]:
         """The inputs of one kind to turtle1 within the stretch."""
         if not len(self):
             return []
         first, last = self.ticks[0], self.ticks[-1]
-        return [call for call in self.recording.calls(op) if first <= call["tick"] <= last]
+        return [call for call in self.trace.of_kind(kind) if first <= call.tick <= last]
 
     def entries(self, band_m: float, centre_m: float = CENTRE_M) -> list[Entry]:
         """Every entry into a quadrant on the turtle's way, the first one included.
@@ -159,14 +171,13 @@ class Path:
         )
 
 
-def _is_foreign(event: dict[str, Any]) -> bool:
-    match event["op"]:
-        case "teleport_absolute" | "teleport_relative":
-            return bool(event["turtle"] == "turtle1")
-        case "kill" | "spawn":
-            return bool(event["name"] == "turtle1")
-        case op:
-            return bool(op == "reset")
+def _is_foreign(event: Event) -> bool:
+    match event:
+        case TeleportAbsolute(turtle=turtle) | TeleportRelative(turtle=turtle):
+            return turtle == FIRST_TURTLE
+        case Kill(name=name) | Spawn(name=name):
+            return name == FIRST_TURTLE
+    return isinstance(event, Reset)
 
 
 def _moving(x: Floats, y: Floats) -> npt.NDArray[np.bool_]:
@@ -175,8 +186,8 @@ def _moving(x: Floats, y: Floats) -> npt.NDArray[np.bool_]:
     return moved
 
 
-def _longest_stretch(rows: Floats, breaks: list[int]) -> Floats:
-    """The rows between two breaks in which the turtle moved in the most ticks."""
-    cuts = np.searchsorted(rows[:, 0], sorted(set(breaks)))
-    stretches = np.split(rows, cuts)
-    return max(stretches, key=lambda part: int(_moving(part[:, 1], part[:, 2]).sum()))
+def _longest_stretch(way: Trajectory, breaks: list[int]) -> Trajectory:
+    """The part between two breaks in which the turtle moved in the most ticks."""
+    cuts = [0, *np.searchsorted(way.ticks, sorted(set(breaks))).tolist(), len(way)]
+    stretches = [way[first:last] for first, last in pairwise(cuts)]
+    return max(stretches, key=lambda part: int(_moving(part.x, part.y).sum()))

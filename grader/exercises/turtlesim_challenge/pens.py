@@ -10,7 +10,9 @@ import numpy as np
 from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge.path import Entry, Path
 from grader.recording.recording import Recording
+from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.canvas import Pen
+from turtlesim_py.world.events import CmdVel, SetPen
 from turtlesim_py.world.turtle import TICK_S
 
 Color = tuple[int, int, int]
@@ -52,8 +54,8 @@ def coloring(path: Path, tolerances: Tolerances) -> Coloring:
     """
     entries = path.entries(tolerances["band_m"])
     colors = colors_by_tick(path.recording)
-    commands = path.calls("cmd_vel")
-    end = min(path.stop_tick, commands[-1]["tick"]) if commands else 0
+    commands = path.calls(CmdVel)
+    end = min(path.stop_tick, commands[-1].tick) if commands else 0
     if path.wall is not None:
         end = min(end, int(path.ticks[path.wall]))
     stays = [entry.last_tick - entry.tick + 1 for entry in entries]
@@ -68,8 +70,8 @@ def coloring(path: Path, tolerances: Tolerances) -> Coloring:
 def colors_by_tick(recording: Recording) -> list[Color]:
     """The pen's colour in each tick; index 0 is before the first tick."""
     color = (Pen().r, Pen().g, Pen().b)
-    calls = [call for call in recording.calls("set_pen") if not call["off"]]
-    changes = {call["tick"]: (call["r"], call["g"], call["b"]) for call in calls}
+    calls = [call for call in TurtleTrace.of(recording.trace).of_kind(SetPen) if not call.off]
+    changes = {call.tick: (call.r, call.g, call.b) for call in calls}
     colors = []
     for tick in range(recording.run.ticks + 1):
         color = changes.get(tick, color)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from grader.exercise.check import Tolerances
 from grader.exercise.sentences import how_it_ended
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.path import Path
+from turtlesim_py.world.events import CmdVel
 
 
 def judge_stop(path: Path, tolerances: Tolerances) -> Finding:
@@ -49,7 +48,7 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Finding:
             (end,),
         )
     # The stop that counts is the command that was in force when the turtle came to rest.
-    commands = [call for call in path.calls("cmd_vel") if call["tick"] <= path.stop_tick + 1]
+    commands = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
     if not commands or not _stands_still(commands[-1]):
         return Finding(
             0,
@@ -61,5 +60,5 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Finding:
     return Finding(1, f"stopped by a command, {gap:.2f} m from the wall", evidence=(end,))
 
 
-def _stands_still(command: dict[str, Any]) -> bool:
-    return not command["linear"][0] and not command["angular"][2]
+def _stands_still(command: CmdVel) -> bool:
+    return not command.linear[0] and not command.angular[2]

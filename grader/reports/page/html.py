@@ -18,26 +18,16 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
-from grader.recording.recording import Recording
 from grader.reports import text
 from grader.reports.page.pictures import canvas_uri, window_uri
 from grader.reports.page.pins import RADIUS_PX, Pin, pins
 from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
-from grader.reports.page.tracks import Film, Floats, film, to_px
+from grader.reports.page.tracks import Film, film
 from grader.reports.report import Report
-from turtlesim_py.world.canvas import SIZE_PX
-from turtlesim_py.world.turtle import METER_PX
+from grader.scenes.scene import Floats
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
-_OUTCOMES = {
-    "finished": "the turtle came to rest",
-    "exited": "the node ended by itself, without an error",
-    "crashed": "the node ended with an error",
-    "stalled": "the node stopped responding",
-    "time_limit": "the turtle was still going at the time limit",
-    "killed": "somebody killed the node",
-}
 
 
 @dataclass(frozen=True)
@@ -71,6 +61,7 @@ class RunView:
 
 def render(report: Report) -> str:
     """The page."""
+    plane = report.scene.plane
     runs = [_view(report, number) for number in range(len(report.varied_runs) + 1)]
     return (
         _environment()
@@ -80,11 +71,24 @@ def render(report: Report) -> str:
             runs=runs,
             films={run.number: _film_data(run.film) for run in runs if run.film is not None},
             pinned={pin.point.number for run in runs for pin in run.pins},
-            outcomes=_OUTCOMES,
-            box={"width": WIDTH, "height": HEIGHT, "size": SIZE_PX, "meter": METER_PX},
+            outcomes=_outcomes(report.scene.thing),
+            box={"width": WIDTH, "height": HEIGHT, "size": plane.size_px, "meter": plane.metre_px},
+            to_px=plane.to_px,
+            thing=report.scene.thing,
             radius=RADIUS_PX,
         )
     )
+
+
+def _outcomes(thing: str) -> dict[str, str]:
+    return {
+        "finished": f"the {thing} came to rest",
+        "exited": "the node ended by itself, without an error",
+        "crashed": "the node ended with an error",
+        "stalled": "the node stopped responding",
+        "time_limit": f"the {thing} was still going at the time limit",
+        "killed": "somebody killed the node",
+    }
 
 
 @cache
@@ -101,7 +105,6 @@ def _environment() -> jinja2.Environment:
     environment.filters["points"] = text.points
     environment.globals.update(
         place=text.place,
-        to_px=to_px,
         style=Markup((_TEMPLATES / "page.css").read_text(encoding="utf-8")),
         script=Markup(script),
         script_digest=digest,
@@ -111,15 +114,18 @@ def _environment() -> jinja2.Environment:
 
 def _view(report: Report, number: int) -> RunView:
     recording = report.recordings.get(number)
+    scene = report.scene
+    view = scene.view(recording.trace) if recording is not None else None
+    ticks, tick_s = (recording.run.ticks if recording else 0), scene.tick_ns / 1e9
     output = report.output if number == 0 else text.plain(recording.output if recording else "")
     return RunView(
         number,
         _title(report, number),
         report.varied_runs[number - 1] if number else report.run,
-        canvas_uri(report) if number == 0 else _window(recording),
+        canvas_uri(report) if number == 0 else window_uri(report, number),
         pins(report, number),
-        film(recording) if recording is not None else None,
-        plots(recording) if recording is not None else None,
+        film(view, ticks, tick_s) if view is not None else None,
+        plots(view, ticks, tick_s) if view is not None else None,
         text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
     )
 
@@ -132,10 +138,6 @@ def _title(report: Report, number: int) -> str:
         return f"Varied run {number}"
     heading = math.degrees(start["theta"])
     return f"Varied run {number}: from {text.place(start['x'], start['y'])}, heading {heading:.0f}°"
-
-
-def _window(recording: Recording | None) -> str:
-    return window_uri(recording.window) if recording is not None else ""
 
 
 def _film_data(shown: Film) -> dict[str, Any]:

@@ -5,12 +5,9 @@ from __future__ import annotations
 import base64
 import io
 
-import numpy as np
-import numpy.typing as npt
 from PIL import Image, UnidentifiedImageError
 
 from grader.reports.report import Report
-from turtlesim_py.world.canvas import SIZE_PX
 
 #: A picture above this is reduced to 256 colours. Only noise is: a spiral has some 20 kB.
 _LIMIT_BYTES = 150_000
@@ -21,16 +18,19 @@ def canvas_uri(report: Report) -> str:
     if report.canvas_path is not None:
         try:
             with Image.open(report.canvas_path, formats=["PNG"]) as image:
-                if max(image.size) <= SIZE_PX:
+                if max(image.size) <= report.scene.plane.size_px:
                     return _uri(image.convert("RGB"))
         except (OSError, UnidentifiedImageError):
             pass  # a damaged picture; the recording may hold it whole
-    return window_uri(report.recordings[0].window) if 0 in report.recordings else ""
+    return window_uri(report, 0)
 
 
-def window_uri(window: npt.NDArray[np.uint8]) -> str:
-    """A recording's window, uint8 array (height, width, 3)."""
-    return _uri(Image.fromarray(window))
+def window_uri(report: Report, run: int) -> str:
+    """The window at the end of a run, as its recording holds it; '' without a recording."""
+    recording = report.recordings.get(run)
+    if recording is None:
+        return ""
+    return _uri(Image.fromarray(report.scene.pictures(recording.trace).window))
 
 
 def _uri(image: Image.Image) -> str:

@@ -6,9 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from grader.reports.page.tracks import to_px
 from grader.reports.report import Point, Report
-from turtlesim_py.world.canvas import SIZE_PX
 
 #: A pin's head [px], and how far it stands from the place that it points to.
 RADIUS_PX = 11.0
@@ -31,31 +29,32 @@ class Pin:
 def pins(report: Report, run: int) -> tuple[Pin, ...]:
     """The pins of one run: those of failed checks have the first choice of a place."""
     shown = [p for p in report.points if p.run == run and p.has_place]
+    plane = report.scene.plane
     status = {p.number: report.verdicts[p.verdict].status for p in shown}
-    places = {p.number: _inside(*to_px(p.x, p.y)) for p in shown}
+    places = {p.number: _inside(*plane.to_px(p.x, p.y), plane.size_px) for p in shown}
     placed: list[Pin] = []
     for point in sorted(shown, key=lambda p: status[p.number] == "passed"):
         x, y = places[point.number]
-        head_x, head_y = _free_place(x, y, placed, list(places.values()))
+        head_x, head_y = _free_place(x, y, placed, list(places.values()), plane.size_px)
         placed.append(Pin(point, status[point.number], x, y, head_x, head_y))
     return tuple(sorted(placed, key=lambda pin: pin.point.number))
 
 
-def _inside(x: float, y: float) -> tuple[float, float]:
-    return min(max(x, 0.0), float(SIZE_PX)), min(max(y, 0.0), float(SIZE_PX))
+def _inside(x: float, y: float, size_px: int) -> tuple[float, float]:
+    return min(max(x, 0.0), float(size_px)), min(max(y, 0.0), float(size_px))
 
 
 def _free_place(
-    x: float, y: float, others: Sequence[Pin], places: Sequence[tuple[float, float]]
+    x: float, y: float, others: Sequence[Pin], places: Sequence[tuple[float, float]], size_px: int
 ) -> tuple[float, float]:
     """The nearest place for a head that is in the picture and covers nothing; or the best."""
     best, most_room = (x, y), -math.inf
     for distance in _DISTANCES_PX:
         for direction in range(_DIRECTIONS):
             # First away from the middle: there the picture is emptiest.
-            angle = math.atan2(y - SIZE_PX / 2, x - SIZE_PX / 2) + _turned(direction)
+            angle = math.atan2(y - size_px / 2, x - size_px / 2) + _turned(direction)
             head = (x + distance * math.cos(angle), y + distance * math.sin(angle))
-            if not all(RADIUS_PX + 2 <= c <= SIZE_PX - RADIUS_PX - 2 for c in head):
+            if not all(RADIUS_PX + 2 <= c <= size_px - RADIUS_PX - 2 for c in head):
                 continue
             heads = [math.dist(head, (o.head_x, o.head_y)) - 2 * RADIUS_PX - 2 for o in others]
             spots = [math.dist(head, place) - RADIUS_PX - 4 for place in places]

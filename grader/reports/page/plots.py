@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from grader.recording.recording import Recording
-from grader.reports.page.tracks import Floats, main_turtle, svg_path
-from turtlesim_py.world.turtle import SIZE_M, TICK_S
+from grader.reports.page.tracks import svg_path
+from grader.scenes.scene import Call, Curve, Floats, View
 
 #: A curve is drawn in a box of this size, which the page stretches. Two points a column.
 WIDTH, HEIGHT = 500, 100
@@ -73,39 +73,34 @@ class Plots:
     calls: tuple[Calls, ...]
 
 
-def plots(recording: Recording) -> Plots | None:
-    """The plots of a recording; None if there is nothing in it."""
-    name = main_turtle(recording)
-    if name is None or not recording.run.ticks:
+def plots(view: View, ticks: int, tick_s: float) -> Plots | None:
+    """The plots of a view; None if there is nothing in it.
+
+    Args:
+        ticks: how many were recorded, of `tick_s` [s] each.
+    """
+    if not view.curves or not ticks:
         return None
-    rows = recording.published[name]
-    ticks, duration_s = rows[:, 0], recording.run.ticks * TICK_S
-    x = ticks / recording.run.ticks * WIDTH
-    distance = np.hypot(rows[:, 1] - SIZE_M / 2, rows[:, 2] - SIZE_M / 2)
-    every_tick = np.arange(1, recording.run.ticks + 1) / recording.run.ticks * WIDTH
-    curves = (
-        _curve("Distance from the centre of the window", "m", x, distance),
-        _curve("Speed", "m/s", x, rows[:, 4]),
-        _curve("Angular velocity", "rad/s", x, rows[:, 5]),
-        _curve("Rate of velocity commands", "Hz", every_tick, _rate(recording, name)),
-    )
+    duration_s = ticks * tick_s
+    curves = tuple(_plot(curve, curve.ticks / ticks * WIDTH) for curve in view.curves)
     time_ticks = tuple(
         Tick(100 * value / duration_s, f"{value:g}")
         for value in _nice(0, duration_s, 6)
         if value <= duration_s
     )
-    return Plots(duration_s, time_ticks, curves, _calls(recording))
+    return Plots(duration_s, time_ticks, curves, _calls(view.calls, ticks))
 
 
-def _curve(title: str, unit: str, x: Floats, values: Floats) -> Plot:
+def _plot(curve: Curve, x: Floats) -> Plot:
+    values = curve.values
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
     steps = _nice(min(low, 0.0), max(high, 0.0), 4)
     bottom, top = steps[0], steps[-1]
     y = (top - values) / (top - bottom) * HEIGHT
     labels = tuple(Tick(100 * (v - bottom) / (top - bottom), f"{v:g}") for v in steps)
-    summary = f"{title}: from {low:.3g} to {high:.3g} {unit}"
-    return Plot(title, unit, svg_path(*_thinned(x, y)), labels, summary)
+    summary = f"{curve.title}: from {low:.3g} to {high:.3g} {curve.unit}"
+    return Plot(curve.title, curve.unit, svg_path(*_thinned(x, y)), labels, summary)
 
 
 def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -125,25 +120,10 @@ def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     return x[rows], y[rows]
 
 
-def _rate(recording: Recording, name: str) -> Floats:
-    """Velocity commands a second, for each tick: over the interval that ends with a command."""
-    rate = np.zeros(recording.run.ticks)
-    ticks, counts = np.unique(
-        np.array([e["tick"] for e in recording.calls("cmd_vel", name)], dtype=np.int64),
-        return_counts=True,
-    )
-    for start, stop, count in zip(ticks[:-1], ticks[1:], counts[1:], strict=True):
-        rate[start:stop] = count / ((stop - start) * TICK_S)
-    return rate
-
-
-def _calls(recording: Recording) -> tuple[Calls, ...]:
+def _calls(made: Sequence[Call], ticks: int) -> tuple[Calls, ...]:
     by_service: dict[str, list[Mark]] = defaultdict(list)
-    for event in recording.events:
-        if event["op"] != "cmd_vel":
-            at = 100 * event["tick"] / recording.run.ticks
-            color = f"#{event['r']:02x}{event['g']:02x}{event['b']:02x}" if "r" in event else ""
-            by_service[event["op"]].append(Mark(at, color))
+    for call in made:
+        by_service[call.name].append(Mark(100 * call.tick / ticks, call.color))
     listed = sorted(by_service.items(), key=lambda item: -len(item[1]))[:_SERVICES]
     return tuple(Calls(name, len(marks), _sparse(marks)) for name, marks in listed)
 

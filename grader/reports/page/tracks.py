@@ -1,25 +1,18 @@
-"""A recording as a page draws it: where the turtles went, thinned out, and what their pens did."""
+"""A view of a run as a page draws it: where things went, thinned out, and what their pens did."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from grader.recording.recording import Recording
-from turtlesim_py.world.canvas import Pen
-from turtlesim_py.world.turtle import METER_PX, SIZE_M, TICK_S
-
-Floats = npt.NDArray[np.float64]
+from grader.scenes.scene import Floats, Rest, Track, View
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000
-#: More turtles than this are not drawn; a submission can spawn any number.
-_TURTLES = 5
-#: The turtle that velocity commands of an exercise go to, if it is there.
-_FIRST_TURTLE = "turtle1"
+#: More tracks than this are not drawn; a submission can spawn any number.
+_TRACKS = 5
 
 
 @dataclass(frozen=True)
@@ -34,11 +27,11 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Track:
-    """The way of one turtle.
+class SampledTrack:
+    """One track at the samples of a film.
 
     Attributes:
-        name: the turtle's.
+        name: the track's.
         x, y: where it was at each sample [px, y down]; NaN where it was not there.
         theta: its heading at each sample [rad].
         stretches: the way in parts, one for each pen.
@@ -64,56 +57,37 @@ class Track:
 
 
 @dataclass(frozen=True)
-class Rest:
-    """A turtle stands still at (x, y) [m] from `time_s` on."""
-
-    x: float
-    y: float
-    time_s: float
-
-
-@dataclass(frozen=True)
 class Film:
     """All tracks of a run at common samples.
 
     Attributes:
         times: of the samples [s].
-        tracks: the turtle of the exercise first.
+        tracks: the one of the exercise first.
         cleared: samples at which everything drawn before vanished.
-        background: the window's colour.
-        rest: where the exercise's turtle stood still at the end, if it had moved before.
+        background: the picture's colour.
+        rest: where the first track stood still at the end, if it had moved before.
     """
 
     times: Floats
-    tracks: tuple[Track, ...]
+    tracks: tuple[SampledTrack, ...]
     cleared: tuple[int, ...]
     background: str
     rest: Rest | None
 
 
-def to_px(x: float, y: float) -> tuple[float, float]:
-    """A place in metres (y up) as pixels of the window (y down)."""
-    return x * METER_PX, (SIZE_M - y) * METER_PX
+def film(view: View, run_ticks: int, tick_s: float) -> Film:
+    """Thin a view out to what an animation needs.
 
-
-def main_turtle(recording: Recording) -> str | None:
-    """The turtle that plots are about."""
-    names = list(recording.published)
-    return _FIRST_TURTLE if _FIRST_TURTLE in names else next(iter(names), None)
-
-
-def film(recording: Recording) -> Film:
-    """Thin a recording out to what an animation needs."""
-    ticks = _sample_ticks(recording.run.ticks)
-    first = main_turtle(recording)
-    names = sorted(recording.published, key=lambda name: (name != first, name))[:_TURTLES]
-    cleared = [e["tick"] for e in recording.events if e["op"] in ("clear", "reset")]
+    Args:
+        run_ticks: how many ticks were recorded, of `tick_s` [s] each.
+    """
+    ticks = _sample_ticks(run_ticks)
     return Film(
-        np.asarray(ticks * TICK_S, dtype=np.float64),
-        tuple(_track(recording, name, ticks) for name in names),
-        tuple(sorted({int(np.searchsorted(ticks, tick)) for tick in cleared})),
-        _background(recording),
-        _rest(recording, first),
+        np.asarray(ticks * tick_s, dtype=np.float64),
+        tuple(_sampled(track, ticks) for track in view.tracks[:_TRACKS]),
+        tuple(sorted({int(np.searchsorted(ticks, tick)) for tick in view.cleared})),
+        view.background,
+        view.rest,
     )
 
 
@@ -139,60 +113,26 @@ def _sample_ticks(ticks: int) -> npt.NDArray[np.int64]:
     return samples
 
 
-def _track(recording: Recording, name: str, ticks: npt.NDArray[np.int64]) -> Track:
-    rows = recording.published[name]
-    at = np.searchsorted(rows[:, 0], ticks)
-    there = np.isin(ticks, rows[:, 0])
-    columns = np.full((3, len(ticks)), np.nan)
-    columns[:, there] = rows[at[there], 1:4].T
-    stretches = _stretches(recording, name, ticks)
-    return Track(
-        name, columns[0] * METER_PX, (SIZE_M - columns[1]) * METER_PX, columns[2], stretches
-    )
+def _sampled(track: Track, ticks: npt.NDArray[np.int64]) -> SampledTrack:
+    at = np.searchsorted(track.ticks, ticks)
+    there = np.isin(ticks, track.ticks)
+    x, y, theta = (np.full(len(ticks), np.nan) for _ in range(3))
+    for sampled, values in ((x, track.x), (y, track.y), (theta, track.theta)):
+        sampled[there] = values[at[there]]
+    return SampledTrack(track.name, x, y, theta, _stretches(track, ticks))
 
 
-def _rest(recording: Recording, name: str | None) -> Rest | None:
-    rows = recording.published[name] if name is not None else np.zeros((0, 9))
-    moved = np.flatnonzero(np.any(np.diff(rows[:, 1:3], axis=0) != 0, axis=1)) + 1
-    if not len(moved) or moved[-1] == len(rows) - 1 or not np.isfinite(rows[-1, 1:3]).all():
-        return None
-    tick, x, y = rows[moved[-1], :3].tolist()
-    return Rest(x, y, tick * TICK_S)
-
-
-def _stretches(
-    recording: Recording, name: str, ticks: npt.NDArray[np.int64]
-) -> tuple[Stretch, ...]:
+def _stretches(track: Track, ticks: npt.NDArray[np.int64]) -> tuple[Stretch, ...]:
     """The way by pens; of several changes between two samples the last counts."""
-    changes: dict[int, dict[str, Any]] = {
-        int(np.searchsorted(ticks, call["tick"])): call for call in recording.calls("set_pen", name)
-    }
-    default = Pen()
-    color, width, drawn = _hex(default.r, default.g, default.b), default.width, True
+    pen, *later = track.pens
+    changes = {int(np.searchsorted(ticks, change.tick)): change for change in later}
     stretches: list[Stretch] = []
     start = 0
-    for sample, call in [*sorted(changes.items()), (len(ticks) - 1, {})]:
+    for sample, change in [*sorted(changes.items()), (len(ticks) - 1, None)]:
         # The stroke that leads to the sample of a change has the new colour already.
-        end = max(sample - 1, start) if call else sample
+        end = max(sample - 1, start) if change else sample
         if end > start:
-            stretches.append(Stretch(start, end, color, width, drawn))
+            stretches.append(Stretch(start, end, pen.color, pen.width, pen.drawn))
         start = end
-        if call:
-            drawn = not call["off"]
-            if drawn:
-                color, width = _hex(call["r"], call["g"], call["b"]), call["width"]
+        pen = change or pen
     return tuple(stretches)
-
-
-def _hex(r: int, g: int, b: int) -> str:
-    return f"#{r:02x}{g:02x}{b:02x}"
-
-
-def _background(recording: Recording) -> str:
-    """The commonest colour of the window where nothing is painted."""
-    unpainted = recording.window[recording.canvas[..., 3] == 0]
-    if not len(unpainted):
-        return "#4556ff"
-    colors, counts = np.unique(unpainted, axis=0, return_counts=True)
-    r, g, b = colors[int(np.argmax(counts))].tolist()
-    return _hex(r, g, b)

@@ -1,8 +1,8 @@
 """The simulator's process in a run in virtual time: it ticks when the submission's process asks.
 
-    python -m grader.run.simulator.virtual_time FD FOLDER LIMITS START LINK PID CORE PATIENCE
+    python -m grader.run.simulator.virtual_time FD FILE PLAN LINK PID CORE PATIENCE
 
-The first four as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
+The first three as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
 process PID, CORE the processor core to share with it (-1: any), PATIENCE a
 `grader.run.simulator.link.Patience` as JSON.
 
@@ -19,7 +19,6 @@ import signal
 import socket
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -27,53 +26,27 @@ import rclpy
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 
-from grader.exercise.loading import Limits
-from grader.recording.recording import Start
-from grader.run import stage
+from grader.run import handover
 from grader.run.lockstep import actions, endpoints, waitsets
 from grader.run.lockstep.protocol import TICK_NS, Advance, Hello, Reply, State
+from grader.run.plan import Plan
 from grader.run.processes import cores
 from grader.run.simulator.endpoints import Desk
 from grader.run.simulator.link import HostLink, Patience, Refused
-from grader.run.simulator.real_time import EndOfRun, PublishedTopics, place
+from grader.run.simulator.published_topics import PublishedTopics
 from grader.run.student import clocks
 from grader.run.student.main import die_with_parent
-from grader.scenes.turtlesim.recorder import Recorder
-from turtlesim_py.ros.node import TurtlesimNode
+from grader.scenes import load_scene
+from grader.scenes.scene import Hooks, Reason
 
 #: How long DDS may take to connect two ends [s].
 MATCH_PATIENCE_S = 3.0
-#: How often the node is served although nothing has come [ticks]: goals expire.
-SERVE_TICKS = 63
-
-
-class LockstepNode(TurtlesimNode):
-    """A turtlesim node that lets the other side find new endpoints before a tick goes on."""
-
-    def __init__(self, desk: Desk) -> None:
-        self.desk = desk
-        self.on_change: Callable[[], None] = lambda: None
-        super().__init__(["--ros-args", "-p", "turtle_image:=rolling"])
-
-    def serve(self, now_ns: int | None = None) -> int:
-        """Serve what has arrived, if anything has."""
-        if now_ns is None:
-            now_ns = int(self.get_clock().now().nanoseconds)
-        if not self.desk.has_mail() and self.arena.ticks % SERVE_TICKS:
-            self.arena.now_ns = now_ns
-            return now_ns
-        super().serve(now_ns)
-        if self.desk.changed:
-            self.on_change()
-        return now_ns
 
 
 class Lockstep:
-    """Ticks a node as its student's side asks, to the end of the run."""
+    """Ticks a scene as its student's side asks, to the end of the run."""
 
-    def __init__(
-        self, link: HostLink, limits: Limits, start: Start | None, shared_core: int
-    ) -> None:
+    def __init__(self, link: HostLink, plan: Plan, shared_core: int) -> None:
         self._link = link
         self._core = shared_core
         self.now_ns = 0
@@ -83,14 +56,14 @@ class Lockstep:
         endpoints.install(self._desk, lambda: clocks.EPOCH_NS + self.now_ns)
         actions.install()
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-        self._node = LockstepNode(self._desk)
-        self._node.on_change = self._introduce
-        place(self._node.arena, start)
-        self._recorder = Recorder(self._node.arena)
-        self._topics = PublishedTopics(self._node)
-        self._end = EndOfRun(limits)
+        self._scene = load_scene(plan.scene)
+        assert self._scene.tick_ns == TICK_NS
+        hooks = Hooks(has_mail=self._desk.has_mail, after_serving=self._introduce_changes)
+        self._simulation = self._scene.simulate(plan.limits, plan.start, hooks)
+        self._simulation.record()
+        self._topics = PublishedTopics(self._simulation.node)
         self._tick = 0
-        self._reason = ""
+        self._reason: Reason = ""
         self._request: Advance | None = None
         #: when the run reached which stage, on the machine's monotonic clock [s]
         self._marks: dict[str, float] = {}
@@ -129,11 +102,11 @@ class Lockstep:
     def _note_rest(self) -> None:
         """Whether the turtle had done its work is asked once: when the submission stopped."""
         if self._was_at_rest is None:
-            self._was_at_rest = self._end.is_at_rest
+            self._was_at_rest = self._simulation.is_at_rest
 
-    def save(self, folder: Path) -> None:
+    def save(self, file: Path) -> None:
         """Write the recording where the grader finds it."""
-        stage.leave(self._recorder.recording(self._topics.found()), folder)
+        handover.leave(file, self._scene, self._simulation.trace(), self._topics.found())
 
     def _next_request(self) -> Advance | None:
         """The next `Advance`, after all `Hello`s before it."""
@@ -174,13 +147,12 @@ class Lockstep:
         self._tick += 1
         self.now_ns = self._tick * TICK_NS
         self._clocks.set_now(self.now_ns)
-        readings = self._node.tick()
-        self._recorder.take(readings)
-        first = readings.get("turtle1")
-        self._reason = self._end.after(self._tick, first.pose if first else None)
+        self._reason = self._simulation.tick()
 
-    def _introduce(self) -> None:
+    def _introduce_changes(self) -> None:
         """In the middle of a tick: have the other side find our new endpoints, and ours its."""
+        if not self._desk.changed:
+            return
         if self._request is None:
             self._desk.table()
             self._desk.bury()
@@ -199,7 +171,7 @@ class Lockstep:
         for inbox in self._desk.inboxes:
             inbox.drain()
         if self._link.silence == "gone":
-            self._end.submission_gone()
+            self._simulation.submission_gone()
         while not self._reason:
             self._tick_once()
 
@@ -233,12 +205,9 @@ def main(argv: list[str]) -> int:
     die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     control = socket.socket(fileno=int(argv[0]))
-    start = json.loads(argv[3])
-    link = HostLink(
-        socket.socket(fileno=int(argv[4])), int(argv[5]), Patience(**json.loads(argv[7]))
-    )
-    limits = Limits(**json.loads(argv[2]))
-    lockstep = Lockstep(link, limits, Start(**start) if start else None, int(argv[6]))
+    theirs = socket.socket(fileno=int(argv[3]))
+    link = HostLink(theirs, int(argv[4]), Patience(**json.loads(argv[6])))
+    lockstep = Lockstep(link, Plan.from_json(argv[2]), int(argv[5]))
     gc.collect()
     gc.freeze()
     try:

@@ -1,7 +1,10 @@
 """The submission's process: run what was handed in, and nothing of ours.
 
-    python student_main.py ROOT module:function
-    python student_main.py ROOT path/to/script.py [function]
+    python main.py AWAITED ROOT module:function
+    python main.py AWAITED ROOT path/to/script.py [function]
+
+AWAITED is a JSON list of two lists: endings of the names of topics and of services that have to be
+connected when the submission gets them; see `Introduced`.
 
 Started by path, not with -m, and it imports nothing of the grader, so that the submission finds
 the interpreter as it would at a student's desk. ROOT comes first on the import path; our packages
@@ -13,6 +16,7 @@ import functools
 import importlib
 import importlib.machinery
 import importlib.util
+import json
 import runpy
 import signal
 import sys
@@ -26,11 +30,6 @@ from typing import Any
 #: Installed packages that a submission must never pick up in place of its own.
 OURS = ("turtlesim_challenge", "turtlesim_py", "grader")
 PR_SET_PDEATHSIG = 1
-#: What the simulator serves.
-SERVICES = (
-    *("clear", "kill", "reset", "set_pen", "spawn"),
-    *("teleport_absolute", "teleport_relative"),
-)
 
 
 class OnlyFromSubmission:
@@ -50,16 +49,17 @@ class OnlyFromSubmission:
 
 
 class Introduced:
-    """An import hook: what drives a turtle is connected when the submission gets it, in real time.
+    """An import hook: what drives the scene is connected when the submission gets it, in real time.
 
     ROS drops what is published before the other side is found, which takes some tenths of a
-    second: the same submission would draw another picture each time. So publishers and clients of
-    the turtle's names wait until they are connected, all together for `patience_s` at most: one
+    second: the same submission would do something else each time. So publishers and clients of
+    these names wait until they are connected, all together for `patience_s` at most: one
     with a wrong name never will be.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, topics: list[str], services: list[str]) -> None:
         self.patience_s = 2.0
+        self._topics, self._services = tuple(topics), services
 
     def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
         """Load `rclpy.node` as usual, then put the waiting in."""
@@ -82,14 +82,14 @@ class Introduced:
         @functools.wraps(create_publisher)
         def connected_publisher(self_: Any, *args: Any, **kwargs: Any) -> Any:
             publisher = create_publisher(self_, *args, **kwargs)
-            if publisher.topic_name.endswith("/cmd_vel"):
+            if publisher.topic_name.endswith(self._topics):
                 self._wait(lambda: publisher.get_subscription_count() > 0)
             return publisher
 
         @functools.wraps(create_client)
         def connected_client(self_: Any, *args: Any, **kwargs: Any) -> Any:
             client = create_client(self_, *args, **kwargs)
-            if client.srv_name.rpartition("/")[2] in SERVICES:
+            if client.srv_name.rpartition("/")[2] in self._services:
                 self._wait(client.service_is_ready)
             return client
 
@@ -172,10 +172,10 @@ def forget_ourselves(root: str, target: str) -> None:
 
 def main() -> None:
     """Prepare the interpreter, run, and leave with the exit code."""
-    _, root, target, *more = sys.argv
+    _, awaited, root, target, *more = sys.argv
     die_with_parent()
     forget_ourselves(root, target)
-    sys.meta_path.insert(0, Introduced())
+    sys.meta_path.insert(0, Introduced(*json.loads(awaited)))
     sys.exit(call(root, target, more[0] if more else None))
 
 

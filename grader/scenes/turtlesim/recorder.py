@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import Any
+from dataclasses import replace
 
-import numpy as np
-
-from grader.recording.recording import Recording, Run
-from turtlesim_py.replay import COLUMNS, number
+from grader.scenes.turtlesim.trace import Log, TurtleTrace
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.events import Event, Input, LogLine
+from turtlesim_py.world.events import Event, from_json, to_json
+from turtlesim_py.world.notices import LogLine, Notice
+from turtlesim_py.world.trajectory import Trajectory
 from turtlesim_py.world.turtle import Reading
 
 
@@ -21,46 +20,35 @@ class Recorder:
     def __init__(self, arena: Arena) -> None:
         self.ticks = 0
         self._arena = arena
-        self._events: list[dict[str, Any]] = []
-        self._logs: list[list[Any]] = []
-        self._rows: dict[str, list[tuple[float, ...]]] = defaultdict(list)
+        self._events: list[Event] = []
+        self._logs: list[Log] = []
+        self._readings: dict[str, list[tuple[int, Reading]]] = defaultdict(list)
         arena.listeners.append(self._listen)
 
     def take(self, readings: dict[str, Reading]) -> None:
         """Record what every turtle has published in this tick."""
         self.ticks += 1
-        for name, (pose, color) in readings.items():
-            self._rows[name].append((self.ticks, *pose, *color))
+        for name, reading in readings.items():
+            self._readings[name].append((self.ticks, reading))
 
-    def recording(self, topics: tuple[dict[str, str], ...] = ()) -> Recording:
+    def trace(self) -> TurtleTrace:
         """Everything up to now."""
         arena = self._arena
-        return Recording(
-            events=tuple(self._events),
-            published={
-                name: np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS))
-                for name, rows in self._rows.items()
+        return TurtleTrace(
+            ticks=self.ticks,
+            # through JSON: an event is the same whether it was recorded or read from a bag
+            events=tuple(from_json(to_json(event)) for event in self._events),
+            trajectories={
+                name: Trajectory.of_readings(readings) for name, readings in self._readings.items()
             },
             logs=tuple(self._logs),
             canvas=arena.canvas.rgba(),
             window=picture.render(arena.canvas, arena.background, arena.sprites()),
-            topics=topics,
-            run=Run(ticks=self.ticks),
         )
 
-    def _listen(self, event: Event) -> None:
+    def _listen(self, notice: Notice) -> None:
         tick = self.ticks + 1
-        if isinstance(event, Input):
-            args = {key: _plain(value) for key, value in event.args.items()}
-            self._events.append({"tick": tick, "op": event.op, **args})
-        elif isinstance(event, LogLine):
-            self._logs.append([tick, event.severity, "turtlesim", event.text])
-
-
-def _plain(value: Any) -> Any:
-    """A value that JSON can hold: NaN and infinities as strings, goal ids as hexadecimal."""
-    if isinstance(value, bytes):
-        return value.hex()
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return number(value, 17) if isinstance(value, float) else value
+        if isinstance(notice, Event):
+            self._events.append(replace(notice, tick=tick))
+        elif isinstance(notice, LogLine):
+            self._logs.append(Log(tick, notice.severity, "turtlesim", notice.text))

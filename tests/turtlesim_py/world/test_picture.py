@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from turtlesim_py.png import save_png
 from turtlesim_py.world.canvas import Canvas, Pen
 from turtlesim_py.world.floats import PI
-from turtlesim_py.world.picture import Sprite, render, save_png
+from turtlesim_py.world.picture import Sprite, render
 from turtlesim_py.world.sprites import NAMES, sprite
 
 BLUE = (69, 86, 255)

@@ -1,0 +1,42 @@
+"""The file in which the simulator's process leaves what it has recorded.
+
+The topics as JSON, behind its length in eight bytes; then the trace as its scene encodes it.
+Nothing is unpickled: whoever wrote the file could have the grader do as he likes.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from struct import Struct
+
+from grader.errors import GraderFailure
+from grader.recording.recording import PublishedTopic
+from grader.scenes.scene import Scene, Trace
+
+_LENGTH = Struct("<Q")
+
+
+def leave(path: Path, scene: Scene, trace: Trace, topics: tuple[PublishedTopic, ...]) -> None:
+    """In the simulator's process: write it."""
+    facts = json.dumps([asdict(topic) for topic in topics]).encode()
+    path.write_bytes(_LENGTH.pack(len(facts)) + facts + scene.encode(trace))
+
+
+def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
+    """In the grader's process: read it from an open file descriptor.
+
+    Raises:
+        GraderFailure: it is not what `leave` writes.
+    """
+    with open(file, "rb", closefd=False) as opened:
+        opened.seek(0)
+        data = opened.read()
+    try:
+        (length,) = _LENGTH.unpack_from(data)
+        end = _LENGTH.size + length
+        topics = tuple(PublishedTopic(**words) for words in json.loads(data[_LENGTH.size : end]))
+        return scene.decode(data[end:]), topics
+    except Exception as error:
+        raise GraderFailure(f"the simulator left no recording: {error!s:.200}") from error

@@ -1,0 +1,44 @@
+"""What is to be run beside a submission, as the grader says it to the simulator's process."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Self
+
+from grader.scenes.scene import Limits, Start
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One run.
+
+    Attributes:
+        limits: when it ends.
+        start: where it begins; None for the scene's usual place.
+        scene: the name of what runs beside the submission.
+        seed: of the varied runs that this one has beside it, for the record.
+        flags: remarks that are known before it begins.
+    """
+
+    limits: Limits
+    start: Start | None = None
+    scene: str = "turtlesim"
+    seed: int | None = None
+    flags: tuple[str, ...] = ()
+
+    def to_json(self) -> str:
+        """As an argument of the simulator's process."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """The plan that `to_json` has written."""
+        words = json.loads(text)
+        start = words.pop("start")
+        return cls(
+            limits=Limits(**words.pop("limits")),
+            start=Start(**start) if start else None,
+            flags=tuple(words.pop("flags")),
+            **words,
+        )

@@ -1,0 +1,39 @@
+"""On which topics the submission publishes: the usual mistake is a wrong name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from grader.recording.recording import PublishedTopic
+
+EVENTS = "/parameter_events"
+
+
+class PublishedTopics:
+    """Looks at the graph through a node of the scene, whose own publishers do not count."""
+
+    #: every node has these, and ROS publishes on them by itself
+    USUAL = ("/rosout", EVENTS)
+
+    def __init__(self, node: Any) -> None:
+        self._node = node
+        self._types: dict[str, str] = {}
+
+    def look(self) -> int:
+        """Note what the graph shows now; returns how many publishers others have, but of rosout."""
+        node = self._node
+        own = dict(
+            node.get_publisher_names_and_types_by_node(node.get_name(), node.get_namespace())
+        )
+        total = 0
+        for topic, types in node.get_topic_names_and_types():
+            others = node.count_publishers(topic) - (topic in own)
+            if others > 0 and topic != "/rosout":
+                total += others
+                if topic not in self.USUAL:
+                    self._types[topic] = types[0]
+        return total
+
+    def found(self) -> tuple[PublishedTopic, ...]:
+        """What was noted."""
+        return tuple(PublishedTopic(topic, kind) for topic, kind in sorted(self._types.items()))

@@ -1,0 +1,314 @@
+"""What a scene is: whatever runs beside a submission, and everything that only it can know.
+
+A scene has nodes, a tick, a place where things start, something that it records, and a rule for
+when a run is over. Runs in real and in virtual time, recordings and reports know it by `Scene`
+alone. What it does in the simulator's process is its `Simulation`; the rest needs no ROS.
+A scene knows nothing of exercises, submissions and results.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+Pixels = npt.NDArray[np.uint8]
+Floats = npt.NDArray[np.float64]
+#: Why a run is over: it came to rest, nothing ever moved, the submission is gone, time is up.
+Reason = Literal["", "rest", "no_motion", "gone", "time_limit"]
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where what is driven stands when a run begins: x, y [m], theta [rad]."""
+
+    x: float
+    y: float
+    theta: float
+
+
+class Trace(Protocol):
+    """What a scene has recorded of a run; each scene has a type of its own for it."""
+
+    @property
+    def ticks(self) -> int:
+        """How many ticks were recorded."""
+
+    @property
+    def simulated_s(self) -> float:
+        """How long that was [s]."""
+
+    def sha256(self) -> str:
+        """A hash of all that moved and all that came in; equal hashes mean equal runs."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When a run ends, in simulated seconds.
+
+    Attributes:
+        first_motion_s: nothing has moved by then.
+        rest_s: something has moved and then rested for so long.
+        total_s: in any case.
+    """
+
+    first_motion_s: float
+    rest_s: float
+    total_s: float
+
+
+@dataclass(frozen=True)
+class Introduction:
+    """What of a scene a submission's process has to know before it can talk with it.
+
+    Attributes:
+        nodes: the names and namespaces of the scene's nodes.
+        topics, services: endings of the names that a submission drives the scene by. In real time
+            its publishers and clients of these wait until they are connected.
+    """
+
+    nodes: tuple[tuple[str, str], ...]
+    topics: tuple[str, ...]
+    services: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Hooks:
+    """How a run takes part in a simulation.
+
+    Attributes:
+        has_mail: whether anything has arrived; while nothing has, a node need not be served.
+        after_serving: called when the nodes have been served, before the tick goes on.
+    """
+
+    has_mail: Callable[[], bool] = lambda: True
+    after_serving: Callable[[], None] = lambda: None
+
+
+class Simulation(Protocol):
+    """A scene at work, in the simulator's process, when ROS is up there."""
+
+    @property
+    def node(self) -> Any:
+        """A node of it, to ask what others publish: an `rclpy.node.Node`."""
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether what is driven has moved, and does not now."""
+
+    def record(self) -> None:
+        """Record from the next tick on; inputs are recorded from the beginning."""
+
+    def submission_gone(self) -> None:
+        """The submission's process has ended."""
+
+    def follow_wall_clock(self, step: Callable[[], bool]) -> None:
+        """Call `step` at the rate of the scene's ticks, until it returns False."""
+
+    def tick(self) -> Reason:
+        """Serve what has arrived, let a tick pass; why the run is over, or ''."""
+
+    @property
+    def recorded_s(self) -> float:
+        """How long it has recorded [simulated s]."""
+
+    def trace(self) -> Trace:
+        """Everything recorded up to now."""
+
+
+class Message(NamedTuple):
+    """A message of a bag: its tick, topic, ROS type, and itself in the types of rosbags."""
+
+    tick: int
+    topic: str
+    msgtype: str
+    message: Any
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A quantity over time.
+
+    Attributes:
+        title, unit: what it shows.
+        ticks, values: float64 (n,); not a number where it has no value.
+    """
+
+    title: str
+    unit: str
+    ticks: Floats
+    values: Floats
+
+
+@dataclass(frozen=True)
+class Call:
+    """Something that the submission asked for; `color` ("#rrggbb") where it names one."""
+
+    name: str
+    tick: int
+    color: str = ""
+
+
+@dataclass(frozen=True)
+class PenChange:
+    """From a tick on, a track is drawn in a colour ("#rrggbb") and width [px], or not at all."""
+
+    tick: int
+    color: str
+    width: int
+    drawn: bool = True
+
+
+@dataclass(frozen=True)
+class Track:
+    """Where something was, in pixels of the scene's picture.
+
+    Attributes:
+        name: its own.
+        ticks: when, int64 (n,).
+        x, y: where [px, y down], float64 (n,); not a number where it was nowhere.
+        theta: its heading [rad], float64 (n,).
+        pens: how it is drawn, in order; the first from tick 0 on.
+    """
+
+    name: str
+    ticks: npt.NDArray[np.int64]
+    x: Floats
+    y: Floats
+    theta: Floats
+    pens: tuple[PenChange, ...]
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What is driven stands still at (x, y) [m] from `time_s` [simulated s] on."""
+
+    x: float
+    y: float
+    time_s: float
+
+
+@dataclass(frozen=True)
+class View:
+    """A recording as a page can show it.
+
+    Attributes:
+        tracks: the one that the exercise is about first.
+        cleared: ticks at which everything drawn before vanished.
+        background: the picture's colour, "#rrggbb".
+        rest: where the first track stood still at the end, if it had moved before.
+        curves, calls: over time.
+    """
+
+    tracks: tuple[Track, ...]
+    cleared: tuple[int, ...]
+    background: str
+    rest: Rest | None
+    curves: tuple[Curve, ...]
+    calls: tuple[Call, ...]
+
+
+class Plane(NamedTuple):
+    """The picture of a scene: its edge [px], and pixels in a metre; metres have y up."""
+
+    size_px: int
+    metre_px: float
+    size_m: float
+
+    def to_px(self, x: float, y: float) -> tuple[float, float]:
+        """A place in metres as pixels (y down)."""
+        return x * self.metre_px, (self.size_m - y) * self.metre_px
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """The pictures of a recording by name; `window` is what a person would have seen at the end."""
+
+    window: Pixels
+    others: Mapping[str, Pixels] = field(default_factory=dict)
+
+
+class Scene(Protocol):
+    """A kind of scene; all of it but `simulate` works without ROS."""
+
+    @property
+    def name(self) -> str:
+        """As an exercise names it; also that of its folder."""
+
+    @property
+    def tick_ns(self) -> int:
+        """The length of a tick [ns]."""
+
+    @property
+    def introduction(self) -> Introduction:
+        """What a submission's process has to know of it."""
+
+    @property
+    def thing(self) -> str:
+        """What a submission drives, in a word."""
+
+    @property
+    def plane(self) -> Plane:
+        """How places become pixels."""
+
+    def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
+        """Where varied runs start, so far from the usual place; the same for the same seed."""
+
+    # In the simulator's process ---------------------------------------------------------------
+
+    def simulate(self, limits: Limits, start: Start | None, hooks: Hooks) -> Simulation:
+        """Make the nodes and everything else; ROS is up."""
+
+    def encode(self, trace: Trace) -> bytes:
+        """A trace's bytes, for the way from the simulator's process to the grader's."""
+
+    def decode(self, data: bytes) -> Trace:
+        """The trace that bytes mean.
+
+        Raises:
+            ValueError: they mean none.
+        """
+
+    # Recordings -------------------------------------------------------------------------------
+
+    def message_definitions(self) -> Mapping[str, str]:
+        """The definitions of the ROS types in its bags that rosbags does not know."""
+
+    def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
+        """Topics with their types that a bag has even where it holds no message of them."""
+
+    def to_messages(self, trace: Trace) -> list[Message]:
+        """A trace as messages, by tick."""
+
+    def from_messages(
+        self, messages: Sequence[Message], topics: Mapping[str, str], ticks: int
+    ) -> Trace:
+        """The trace of a bag's messages and topics (with types), both in the bag's order.
+
+        Args:
+            ticks: how many were recorded.
+
+        Raises:
+            ValueError, KeyError, TypeError, AttributeError: they are not from `to_messages`.
+        """
+
+    def scenario(self, trace: Trace) -> dict[str, Any]:
+        """The inputs, to be replayed without ROS."""
+
+    # Reports ----------------------------------------------------------------------------------
+
+    def pictures(self, trace: Trace) -> Pictures:
+        """What it looked like at the end."""
+
+    def view(self, trace: Trace) -> View:
+        """The trace for a page."""
+
+    def remarks(self, trace: Trace, published: Sequence[str]) -> list[str]:
+        """What a reader of any exercise's result should know about the run.
+
+        Args:
+            published: the topics that the submission published on.
+        """

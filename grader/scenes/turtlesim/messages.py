@@ -1,0 +1,199 @@
+"""A trace as ROS messages, and back.
+
+| topic | type | one message is |
+|---|---|---|
+| /NAME/pose | turtlesim/msg/Pose | what turtle NAME published in a tick |
+| /NAME/color_sensor | turtlesim/msg/Color | ... and the colour under it |
+| /NAME/cmd_vel | geometry_msgs/msg/Twist | a velocity command that reached it |
+| /turtlesim/events | std_msgs/msg/String | any other input: a scenario event as JSON |
+| /rosout | rcl_interfaces/msg/Log | a line of the simulator's log |
+| /turtlesim/path | sensor_msgs/msg/Image | at the end: what the pens drew, rgba8 |
+| /turtlesim/window | sensor_msgs/msg/Image | at the end: the original's window, rgb8 |
+"""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.stores import ros2_jazzy as ros
+
+from grader.scenes.scene import Message
+from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace
+from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.events import CmdVel, Event, EventError, Vector, from_json, to_json
+from turtlesim_py.world.trajectory import Trajectory
+
+POSE, COLOR, TWIST = "turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"
+STRING, LOG, IMAGE = "std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"
+#: rosbags knows no turtlesim, and where ROS is not sourced there may be no share/turtlesim to ask.
+DEFINITIONS = {
+    POSE: "float32 x\nfloat32 y\nfloat32 theta\n"
+    "float32 linear_velocity\nfloat32 angular_velocity\n",
+    COLOR: "uint8 r\nuint8 g\nuint8 b\n",
+}
+EVENTS, LOGS = "/turtlesim/events", "/rosout"
+PATH, WINDOW = "/turtlesim/path", "/turtlesim/window"
+ENCODINGS = {PATH: "rgba8", WINDOW: "rgb8"}
+#: rcl_interfaces/msg/Log's levels.
+LEVELS = {"DEBUG": 10, "INFO": 20, "WARN": 30, "ERROR": 40, "FATAL": 50}
+SEVERITIES = {level: severity for severity, level in LEVELS.items()}
+
+
+def topics(turtle: str) -> dict[str, str]:
+    """The topics of a turtle that publishes, with their types."""
+    return {f"/{turtle}/pose": POSE, f"/{turtle}/color_sensor": COLOR}
+
+
+# A trace to messages --------------------------------------------------------------------------
+
+
+def to_messages(trace: TurtleTrace) -> list[Message]:
+    """All messages by tick; within a tick inputs, logs, readings, and pictures last."""
+    logs = (
+        Message(tick, LOGS, LOG, _log(tick, severity, name, text))
+        for tick, severity, name, text in trace.logs
+    )
+    readings = (_readings(name, way) for name, way in trace.trajectories.items())
+    end = trace.ticks
+    pictures = (
+        Message(end, topic, IMAGE, _image(pixels, ENCODINGS[topic], end))
+        for topic, pixels in ((PATH, trace.canvas), (WINDOW, trace.window))
+    )
+    found = chain(map(_input, trace.events), logs, *readings, pictures)
+    return sorted(found, key=lambda message: message.tick)
+
+
+def _readings(turtle: str, way: Trajectory) -> Iterator[Message]:
+    types = _types()
+    pose_of, color_of = types[POSE], types[COLOR]
+    pose_topic, color_topic = topics(turtle)
+    for tick, *pose, r, g, b in way.rows().tolist():
+        yield Message(int(tick), pose_topic, POSE, pose_of(*pose))
+        yield Message(int(tick), color_topic, COLOR, color_of(int(r), int(g), int(b)))
+
+
+def _types() -> dict[str, type]:
+    """The classes of turtlesim's messages."""
+    store = get_typestore(Stores.EMPTY)
+    for msgtype, text in DEFINITIONS.items():
+        store.register(get_types_from_msg(text, msgtype))
+    return dict(store.types)
+
+
+def _input(event: Event) -> Message:
+    """A velocity command as a Twist, all else as JSON."""
+    if isinstance(event, CmdVel):
+        vectors = (
+            ros.geometry_msgs__msg__Vector3(*event.linear),
+            ros.geometry_msgs__msg__Vector3(*event.angular),
+        )
+        twist = ros.geometry_msgs__msg__Twist(*vectors)
+        return Message(event.tick, f"/{event.turtle}/cmd_vel", TWIST, twist)
+    text = ros.std_msgs__msg__String(json.dumps(to_json(event)))
+    return Message(event.tick, EVENTS, STRING, text)
+
+
+def _log(tick: int, severity: str, name: str, text: str) -> Any:
+    # CDR is UTF-8, which cannot hold half a surrogate pair.
+    text = text.encode("utf-8", "replace").decode("utf-8")
+    return ros.rcl_interfaces__msg__Log(_time(tick), LEVELS[severity], name, text, "", "", 0)
+
+
+def _image(pixels: Pixels, encoding: str, tick: int) -> Any:
+    height, width, channels = pixels.shape
+    header = ros.std_msgs__msg__Header(_time(tick), "")
+    step = width * channels
+    return ros.sensor_msgs__msg__Image(header, height, width, encoding, 0, step, pixels.reshape(-1))
+
+
+def _time(tick: int) -> Any:
+    return ros.builtin_interfaces__msg__Time(*divmod(tick * TICK_NS, 1_000_000_000))
+
+
+# Messages to a trace --------------------------------------------------------------------------
+
+
+def from_messages(
+    messages: Sequence[Message], bag_topics: Mapping[str, str], ticks: int
+) -> TurtleTrace:
+    """The trace that messages in order say; `bag_topics` with their types, in order.
+
+    Raises:
+        ValueError, KeyError, TypeError, AttributeError: they are not what `to_messages` makes.
+    """
+    events: list[Event] = []
+    logs: list[Log] = []
+    pictures: dict[str, Pixels] = {}
+    readings: dict[str, list[tuple[float, ...]]] = defaultdict(list)
+    for tick, topic, msgtype, message in messages:
+        match msgtype:
+            case "turtlesim/msg/Pose":
+                pose = (message.x, message.y, message.theta)
+                speeds = (message.linear_velocity, message.angular_velocity)
+                readings[topic].append((tick, *pose, *speeds))
+            case "turtlesim/msg/Color":
+                readings[topic].append((tick, message.r, message.g, message.b))
+            case "geometry_msgs/msg/Twist":
+                events.append(_command(tick, topic, message))
+            case "std_msgs/msg/String":
+                events.append(from_json(_object(message.data)))
+            case "rcl_interfaces/msg/Log":
+                logs.append(Log(tick, SEVERITIES[message.level], message.name, message.msg))
+            case "sensor_msgs/msg/Image":
+                pictures[topic] = _pixels(message, ENCODINGS[topic])
+            case _:
+                raise ValueError(f"a recording of turtlesim has no {msgtype} on {topic}")
+    turtles = [
+        topic.removeprefix("/").removesuffix("/pose")
+        for topic, msgtype in bag_topics.items()
+        if msgtype == POSE
+    ]
+    return TurtleTrace(
+        ticks=ticks,
+        events=tuple(events),
+        trajectories={
+            name: _trajectory(*(readings[topic] for topic in topics(name))) for name in turtles
+        },
+        logs=tuple(logs),
+        canvas=pictures[PATH],
+        window=pictures[WINDOW],
+    )
+
+
+def _command(tick: int, topic: str, twist: Any) -> CmdVel:
+    turtle = topic.removeprefix("/").removesuffix("/cmd_vel")
+    return CmdVel(
+        tick=tick, turtle=turtle, linear=_vector(twist.linear), angular=_vector(twist.angular)
+    )
+
+
+def _vector(vector: Any) -> Vector:
+    return vector.x, vector.y, vector.z
+
+
+def _object(text: str) -> dict[str, Any]:
+    words = json.loads(text)
+    if not isinstance(words, dict):
+        raise EventError(f"an event is an object, found {text:.80}")
+    return words
+
+
+def _trajectory(poses: list[tuple[float, ...]], colors: list[tuple[float, ...]]) -> Trajectory:
+    left = np.array(poses, dtype=np.float64).reshape(-1, 6)
+    right = np.array(colors, dtype=np.float64).reshape(-1, 4)
+    if not np.array_equal(left[:, 0], right[:, 0]):
+        raise ValueError(f"{len(left)} poses and {len(right)} colours do not belong together")
+    return Trajectory.of_rows(np.hstack([left, right[:, 1:]]))
+
+
+def _pixels(image: Any, encoding: str) -> Pixels:
+    if image.encoding != encoding:
+        raise ValueError(f"a picture has the encoding {image.encoding!r}, expected {encoding!r}")
+    pixels: Pixels = image.data.reshape(image.height, image.width, len(encoding) - 1)
+    return pixels

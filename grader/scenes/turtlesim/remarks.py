@@ -1,0 +1,44 @@
+"""What the reader of any result should know: what was done to the arena other than by driving."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from turtlesim_py.world.events import (
+    Clear,
+    Event,
+    Kill,
+    Reset,
+    Spawn,
+    TeleportAbsolute,
+    TeleportRelative,
+)
+from turtlesim_py.world.turtle import TICK_S
+
+#: Calls that change the arena other than by driving, and what they do.
+_INTERVENTIONS: dict[type[Event], str] = {
+    TeleportAbsolute: "it moves a turtle without driving",
+    TeleportRelative: "it moves a turtle without driving",
+    Spawn: "it adds a turtle",
+    Kill: "it removes a turtle",
+    Reset: "it starts the arena anew",
+    Clear: "it wipes the drawing",
+}
+_POSE = f"/{FIRST_TURTLE}/pose"
+
+
+def remarks(trace: TurtleTrace, published: Sequence[str]) -> list[str]:
+    """One sentence a thing; `published` are the topics that the submission published on."""
+    found = []
+    for kind, effect in _INTERVENTIONS.items():
+        calls = [event for event in trace.events if isinstance(event, kind)]
+        if calls:
+            first_s = calls[0].tick * TICK_S
+            times = "once" if len(calls) == 1 else f"{len(calls)} times"
+            found.append(f"The node called {kind.op} {times}, first at {first_s:.2f} s: {effect}.")
+    if _POSE in published:
+        found.append(
+            f"The node published on {_POSE} itself. Judged is where the turtle really was."
+        )
+    return found

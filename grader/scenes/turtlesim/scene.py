@@ -1,0 +1,111 @@
+"""turtlesim as a scene: one node, turtles, and what their pens draw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
+
+from grader.scenes.scene import (
+    Hooks,
+    Introduction,
+    Limits,
+    Message,
+    Pictures,
+    Scene,
+    Simulation,
+    Start,
+    Trace,
+    View,
+)
+from grader.scenes.turtlesim import remarks, starts, trace, view
+from grader.scenes.turtlesim.trace import TurtleTrace
+from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.events import to_json
+
+
+class Turtlesim:
+    """See `grader.scenes.scene.Scene`; here each of its parts finds its module.
+
+    The modules that need ROS or rosbags are imported where they are used: judging a recording needs
+    no ROS, and running a submission no bags.
+    """
+
+    name: Final = "turtlesim"
+    tick_ns: Final = TICK_NS
+    introduction: Final = Introduction(
+        nodes=(("turtlesim", "/"),),
+        topics=("/cmd_vel",),
+        services=(
+            *("clear", "kill", "reset", "set_pen", "spawn"),
+            *("teleport_absolute", "teleport_relative"),
+        ),
+    )
+    thing: Final = "turtle"
+    plane: Final = view.PLANE
+
+    def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
+        """Places round the centre of the window."""
+        return starts.starts(count, seed, nearest_m, farthest_m)
+
+    def simulate(self, limits: Limits, start: Start | None, hooks: Hooks) -> Simulation:
+        """Make the node and the recorder; ROS is up."""
+        from grader.scenes.turtlesim.simulation import TurtlesimSimulation
+
+        return TurtlesimSimulation(limits, start, hooks)
+
+    def encode(self, made: Trace) -> bytes:
+        """A trace's bytes."""
+        return trace.encode(TurtleTrace.of(made))
+
+    def decode(self, data: bytes) -> Trace:
+        """The trace that bytes mean; ValueError: they mean none."""
+        return trace.decode(data)
+
+    def message_definitions(self) -> Mapping[str, str]:
+        """The definitions of turtlesim's messages."""
+        from grader.scenes.turtlesim import messages
+
+        return messages.DEFINITIONS
+
+    def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
+        """Those of every turtle, also of one that published nothing."""
+        from grader.scenes.turtlesim import messages
+
+        for turtle in TurtleTrace.of(made).trajectories:
+            yield from messages.topics(turtle).items()
+
+    def to_messages(self, made: Trace) -> list[Message]:
+        """A trace as messages, by tick."""
+        from grader.scenes.turtlesim import messages
+
+        return messages.to_messages(TurtleTrace.of(made))
+
+    def from_messages(
+        self, found: Sequence[Message], topics: Mapping[str, str], ticks: int
+    ) -> Trace:
+        """The trace of a bag's messages; see `grader.scenes.turtlesim.messages`."""
+        from grader.scenes.turtlesim import messages
+
+        return messages.from_messages(found, topics, ticks)
+
+    def scenario(self, made: Trace) -> dict[str, Any]:
+        """The inputs, for `python -m turtlesim_py.scenario`."""
+        events = TurtleTrace.of(made).events
+        within = [to_json(event) for event in events if 1 <= event.tick <= made.ticks]
+        return {"ticks": made.ticks, "events": within}
+
+    def pictures(self, made: Trace) -> Pictures:
+        """The original's window, and the path alone."""
+        taken = TurtleTrace.of(made)
+        return Pictures(taken.window, {"path": taken.canvas})
+
+    def view(self, made: Trace) -> View:
+        """Ways, pens and curves."""
+        return view.view(TurtleTrace.of(made))
+
+    def remarks(self, made: Trace, published: Sequence[str]) -> list[str]:
+        """What was done to the arena other than by driving."""
+        return remarks.remarks(TurtleTrace.of(made), published)
+
+
+SCENE: Scene = Turtlesim()

@@ -1,0 +1,92 @@
+"""The scene at work: a turtlesim node, served and ticked, with a recorder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from grader.scenes.scene import Hooks, Limits, Reason, Start
+from grader.scenes.turtlesim.end_of_run import EndOfRun
+from grader.scenes.turtlesim.recorder import Recorder
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from turtlesim_py.ros import pacer
+from turtlesim_py.ros.node import TurtlesimNode
+from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.turtle import TICK_S
+
+#: How often the node is served although nothing has come [ticks]: goals expire.
+SERVE_TICKS = 63
+
+
+class HookedNode(TurtlesimNode):
+    """A turtlesim node that is served only where something has come, and tells when it was."""
+
+    def __init__(self, hooks: Hooks) -> None:
+        self._hooks = hooks
+        super().__init__(["--ros-args", "-p", "turtle_image:=rolling"])
+
+    def serve(self, now_ns: int | None = None) -> int:
+        """Serve what has arrived, if anything has."""
+        if now_ns is None:
+            now_ns = int(self.get_clock().now().nanoseconds)
+        if not self._hooks.has_mail() and self.arena.ticks % SERVE_TICKS:
+            self.arena.now_ns = now_ns
+            return now_ns
+        super().serve(now_ns)
+        self._hooks.after_serving()
+        return now_ns
+
+
+class TurtlesimSimulation:
+    """One arena, its node, a recorder, and the rule for the end.
+
+    Attributes:
+        node: `/turtlesim`.
+    """
+
+    def __init__(self, limits: Limits, start: Start | None, hooks: Hooks) -> None:
+        self.node = HookedNode(hooks)
+        _place(self.node.arena, start)
+        self._recorder = Recorder(self.node.arena)
+        self._end = EndOfRun(limits)
+        self._records = False
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether turtle1 has moved, and does not now."""
+        return self._end.is_at_rest
+
+    @property
+    def recorded_s(self) -> float:
+        """How long it has recorded [simulated s]."""
+        return self._recorder.ticks * TICK_S
+
+    def record(self) -> None:
+        """Record from the next tick on; inputs are recorded from the beginning."""
+        self._records = True
+
+    def submission_gone(self) -> None:
+        """The submission's process has ended."""
+        self._end.submission_gone()
+
+    def follow_wall_clock(self, step: Callable[[], bool]) -> None:
+        """Call `step` every 16 ms, until it returns False."""
+        pacer.follow_wall_clock(step)
+
+    def tick(self) -> Reason:
+        """Serve what has arrived, let a tick pass; why the run is over, or ''."""
+        readings = self.node.tick()
+        if not self._records:
+            return ""
+        self._recorder.take(readings)
+        first = readings.get(FIRST_TURTLE)
+        return self._end.after(self._recorder.ticks, first.pose if first else None)
+
+    def trace(self) -> TurtleTrace:
+        """Everything recorded up to now."""
+        return self._recorder.trace()
+
+
+def _place(arena: Arena, start: Start | None) -> None:
+    """Put turtle1 where a run is to begin, without a stroke and before anything is recorded."""
+    if start is not None:
+        arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)

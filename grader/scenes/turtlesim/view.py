@@ -1,0 +1,101 @@
+"""A recorded run for a page: ways in pixels with the pens that drew them, and curves over time."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from grader.scenes.scene import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from turtlesim_py.world.canvas import SIZE_PX, Pen
+from turtlesim_py.world.events import Clear, CmdVel, Event, Reset, SetPen
+from turtlesim_py.world.trajectory import Trajectory
+from turtlesim_py.world.turtle import METER_PX, SIZE_M, TICK_S
+
+PLANE = Plane(SIZE_PX, METER_PX, SIZE_M)
+
+
+def view(trace: TurtleTrace) -> View:
+    """Everything that a page shows of a run."""
+    names = list(trace.trajectories)
+    first = FIRST_TURTLE if FIRST_TURTLE in names else next(iter(names), None)
+    names.sort(key=lambda name: (name != first, name))
+    cleared = [event.tick for event in trace.events if isinstance(event, Clear | Reset)]
+    return View(
+        tracks=tuple(_track(trace, name) for name in names),
+        cleared=tuple(cleared),
+        background=_background(trace),
+        rest=None if first is None else _rest(trace.trajectories[first]),
+        curves=() if first is None else _curves(trace, first),
+        calls=tuple(_call(event) for event in trace.events if not isinstance(event, CmdVel)),
+    )
+
+
+def _track(trace: TurtleTrace, name: str) -> Track:
+    way = trace.trajectories[name]
+    pen = Pen()
+    pens = [PenChange(0, _hex(pen.r, pen.g, pen.b), pen.width)]
+    for event in trace.of_kind(SetPen, name):
+        last = pens[-1]
+        if event.off:
+            pens.append(PenChange(event.tick, last.color, last.width, drawn=False))
+        else:
+            color = _hex(event.r, event.g, event.b)
+            pens.append(PenChange(event.tick, color, event.width))
+    x, y = way.x * METER_PX, (SIZE_M - way.y) * METER_PX
+    return Track(name, way.ticks, x, y, way.theta, tuple(pens))
+
+
+def _rest(way: Trajectory) -> Rest | None:
+    """Where it stood still at the end; None if it was moving, never moved, or is nowhere."""
+    moved = np.flatnonzero((np.diff(way.x) != 0) | (np.diff(way.y) != 0)) + 1
+    if not len(moved) or moved[-1] == len(way) - 1:
+        return None
+    if not np.isfinite([way.x[-1], way.y[-1]]).all():
+        return None
+    last = int(moved[-1])
+    return Rest(float(way.x[last]), float(way.y[last]), float(way.ticks[last]) * TICK_S)
+
+
+def _curves(trace: TurtleTrace, name: str) -> tuple[Curve, ...]:
+    way = trace.trajectories[name]
+    ticks = way.ticks.astype(np.float64)
+    distance = np.hypot(way.x - SIZE_M / 2, way.y - SIZE_M / 2)
+    every_tick = np.arange(1, trace.ticks + 1, dtype=np.float64)
+    return (
+        Curve("Distance from the centre of the window", "m", ticks, distance),
+        Curve("Speed", "m/s", ticks, way.linear),
+        Curve("Angular velocity", "rad/s", ticks, way.angular),
+        Curve("Rate of velocity commands", "Hz", every_tick, _rate(trace, name)),
+    )
+
+
+def _rate(trace: TurtleTrace, name: str) -> Floats:
+    """Velocity commands a second, for each tick: over the interval that ends with a command."""
+    rate = np.zeros(trace.ticks)
+    ticks, counts = np.unique(
+        np.array([command.tick for command in trace.of_kind(CmdVel, name)], dtype=np.int64),
+        return_counts=True,
+    )
+    for start, stop, count in zip(ticks[:-1], ticks[1:], counts[1:], strict=True):
+        rate[start:stop] = count / ((stop - start) * TICK_S)
+    return rate
+
+
+def _call(event: Event) -> Call:
+    color = _hex(event.r, event.g, event.b) if isinstance(event, SetPen) else ""
+    return Call(event.op, event.tick, color)
+
+
+def _background(trace: TurtleTrace) -> str:
+    """The commonest colour of the window where nothing is painted."""
+    unpainted: npt.NDArray[np.uint8] = trace.window[trace.canvas[..., 3] == 0]
+    if not len(unpainted):
+        return "#4556ff"
+    colors, counts = np.unique(unpainted, axis=0, return_counts=True)
+    r, g, b = colors[int(np.argmax(counts))].tolist()
+    return _hex(r, g, b)
+
+
+def _hex(r: int, g: int, b: int) -> str:
+    return f"#{r:02x}{g:02x}{b:02x}"
