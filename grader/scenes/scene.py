@@ -80,11 +80,11 @@ class Hooks:
     """How a run takes part in a simulation.
 
     Attributes:
-        has_mail: whether anything has arrived; while nothing has, a node need not be served.
+        has_unread: whether anything has arrived; while nothing has, a node need not be served.
         after_serving: called when the nodes have been served, before the tick goes on.
     """
 
-    has_mail: Callable[[], bool] = lambda: True
+    has_unread: Callable[[], bool] = lambda: True
     after_serving: Callable[[], None] = lambda: None
 
 

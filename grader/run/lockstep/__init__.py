@@ -1,1 +1,13 @@
-"""What both sides of a run in virtual time share: the link, and rclpy's endpoints."""
+"""What both sides of a run in virtual time share.
+
+Each of the two processes has these put into its rclpy; neither side is imported from here.
+
+| module | what it does |
+|---|---|
+| `protocol` | what goes over the link between the two processes |
+| `registry` | the readers and writers of a process, and how much each has sent and received |
+| `endpoints`, `actions` | rclpy's publishers, subscriptions, clients, services, actions: counted |
+| `waitsets` | rclpy's wait sets, timers and guard conditions: they wait in virtual time |
+| `rclpy_clocks` | rclpy's clocks |
+| `times`, `real` | where virtual time begins; the real clock, kept before it is replaced |
+"""

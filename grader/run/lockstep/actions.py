@@ -1,4 +1,4 @@
-"""rclpy's action clients and servers, with our mail between them and DDS (see `endpoints`)."""
+"""rclpy's action clients and servers, counted and served by us (see `endpoints`)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Any
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep import endpoints, waitsets
-from grader.run.lockstep.endpoints import Mailed, deepened, profile, ros_type, some, weakly
-from grader.run.lockstep.registry import Inbox, Outlet
-from grader.run.student.scheduler import NEVER
+from grader.run.lockstep.endpoints import Registered, deepened, profile, ros_type, some, weakly
+from grader.run.lockstep.registry import Reader, Writer
+from grader.run.lockstep.times import NEVER
 
 _ActionClient, _ActionServer = _rclpy.ActionClient, _rclpy.ActionServer
 _LIBRARY = "librcl_action.so"
@@ -21,46 +21,46 @@ def install() -> None:
     _rclpy.ActionServer = ActionServer
 
 
-class _Action(Mailed):
-    """Makes the ends of an action."""
+class _Action(Registered):
+    """Makes the endpoints of an action."""
 
     def prepare(self, node: Any, action_type: type, name: str) -> None:
-        """Remember what every end needs; before any other method."""
+        """Remember what every endpoint needs; before any other method."""
         self._node, self._name, self._type = node, name, ros_type(action_type)
 
-    def wire(self, kind: str, part: str) -> str:
-        """The wire of a part of the action; a part's name can be remapped like any other."""
+    def channel(self, kind: str, part: str) -> str:
+        """The channel of a part of the action; a part's name can be remapped like any other."""
         name = f"{self._name}/_action/{part}"
         is_service = kind != "topic"
         return f"{kind} {_rclpy.rclpy_resolve_name(self._node, name, False, is_service)}"
 
-    def outlet(self, kind: str, part: str, c_qos: Any, matches: Any = None) -> Outlet:
+    def writer(self, kind: str, part: str, c_qos: Any, matches: Any = None) -> Writer:
         """A writer."""
-        return Outlet(self.wire(kind, part), self._type, profile(c_qos), matches)
+        return Writer(self.channel(kind, part), self._type, profile(c_qos), matches)
 
-    def inbox(self, kind: str, part: str, c_qos: Any, take: Any, matches: Any = None) -> Inbox:
+    def reader(self, kind: str, part: str, c_qos: Any, take: Any, matches: Any = None) -> Reader:
         """A reader."""
-        wire = self.wire(kind, part)
-        inbox = Inbox(wire, self._type, profile(c_qos), matches, take)
+        channel = self.channel(kind, part)
+        reader = Reader(channel, self._type, profile(c_qos), matches, take)
         if kind == "response":
-            inbox.tally = endpoints.OFFICE.tally(wire)
-        return inbox
+            reader.arrivals = endpoints.REGISTRY.shared_arrivals(channel)
+        return reader
 
-    def send(self, outlet: Outlet, method: Any, *args: Any) -> Any:
+    def send(self, writer: Writer, method: Any, *args: Any) -> Any:
         """Send and count."""
-        endpoints.OFFICE.before_send(outlet)
+        endpoints.REGISTRY.before_send(writer)
         result = method(self, *args)
-        endpoints.OFFICE.after_send(outlet)
+        endpoints.REGISTRY.after_send(writer)
         return result
 
-    def count(self, question: str, wire: str) -> Any:
-        """Whether the graph knows exactly so many others on a wire."""
-        ask = weakly(self._node, getattr(type(self._node), question), wire.partition(" ")[2])
+    def count(self, question: str, channel: str) -> Any:
+        """Whether the graph knows exactly so many others on a channel."""
+        ask = weakly(self._node, getattr(type(self._node), question), channel.partition(" ")[2])
         return lambda number: ask() == number
 
 
 class ActionClient(_Action, _rclpy.ActionClient):
-    """An action client that counts, and takes from inboxes."""
+    """An action client that counts, and takes from readers."""
 
     def __init__(
         self, node: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any, *topics: Any
@@ -77,33 +77,33 @@ class ActionClient(_Action, _rclpy.ActionClient):
         def taking(method: Any, what: type) -> Any:
             return weakly(self, some(method), what)
 
-        self.goal = self.outlet("request", "send_goal", goal, matches)
-        self.cancel = self.outlet("request", "cancel_goal", cancel)
-        self.result = self.outlet("request", "get_result", result)
+        self.goal = self.writer("request", "send_goal", goal, matches)
+        self.cancel = self.writer("request", "cancel_goal", cancel)
+        self.result = self.writer("request", "get_result", result)
         take_goal = taking(_ActionClient.take_goal_response, impl.SendGoalService.Response)
         take_cancel = taking(_ActionClient.take_cancel_response, impl.CancelGoalService.Response)
         take_result = taking(_ActionClient.take_result_response, impl.GetResultService.Response)
-        self.goals = self.inbox("response", "send_goal", goal, take_goal)
-        self.cancels = self.inbox("response", "cancel_goal", cancel, take_cancel)
-        self.results = self.inbox("response", "get_result", result, take_result)
+        self.goals = self.reader("response", "send_goal", goal, take_goal)
+        self.cancels = self.reader("response", "cancel_goal", cancel, take_cancel)
+        self.results = self.reader("response", "get_result", result, take_result)
         take_feedback = weakly(self, _ActionClient.take_feedback, impl.FeedbackMessage)
         take_status = weakly(self, _ActionClient.take_status, impl.GoalStatusMessage)
-        self.feedback = self.inbox("topic", "feedback", topics[0], take_feedback)
-        self.status = self.inbox("topic", "status", topics[1], take_status)
+        self.feedback = self.reader("topic", "feedback", topics[0], take_feedback)
+        self.status = self.reader("topic", "status", topics[1], take_status)
         for part in ("goal_client", "cancel_client", "result_client"):
-            self._hang(part)
+            self._signal_arrivals(part)
         for part in ("feedback_subscription", "status_subscription"):
-            self._hang(part)
-        self.inboxes = [self.feedback, self.status, self.goals, self.cancels, self.results]
-        self.register(self.goal, self.cancel, self.result, *self.inboxes)
+            self._signal_arrivals(part)
+        self.readers = [self.feedback, self.status, self.goals, self.cancels, self.results]
+        self.register(self.goal, self.cancel, self.result, *self.readers)
 
-    def _hang(self, part: str) -> None:
+    def _signal_arrivals(self, part: str) -> None:
         function = f"rcl_action_client_set_{part}_callback"
-        endpoints.OFFICE.bell.hang(function, self.pointer, _LIBRARY)
+        endpoints.REGISTRY.arrival_signal.attach(function, self.pointer, _LIBRARY)
 
     def is_action_server_available(self) -> bool:
         """As in rclpy."""
-        endpoints.OFFICE.before_question()
+        endpoints.REGISTRY.before_question()
         return bool(_ActionClient.is_action_server_available(self))
 
     def send_goal_request(self, request: Any) -> Any:
@@ -139,16 +139,16 @@ class ActionClient(_Action, _rclpy.ActionClient):
         return self.status.pop()
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Have a wait set look at our inboxes."""
-        wait_set.add_inboxes(self.inboxes)
+        """Have a wait set look at our readers."""
+        wait_set.add_readers(self.readers)
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:
         """Whether there is feedback, a status, a response to a goal, a cancel, a result."""
-        return tuple(bool(inbox.items) for inbox in self.inboxes)
+        return tuple(bool(reader.items) for reader in self.readers)
 
 
 class ActionServer(_Action, _rclpy.ActionServer):
-    """An action server that takes from inboxes, and counts."""
+    """An action server that takes from readers, and counts."""
 
     def __init__(
         self, node: Any, clock: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
@@ -167,35 +167,35 @@ class ActionServer(_Action, _rclpy.ActionServer):
             ("cancel_goal", cancel, _ActionServer.take_cancel_request, kind.Impl.CancelGoalService),
             ("get_result", result, _ActionServer.take_result_request, kind.Impl.GetResultService),
         )
-        self.inboxes, self.answers = [], []
+        self.readers, self.answers = [], []
         for part, c_qos, method, service in parts:
-            wire = self.wire("request", part)
+            channel = self.channel("request", part)
             take = weakly(self, some(method), service.Request)
-            matches = self.count("get_count_clients", wire)
-            self.inboxes.append(self.inbox("request", part, c_qos, take, matches))
-            self.answers.append(self.outlet("response", part, c_qos))
+            matches = self.count("get_count_clients", channel)
+            self.readers.append(self.reader("request", part, c_qos, take, matches))
+            self.answers.append(self.writer("response", part, c_qos))
         self.feedback = self._topic("feedback", feedback)
         self.status = self._topic("status", status)
         for part in ("goal", "cancel", "result"):
             function = f"rcl_action_server_set_{part}_service_callback"
-            endpoints.OFFICE.bell.hang(function, self.pointer, _LIBRARY)
-        self.register(*self.inboxes, *self.answers, self.feedback, self.status)
+            endpoints.REGISTRY.arrival_signal.attach(function, self.pointer, _LIBRARY)
+        self.register(*self.readers, *self.answers, self.feedback, self.status)
 
-    def _topic(self, part: str, c_qos: Any) -> Outlet:
-        wire = self.wire("topic", part)
-        return self.outlet("topic", part, c_qos, self.count("get_count_subscribers", wire))
+    def _topic(self, part: str, c_qos: Any) -> Writer:
+        channel = self.channel("topic", part)
+        return self.writer("topic", part, c_qos, self.count("get_count_subscribers", channel))
 
     def take_goal_request(self, _: type) -> Any:
         """The oldest, or (None, None)."""
-        return self.inboxes[0].pop() or (None, None)
+        return self.readers[0].pop() or (None, None)
 
     def take_cancel_request(self, _: type) -> Any:
         """The oldest, or (None, None)."""
-        return self.inboxes[1].pop() or (None, None)
+        return self.readers[1].pop() or (None, None)
 
     def take_result_request(self, _: type) -> Any:
         """The oldest, or (None, None)."""
-        return self.inboxes[2].pop() or (None, None)
+        return self.readers[2].pop() or (None, None)
 
     def send_goal_response(self, *args: Any) -> Any:
         """Send and count."""
@@ -229,10 +229,10 @@ class ActionServer(_Action, _rclpy.ActionServer):
         return _ActionServer.expire_goals(self, most)
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Have a wait set look at our inboxes."""
-        wait_set.add_inboxes(self.inboxes)
+        """Have a wait set look at our readers."""
+        wait_set.add_readers(self.readers)
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:
         """Whether there is a goal, a cancel request, a result request, an expired goal."""
         has_expired = endpoints.NOW_NS() > self._first_expiry_ns
-        return (*(bool(inbox.items) for inbox in self.inboxes), has_expired)
+        return (*(bool(reader.items) for reader in self.readers), has_expired)

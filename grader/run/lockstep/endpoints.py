@@ -1,4 +1,4 @@
-"""rclpy's publishers, subscriptions, clients and services, with our mail between them and DDS.
+"""rclpy's publishers, subscriptions, clients and services, counted and served by us.
 
 Each is a subclass of rclpy's own class in C++, put into its place in rclpy's extension module, so
 that the Python of rclpy stays as it is. Used by both sides of the link.
@@ -14,20 +14,20 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 
-from grader.run.lockstep.registry import DEPTH, End, Inbox, Office, Outlet
+from grader.run.lockstep.registry import DEPTH, Endpoint, EndpointRegistry, Reader, Writer
 
 _Publisher, _Subscription = _rclpy.Publisher, _rclpy.Subscription
 _Client, _Service = _rclpy.Client, _rclpy.Service
 
-OFFICE: Office
+REGISTRY: EndpointRegistry
 #: The time [ns] that messages are stamped with, instead of real ones.
 NOW_NS: Callable[[], int]
 
 
-def install(office: Office, now_ns: Callable[[], int]) -> None:
+def install(registry: EndpointRegistry, now_ns: Callable[[], int]) -> None:
     """Put the classes of this module into rclpy's extension module."""
-    global OFFICE, NOW_NS
-    OFFICE, NOW_NS = office, now_ns
+    global REGISTRY, NOW_NS
+    REGISTRY, NOW_NS = registry, now_ns
     for name in ("Publisher", "Subscription", "Client", "Service"):
         setattr(_rclpy, name, globals()[name])
 
@@ -60,81 +60,81 @@ def weakly(handle: Any, method: Callable[..., Any], *args: Any) -> Callable[[], 
     return call
 
 
-class Mailed:
+class Registered:
     """What our endpoint classes have in common."""
 
-    ends: list[End]
+    endpoints: list[Endpoint]
 
-    def register(self, *ends: End) -> None:
-        """Have the office know the ends for as long as this object lives."""
-        self.ends = list(ends)
-        for end in ends:
-            OFFICE.add(end)
-        weakref.finalize(self, OFFICE.remove, self.ends).atexit = False
+    def register(self, *endpoints: Endpoint) -> None:
+        """Have the registry know the endpoints for as long as this object lives."""
+        self.endpoints = list(endpoints)
+        for endpoint in endpoints:
+            REGISTRY.add(endpoint)
+        weakref.finalize(self, REGISTRY.remove, self.endpoints).atexit = False
 
     def destroy_when_not_in_use(self) -> None:
-        """As in rclpy, when the office agrees."""
+        """As in rclpy, when the registry agrees."""
         destroy = super().destroy_when_not_in_use  # type: ignore[misc]
-        OFFICE.retire(self.ends, destroy)
+        REGISTRY.request_destroy(self.endpoints, destroy)
 
 
-class Publisher(Mailed, _rclpy.Publisher):
+class Publisher(Registered, _rclpy.Publisher):
     """A publisher that counts."""
 
     def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any) -> None:
         _Publisher.__init__(self, node, msg_type, topic, c_qos)
         count = weakly(self, _Publisher.get_subscription_count)
-        self.outlet = Outlet(
+        self.writer = Writer(
             f"topic {self.get_topic_name()}",
             ros_type(msg_type),
             profile(c_qos),
             lambda number: count() == number,
             is_stream=True,
         )
-        self.register(self.outlet)
+        self.register(self.writer)
 
     def get_subscription_count(self) -> int:
         """As in rclpy."""
-        OFFICE.before_question()
+        REGISTRY.before_question()
         return int(_Publisher.get_subscription_count(self))
 
     def publish(self, message: Any) -> None:
         """Publish and count."""
-        OFFICE.before_send(self.outlet)
+        REGISTRY.before_send(self.writer)
         _Publisher.publish(self, message)
-        OFFICE.after_send(self.outlet)
+        REGISTRY.after_send(self.writer)
 
     def publish_raw(self, message: bytes) -> None:
         """Publish serialized bytes and count."""
-        OFFICE.before_send(self.outlet)
+        REGISTRY.before_send(self.writer)
         _Publisher.publish_raw(self, message)
-        OFFICE.after_send(self.outlet)
+        REGISTRY.after_send(self.writer)
 
 
-class Subscription(Mailed, _rclpy.Subscription):
-    """A subscription that takes from an inbox."""
+class Subscription(Registered, _rclpy.Subscription):
+    """A subscription that takes from an reader."""
 
     def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any) -> None:
         _Subscription.__init__(self, node, msg_type, topic, deepened(c_qos))
         count = weakly(self, _Subscription.get_publisher_count)
-        self.inbox = Inbox(
+        self.reader = Reader(
             f"topic {self.get_topic_name()}",
             ros_type(msg_type),
             profile(c_qos),
             lambda number: count() == number,
             weakly(self, _take_message, msg_type),
         )
-        OFFICE.bell.hang("rcl_subscription_set_on_new_message_callback", self.pointer)
-        self.register(self.inbox)
+        REGISTRY.arrival_signal.attach("rcl_subscription_set_on_new_message_callback", self.pointer)
+        self.register(self.reader)
 
     def get_publisher_count(self) -> int:
         """As in rclpy."""
-        OFFICE.before_question()
+        REGISTRY.before_question()
         return int(_Subscription.get_publisher_count(self))
 
     def take_message(self, _: type, raw: bool) -> Any:
-        """The oldest message in the inbox, or None."""
-        item = self.inbox.pop()
+        """The oldest message in the reader, or None."""
+        item = self.reader.pop()
         if item is not None and raw:
             return serialize_message(item[0]), item[1]
         return item
@@ -147,64 +147,64 @@ def _take_message(handle: Any, msg_type: type) -> Any:
     return item
 
 
-class Client(Mailed, _rclpy.Client):
-    """A service client that counts, and takes from an inbox."""
+class Client(Registered, _rclpy.Client):
+    """A service client that counts, and takes from an reader."""
 
     def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any) -> None:
         _Client.__init__(self, node, srv_type, name, deepened(c_qos))
         found = weakly(self, _Client.service_server_is_available)
         qos, kind, name = profile(c_qos), ros_type(srv_type), self.service_name
-        self.outlet = Outlet(f"request {name}", kind, qos, lambda number: found() == bool(number))
+        self.writer = Writer(f"request {name}", kind, qos, lambda number: found() == bool(number))
         take = weakly(self, some(_Client.take_response), srv_type.Response)
-        wire = f"response {name}"
-        self.inbox = Inbox(wire, kind, qos, None, take, OFFICE.tally(wire))
-        OFFICE.bell.hang("rcl_client_set_on_new_response_callback", self.pointer)
-        self.register(self.outlet, self.inbox)
+        channel = f"response {name}"
+        self.reader = Reader(channel, kind, qos, None, take, REGISTRY.shared_arrivals(channel))
+        REGISTRY.arrival_signal.attach("rcl_client_set_on_new_response_callback", self.pointer)
+        self.register(self.writer, self.reader)
 
     def service_server_is_available(self) -> bool:
         """As in rclpy."""
-        OFFICE.before_question()
+        REGISTRY.before_question()
         return bool(_Client.service_server_is_available(self))
 
     def send_request(self, request: Any) -> int:
         """Send and count."""
-        OFFICE.before_send(self.outlet)
+        REGISTRY.before_send(self.writer)
         number: int = _Client.send_request(self, request)
-        OFFICE.after_send(self.outlet)
+        REGISTRY.after_send(self.writer)
         return number
 
     def take_response(self, _: type) -> Any:
-        """The oldest response in the inbox, or (None, None)."""
-        return self.inbox.pop() or (None, None)
+        """The oldest response in the reader, or (None, None)."""
+        return self.reader.pop() or (None, None)
 
 
-class Service(Mailed, _rclpy.Service):
-    """A service that takes from an inbox, and counts."""
+class Service(Registered, _rclpy.Service):
+    """A service that takes from an reader, and counts."""
 
     def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any) -> None:
         _Service.__init__(self, node, srv_type, name, deepened(c_qos))
         qos, kind, name = profile(c_qos), ros_type(srv_type), self.name
         count = weakly(node, type(node).get_count_clients, name)
         take = weakly(self, some(_Service.service_take_request), srv_type.Request)
-        wire = f"request {name}"
-        self.inbox = Inbox(wire, kind, qos, lambda number: count() == number, take)
-        self.outlet = Outlet(f"response {name}", kind, qos, None)
-        OFFICE.bell.hang("rcl_service_set_on_new_request_callback", self.pointer)
-        self.register(self.outlet, self.inbox)
+        channel = f"request {name}"
+        self.reader = Reader(channel, kind, qos, lambda number: count() == number, take)
+        self.writer = Writer(f"response {name}", kind, qos, None)
+        REGISTRY.arrival_signal.attach("rcl_service_set_on_new_request_callback", self.pointer)
+        self.register(self.writer, self.reader)
 
     def service_take_request(self, _: type) -> Any:
-        """The oldest request in the inbox, or (None, None)."""
-        return self.inbox.pop() or (None, None)
+        """The oldest request in the reader, or (None, None)."""
+        return self.reader.pop() or (None, None)
 
     def service_send_response(self, response: Any, header: Any) -> None:
         """Send and count."""
-        OFFICE.before_send(self.outlet)
+        REGISTRY.before_send(self.writer)
         _Service.service_send_response(self, response, header)
-        OFFICE.after_send(self.outlet)
+        REGISTRY.after_send(self.writer)
 
 
 def some(take: Callable[..., Any]) -> Callable[..., Any]:
-    """Rclpy takes a pair, of two Nones if there is nothing; an inbox wants None then."""
+    """Rclpy takes a pair, of two Nones if there is nothing; an reader wants None then."""
 
     def taken(handle: Any, kind: type) -> Any:
         pair = take(handle, kind)

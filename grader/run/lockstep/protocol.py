@@ -35,7 +35,7 @@ _COUNT = Struct("<IQ")
 
 
 class ProtocolError(Exception):
-    """A packet that no host of ours sends."""
+    """A packet that neither side of ours sends."""
 
 
 class State(IntEnum):
@@ -60,11 +60,11 @@ Counts = list[tuple[int, int]]  # (id of a simulator's endpoint, number)
 
 
 @dataclass(frozen=True)
-class Endpoint:
+class EndpointInfo:
     """A reader or writer of the simulator, as the student's side needs to know it."""
 
     id: int
-    wire: str
+    channel: str
     type: str
     writes: bool
     reliability: int
@@ -75,7 +75,7 @@ class Endpoint:
 class Table:
     """Endpoints that appeared and disappeared since the last table."""
 
-    added: tuple[Endpoint, ...]
+    added: tuple[EndpointInfo, ...]
     removed: tuple[int, ...] = ()
 
 
@@ -165,4 +165,4 @@ def _encode(name: bytes, number: int, other: int, counts: Counts) -> bytes:
 
 
 def _table(data: dict[str, Any]) -> Table:
-    return Table(tuple(Endpoint(**entry) for entry in data["added"]), tuple(data["removed"]))
+    return Table(tuple(EndpointInfo(**entry) for entry in data["added"]), tuple(data["removed"]))

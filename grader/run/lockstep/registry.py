@@ -1,11 +1,11 @@
-"""What this process sends and receives over DDS, counted; what has arrived waits in our inboxes.
+"""What this process sends and receives over DDS, counted; what has arrived waits here.
 
-DDS delivers when it likes. So whatever arrives is taken at once into an inbox, as deep as the
-reader that the program asked for, and rclpy is served from there. Each side of the link says how
+DDS delivers when it likes. So whatever arrives is taken at once into a reader of ours, as deep as
+the one that the program asked for, and rclpy is served from there. Each side of the link says how
 much it has sent, the other waits until it has received as much: then what a program sees depends
 on virtual time alone. Used by both sides.
 
-A wire is what in DDS is a topic: "topic /turtle1/pose", "request /clear", "response /clear".
+A channel is what in DDS is a topic: "topic /turtle1/pose", "request /clear", "response /clear".
 """
 
 from __future__ import annotations
@@ -36,29 +36,29 @@ IN_FLIGHT = 64
 
 
 @dataclass(eq=False)
-class End:
+class Endpoint:
     """A reader or writer of this process.
 
     Attributes:
-        wire: what it is connected to.
+        channel: what it is connected to.
         type: the ROS type, "geometry_msgs/msg/Twist".
         qos: its quality of service.
         matches: asks DDS whether exactly so many counterparts are known; None: nobody can tell.
     """
 
-    wire: str
+    channel: str
     type: str
     qos: QoSProfile
     matches: Callable[[int], bool] | None
 
     @property
     def name(self) -> str:
-        """The ROS name, without the kind of wire."""
-        return self.wire.partition(" ")[2]
+        """The ROS name, without the kind of channel."""
+        return self.channel.partition(" ")[2]
 
 
 @dataclass(eq=False)
-class Outlet(End):
+class Writer(Endpoint):
     """A writer; `sent` counts its messages."""
 
     sent: int = 0
@@ -66,11 +66,11 @@ class Outlet(End):
     is_stream: bool = False
     #: set by the student's side: counterparts in the simulator and in this process
     remote: list[Any] = field(default_factory=list)
-    local: list[Inbox] = field(default_factory=list)
+    local: list[Reader] = field(default_factory=list)
 
 
 @dataclass(eq=False)
-class Tally:
+class Arrivals:
     """How much should have arrived and how much has; the readers of one response share it."""
 
     expected: int = 0
@@ -78,13 +78,13 @@ class Tally:
 
 
 @dataclass(eq=False)
-class Inbox(End):
+class Reader(Endpoint):
     """A reader; `items` have arrived and not been taken by the program, as `take` gives them."""
 
     take: Callable[[], Any] = lambda: None
-    tally: Tally = field(default_factory=Tally)
+    arrivals: Arrivals = field(default_factory=Arrivals)
     items: deque[Any] = field(default_factory=deque)
-    #: of the tally's, those that this inbox received
+    #: of the arrivals, those that this reader received
     received: int = 0
     #: set by the student's side: counterparts in the simulator
     remote: list[Any] = field(default_factory=list)
@@ -97,7 +97,7 @@ class Inbox(End):
         """Take everything that DDS has."""
         while (item := self.take()) is not None:
             self.items.append(item)
-            self.tally.received += 1
+            self.arrivals.received += 1
             self.received += 1
 
     def pop(self) -> Any:
@@ -107,98 +107,98 @@ class Inbox(End):
     @property
     def is_late(self) -> bool:
         """Whether something that was sent has not arrived."""
-        return self.tally.received < self.tally.expected
+        return self.arrivals.received < self.arrivals.expected
 
 
-class Office:
-    """All ends of this process. The two sides of the link derive from it."""
+class EndpointRegistry:
+    """All endpoints of this process. The two sides of the link derive from it."""
 
     def __init__(self) -> None:
-        self.outlets: list[Outlet] = []
-        self.inboxes: list[Inbox] = []
-        #: ends were added or removed, and the other side of the link does not know
+        self.writers: list[Writer] = []
+        self.readers: list[Reader] = []
+        #: endpoints were added or removed, and the other side of the link does not know
         self.changed = False
         self._is_unpaired = False
-        self.bell = Doorbell()
-        self.tallies: dict[str, Tally] = {}
+        self.arrival_signal = ArrivalSignal()
+        self._shared_arrivals: dict[str, Arrivals] = {}
 
-    def tally(self, wire: str) -> Tally:
-        """The tally that all inboxes on this wire share."""
-        return self.tallies.setdefault(wire, Tally())
+    def shared_arrivals(self, channel: str) -> Arrivals:
+        """What all readers on this channel count together."""
+        return self._shared_arrivals.setdefault(channel, Arrivals())
 
-    def add(self, end: End) -> None:
+    def add(self, endpoint: Endpoint) -> None:
         """A reader or writer was made."""
         self.changed = self._is_unpaired = True
-        if isinstance(end, Outlet):
-            self.outlets.append(end)
-        elif isinstance(end, Inbox):
-            self.inboxes.append(end)
+        if isinstance(endpoint, Writer):
+            self.writers.append(endpoint)
+        elif isinstance(endpoint, Reader):
+            self.readers.append(endpoint)
 
-    def remove(self, ends: Iterable[End]) -> None:
+    def remove(self, endpoints: Iterable[Endpoint]) -> None:
         """Readers and writers are gone; removing one twice does no harm."""
-        for end in ends:
-            of_its_kind: list[Any] = self.outlets if isinstance(end, Outlet) else self.inboxes
-            if end in of_its_kind:
-                of_its_kind.remove(end)
+        for endpoint in endpoints:
+            of_its_kind: list[Any] = self.writers if isinstance(endpoint, Writer) else self.readers
+            if endpoint in of_its_kind:
+                of_its_kind.remove(endpoint)
                 self.changed = self._is_unpaired = True
 
     def pair_locally(self) -> None:
-        """Find which ends of this process are connected with each other."""
+        """Find which endpoints of this process are connected with each other."""
         if not self._is_unpaired:
             return
         self._is_unpaired = False
-        inboxes: dict[str, list[Inbox]] = defaultdict(list)
-        for inbox in self.inboxes:
-            inboxes[inbox.wire].append(inbox)
-        for outlet in self.outlets:
-            outlet.local = [i for i in inboxes.get(outlet.wire, ()) if compatible(outlet, i)]
+        readers: dict[str, list[Reader]] = defaultdict(list)
+        for reader in self.readers:
+            readers[reader.channel].append(reader)
+        for writer in self.writers:
+            writer.local = [i for i in readers.get(writer.channel, ()) if compatible(writer, i)]
 
-    def local_writers(self, inbox: Inbox) -> int:
-        """How many writers of this process an inbox is connected with."""
-        return sum(inbox in outlet.local for outlet in self.outlets)
+    def local_writers(self, reader: Reader) -> int:
+        """How many writers of this process a reader is connected with."""
+        return sum(reader in writer.local for writer in self.writers)
 
     def before_question(self) -> None:
         """The program is about to ask DDS for its counterparts."""
 
-    def before_send(self, outlet: Outlet) -> None:
+    def before_send(self, writer: Writer) -> None:
         """A message is about to be sent."""
         self.pair_locally()
 
-    def after_send(self, outlet: Outlet) -> None:
+    def after_send(self, writer: Writer) -> None:
         """A message has been sent; DDS has already brought it to readers in this process."""
-        outlet.sent += 1
-        for tally in tallies(outlet.local):
-            tally.expected += 1
+        writer.sent += 1
+        for arrivals in distinct_arrivals(writer.local):
+            arrivals.expected += 1
 
-    def retire(self, ends: list[End], destroy: Callable[[], None]) -> None:
-        """The program wants to destroy these ends."""
-        self.remove(ends)
+    def request_destroy(self, endpoints: list[Endpoint], destroy: Callable[[], None]) -> None:
+        """The program wants to destroy these endpoints."""
+        self.remove(endpoints)
         destroy()
 
-    def await_arrivals(self, inboxes: Iterable[Inbox], patience_s: float) -> list[Inbox]:
+    def await_arrivals(self, readers: Iterable[Reader], patience_s: float) -> list[Reader]:
         """Really wait until everything expected is here; returns those where it is not."""
-        for inbox in inboxes:
-            inbox.drain()
-        late = [inbox for inbox in inboxes if inbox.is_late]
+        for reader in readers:
+            reader.drain()
+        late = [reader for reader in readers if reader.is_late]
         deadline = real.monotonic() + patience_s if late else 0.0
         while late:
             left = deadline - real.monotonic()
             if left <= 0:
                 return late
-            self.bell.wait(left)
-            for inbox in late:
-                inbox.drain()
-            late = [inbox for inbox in late if inbox.is_late]
+            self.arrival_signal.wait(left)
+            for reader in late:
+                reader.drain()
+            late = [reader for reader in late if reader.is_late]
         return []
 
 
-def tallies(inboxes: Iterable[Inbox]) -> Iterable[Tally]:
+def distinct_arrivals(readers: Iterable[Reader]) -> Iterable[Arrivals]:
     """The different ones: a response counts once, for whichever client it is."""
-    return {id(inbox.tally): inbox.tally for inbox in inboxes}.values()
+    return {id(reader.arrivals): reader.arrivals for reader in readers}.values()
 
 
-class Doorbell:
-    """Rung by DDS's own threads when something arrives.
+class ArrivalSignal:
+    """Given by DDS's own threads when something arrives.
 
     They call libc's eventfd_write(fd, number) directly, with the arguments that they have for a
     callback anyway. A Python callback would need the GIL while DDS holds a lock: a deadlock.
@@ -208,23 +208,23 @@ class Doorbell:
         self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
         self._poll = select.poll()
         self._poll.register(self._fd, select.POLLIN)
-        self._ring = ctypes.cast(ctypes.CDLL(None).eventfd_write, ctypes.c_void_p)
+        self._signal = ctypes.cast(ctypes.CDLL(None).eventfd_write, ctypes.c_void_p)
 
-    def hang(self, function: str, pointer: int, library: str = "librcl.so") -> None:
-        """Have rcl's `function` ring for the reader at `pointer`."""
+    def attach(self, function: str, pointer: int, library: str = "librcl.so") -> None:
+        """Have rcl's `function` give the signal for the reader at `pointer`."""
         setter = getattr(ctypes.CDLL(library), function)
         setter.argtypes = [ctypes.c_void_p] * 3
-        if setter(pointer, self._ring, self._fd) != 0:
+        if setter(pointer, self._signal, self._fd) != 0:
             raise RuntimeError(f"{function} failed")
 
     def wait(self, patience_s: float) -> None:
-        """Really wait for a ring."""
+        """Really wait for a signal."""
         if self._poll.poll(max(1, int(patience_s * 1000))):
             os.eventfd_read(self._fd)
 
 
-def compatible(writer: End, reader: End) -> bool:
-    """Whether DDS will connect the two, which are on the same wire."""
+def compatible(writer: Endpoint, reader: Endpoint) -> bool:
+    """Whether DDS will connect the two, which are on the same channel."""
     if writer.type != reader.type:
         return False
     compatibility, _ = qos_check_compatible(writer.qos, reader.qos)
@@ -232,7 +232,7 @@ def compatible(writer: End, reader: End) -> bool:
 
 
 def policies(reliability: int, durability: int) -> QoSProfile:
-    """The quality of service of a simulator's end, from what a table says about it."""
+    """The quality of service of a simulator's endpoint, from what a table says about it."""
     return QoSProfile(
         depth=DEPTH,
         reliability=QoSReliabilityPolicy(reliability),

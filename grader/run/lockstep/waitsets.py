@@ -1,4 +1,4 @@
-"""rclpy's wait sets and guard conditions: they look into our inboxes, and wait in virtual time.
+"""rclpy's wait sets and guard conditions: they look into our readers, and wait in virtual time.
 
 Used by both sides of the link; the simulator never waits.
 """
@@ -10,8 +10,8 @@ from typing import Any, Protocol
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader.run.lockstep.registry import Inbox
-from grader.run.student.scheduler import NEVER
+from grader.run.lockstep.registry import Reader
+from grader.run.lockstep.times import NEVER
 
 _WaitSet, _GuardCondition, _Timer = _rclpy.WaitSet, _rclpy.GuardCondition, _rclpy.Timer
 _EventHandle = _rclpy.EventHandle
@@ -133,14 +133,14 @@ class WaitSet:
 
     def clear_entities(self) -> None:
         """Start anew."""
-        self.inboxes: list[Inbox] = []
+        self.readers: list[Reader] = []
         self.guards: list[GuardCondition] = []
         self.timers: list[Timer] = []
         self.end_ns = NEVER
         self.is_out = False
         self.ready_guards: list[GuardCondition] = []
         self._events: list[EventHandle] = []
-        self._boxes: list[tuple[Any, Inbox]] = []
+        self._readers: list[tuple[Any, Reader]] = []
         self._kinds: dict[Any, str] = {}
         self._ready: list[Any] = []
         self._ready_events: list[bool] = []
@@ -148,12 +148,12 @@ class WaitSet:
         self._has_work = False
 
     def _add(self, kind: str, handle: Any) -> int:
-        inbox = getattr(handle, "inbox", None)
-        if inbox is not None:  # else made by rclpy in C++: ~/get_type_description
-            self.inboxes.append(inbox)
-            self._boxes.append((handle, inbox))
+        reader = getattr(handle, "reader", None)
+        if reader is not None:  # else made by rclpy in C++: ~/get_type_description
+            self.readers.append(reader)
+            self._readers.append((handle, reader))
             self._kinds[handle] = kind
-        return len(self._boxes)
+        return len(self._readers)
 
     def add_subscription(self, handle: Any) -> int:
         """As in rclpy."""
@@ -183,9 +183,9 @@ class WaitSet:
         self._events.append(handle)
         return len(self._events) - 1
 
-    def add_inboxes(self, inboxes: Sequence[Inbox]) -> None:
+    def add_readers(self, readers: Sequence[Reader]) -> None:
         """Look at these as well: an action's."""
-        self.inboxes.extend(inboxes)
+        self.readers.extend(readers)
 
     def wait(self, timeout_ns: int) -> None:
         """Wait until something is ready or the time is out (negative: never)."""
@@ -224,7 +224,7 @@ class WaitSet:
         return any(self._ready_events)
 
     def _collect(self) -> bool:
-        ready = [handle for handle, inbox in self._boxes if inbox.items]
+        ready = [handle for handle, reader in self._readers if reader.items]
         for timer in self.timers:
             if not timer.is_gone and timer.is_timer_ready():
                 ready.append(timer)
@@ -239,7 +239,7 @@ class WaitSet:
             or self.is_out
             or any(self._ready_events)
             # those of actions
-            or (len(self.inboxes) > len(self._boxes) and any(i.items for i in self.inboxes))
+            or (len(self.readers) > len(self._readers) and any(i.items for i in self.readers))
         )
         return self._has_work or bool(self.ready_guards)
 

@@ -49,7 +49,7 @@ class Refused(Exception):
     """The submission cannot run in virtual time; the text completes "the submission ..."."""
 
 
-class HostLink:
+class StudentLink:
     """Hears a submission's process for as long as there is something to hear.
 
     Attributes:
@@ -93,7 +93,7 @@ class HostLink:
             except OSError:
                 packet = None
             except ProtocolError:
-                self._break("its process sent what no host sends")
+                self._break("its process sent what ours never sends")
                 break
             match packet:
                 case None:

@@ -24,8 +24,8 @@ from rclpy.signals import SignalHandlerOptions
 
 from grader.run import handover
 from grader.run.plan import Plan
+from grader.run.processes.parent import die_with_parent
 from grader.run.simulator.published_topics import EVENTS, PublishedTopics
-from grader.run.student.main import die_with_parent
 from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
 

@@ -27,15 +27,15 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from grader.run import handover
-from grader.run.lockstep import actions, endpoints, waitsets
+from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import TICK_NS, Advance, Hello, Reply, State
+from grader.run.lockstep.times import EPOCH_NS
 from grader.run.plan import Plan
 from grader.run.processes import cores
-from grader.run.simulator.endpoints import Desk
-from grader.run.simulator.link import HostLink, Patience, Refused
+from grader.run.processes.parent import die_with_parent
+from grader.run.simulator.endpoints import SimulatorEndpoints
+from grader.run.simulator.link import Patience, Refused, StudentLink
 from grader.run.simulator.published_topics import PublishedTopics
-from grader.run.student import clocks
-from grader.run.student.main import die_with_parent
 from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
 
@@ -46,19 +46,19 @@ MATCH_PATIENCE_S = 3.0
 class Lockstep:
     """Ticks a scene as its student's side asks, to the end of the run."""
 
-    def __init__(self, link: HostLink, plan: Plan, shared_core: int) -> None:
+    def __init__(self, link: StudentLink, plan: Plan, shared_core: int) -> None:
         self._link = link
         self._core = shared_core
         self.now_ns = 0
-        self._clocks = clocks.install_in_rclpy(_rclpy, lambda: self.now_ns, lambda: None)
+        self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
         waitsets.install(_NoWaiting(self._clocks))
-        self._desk = Desk()
-        endpoints.install(self._desk, lambda: clocks.EPOCH_NS + self.now_ns)
+        self._registry = SimulatorEndpoints()
+        endpoints.install(self._registry, lambda: EPOCH_NS + self.now_ns)
         actions.install()
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
         assert self._scene.tick_ns == TICK_NS
-        hooks = Hooks(has_mail=self._desk.has_mail, after_serving=self._introduce_changes)
+        hooks = Hooks(has_unread=self._registry.has_unread, after_serving=self._introduce_changes)
         self._simulation = self._scene.simulate(plan.limits, plan.start, hooks)
         self._simulation.record()
         self._topics = PublishedTopics(self._simulation.node)
@@ -71,7 +71,7 @@ class Lockstep:
 
     def run(self) -> dict[str, Any]:
         """To the end; how it came."""
-        self._link.send(self._desk.table())
+        self._link.send(self._registry.table())
         self._request = self._next_request()
         self._mark("connected")
         cores.pin(self._core)
@@ -81,7 +81,7 @@ class Lockstep:
                 self._note_rest()
             self._advance(self._request)
             state = State.OVER if self._reason else State.RUNNING
-            self._link.send(Reply(self._tick, state, self._desk.news()))
+            self._link.send(Reply(self._tick, state, self._registry.take_sent_counts()))
             if not self._reason:
                 self._request = self._next_request()
         self._note_rest()
@@ -112,8 +112,8 @@ class Lockstep:
         """The next `Advance`, after all `Hello`s before it."""
         while isinstance(request := self._link.receive(), Hello):
             self._mark("met")
-            self._desk.pair_locally()
-            self._desk.bury()
+            self._registry.pair_locally()
+            self._registry.destroy_pending()
             if not self._introduced(request):
                 self._link.flag(f"DDS did not connect everything at tick {self._tick}")
             self._link.send(Hello([]))
@@ -123,7 +123,7 @@ class Lockstep:
     def _introduced(self, hello: Hello) -> bool:
         """Wait until DDS knows all that the other side says that it has; False if in vain."""
         deadline = time.monotonic() + MATCH_PATIENCE_S
-        if not self._desk.await_matches(hello.matched, deadline):
+        if not self._registry.await_matches(hello.matched, deadline):
             return False
         while self._topics.look() < hello.publishers:
             if time.monotonic() > deadline:
@@ -136,12 +136,12 @@ class Lockstep:
         last = min(request.target, self._tick + request.most)
         while self._tick < last and not self._reason:
             self._tick_once()
-            if self._desk.answered:
+            if self._registry.answered:
                 return
 
     def _collect(self, request: Advance) -> None:
-        for inbox in self._desk.expect(request.sent):
-            self._link.flag(f"announced messages on {inbox.wire} did not come")
+        for reader in self._registry.await_announced(request.sent):
+            self._link.flag(f"announced messages on {reader.channel} did not come")
 
     def _tick_once(self) -> None:
         self._tick += 1
@@ -151,14 +151,14 @@ class Lockstep:
 
     def _introduce_changes(self) -> None:
         """In the middle of a tick: have the other side find our new endpoints, and ours its."""
-        if not self._desk.changed:
+        if not self._registry.changed:
             return
         if self._request is None:
-            self._desk.table()
-            self._desk.bury()
+            self._registry.table()
+            self._registry.destroy_pending()
             return
-        self._link.send(Reply(self._tick - 1, State.CHANGED, self._desk.news()))
-        self._link.send(self._desk.table())
+        self._link.send(Reply(self._tick - 1, State.CHANGED, self._registry.take_sent_counts()))
+        self._link.send(self._registry.table())
         self._request = self._next_request()
 
     def _finish_alone(self) -> None:
@@ -168,8 +168,8 @@ class Lockstep:
         self._request = None
         if not self._link.has_left:
             time.sleep(0.05)  # its last messages were not announced, but may have been sent
-        for inbox in self._desk.inboxes:
-            inbox.drain()
+        for reader in self._registry.readers:
+            reader.drain()
         if self._link.silence == "gone":
             self._simulation.submission_gone()
         while not self._reason:
@@ -181,8 +181,8 @@ class _NoWaiting:
 
     graph_epoch = 0
 
-    def __init__(self, rclpy_clocks: clocks.Clocks) -> None:
-        self.tell_time = rclpy_clocks.tell
+    def __init__(self, clocks: rclpy_clocks.RclpyClocks) -> None:
+        self.tell_time = clocks.tell
 
     def look_first(self) -> None:
         self.graph_epoch += 1  # QoS events may come at any time, and cost little when served
@@ -206,7 +206,7 @@ def main(argv: list[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     control = socket.socket(fileno=int(argv[0]))
     theirs = socket.socket(fileno=int(argv[3]))
-    link = HostLink(theirs, int(argv[4]), Patience(**json.loads(argv[6])))
+    link = StudentLink(theirs, int(argv[4]), Patience(**json.loads(argv[6])))
     lockstep = Lockstep(link, Plan.from_json(argv[2]), int(argv[5]))
     gc.collect()
     gc.freeze()

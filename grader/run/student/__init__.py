@@ -1,1 +1,18 @@
-"""What happens in the submission's process of a run."""
+"""What happens in the submission's process of a run.
+
+In real time that is `main` alone, which imports nothing else of ours. In virtual time:
+
+| module | what it does |
+|---|---|
+| `virtual_main` | replaces what tells time, runs the submission with `main` |
+| `scheduler` | which thread runs, and when time moves |
+| `threads`, `sockets`, `signals` | locks, `select` and asyncio, signals: where threads hand on |
+| `clocks`, `chance` | `time` and `datetime`; random numbers and what else differs every time |
+| `install` | puts rclpy into virtual time |
+| `waiting`, `executor` | how rclpy's wait sets wait; its executors, faster |
+| `graph` | questions about the ROS graph |
+| `simulator_link` | this end of the link to the simulator: asks for time, waits for messages |
+| `deadlock`, `refusal` | what waits for ever, and where; what virtual time cannot follow |
+
+Both sides of the link share `grader.run.lockstep`.
+"""

@@ -27,7 +27,7 @@ from rclpy.executors import (
 )
 
 from grader.run.lockstep import waitsets
-from grader.run.student.scheduler import NEVER
+from grader.run.lockstep.times import NEVER
 
 #: SHA-256 of the source of rclpy's function in the releases that this was tested with: 7.1.6.
 KNOWN = {"f4ad71c9cd36740155e728956db585a6608e4df65f823cb1b2d6ce94992efb16"}

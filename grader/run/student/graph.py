@@ -6,7 +6,7 @@ import functools
 from typing import Any
 
 from grader.run.lockstep import real
-from grader.run.student.simulator_link import MATCH_PATIENCE_S, World
+from grader.run.student.simulator_link import MATCH_PATIENCE_S, SimulatorLink
 
 QUESTIONS = (
     "count_clients",
@@ -30,7 +30,7 @@ QUESTIONS = (
 SIMULATOR = ("turtlesim", "/")
 
 
-def install(world: World, node_class: Any) -> None:
+def install(link: SimulatorLink, node_class: Any) -> None:
     """Have a node's questions wait, in no virtual time, for the whole simulator to be found."""
     seen_epochs: set[int] = set()
 
@@ -39,10 +39,10 @@ def install(world: World, node_class: Any) -> None:
 
         @functools.wraps(ask)
         def asked(self: Any, *args: Any, **kwargs: Any) -> Any:
-            world.before_question()
-            if world.graph_epoch not in seen_epochs:
-                seen_epochs.add(world.graph_epoch)
-                _await_graph(world, self.handle)
+            link.before_question()
+            if link.graph_epoch not in seen_epochs:
+                seen_epochs.add(link.graph_epoch)
+                _await_graph(link, self.handle)
             return ask(self, *args, **kwargs)
 
         setattr(node_class, name, asked)
@@ -52,26 +52,26 @@ def install(world: World, node_class: Any) -> None:
             replace(question)
 
 
-def _await_graph(world: World, node: Any) -> None:
+def _await_graph(link: SimulatorLink, node: Any) -> None:
     deadline = real.monotonic() + MATCH_PATIENCE_S
-    while not _is_complete(world, node) and real.monotonic() < deadline:
+    while not _is_complete(link, node) and real.monotonic() < deadline:
         real.sleep(0.001)
 
 
-def _is_complete(world: World, node: Any) -> bool:
+def _is_complete(link: SimulatorLink, node: Any) -> bool:
     from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
     if SIMULATOR not in node.get_node_names_and_namespaces():
         return False
-    for remote in world.remotes.values():
-        if remote.wire.startswith("topic"):
+    for remote in link.remotes.values():
+        if remote.channel.startswith("topic"):
             count = node.get_count_publishers if remote.writes else node.get_count_subscribers
-        elif remote.wire.startswith("request"):
+        elif remote.channel.startswith("request"):
             count = node.get_count_services
         else:
             continue
         if count(remote.name) == 0:
             return False
-    topics = {r.name for r in world.remotes.values() if r.writes and r.wire.startswith("topic")}
+    topics = {r.name for r in link.remotes.values() if r.writes and r.channel.startswith("topic")}
     owned = _rclpy.rclpy_get_publisher_names_and_types_by_node(node, False, *SIMULATOR)
     return topics <= {topic for topic, _ in owned}

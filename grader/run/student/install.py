@@ -17,30 +17,33 @@ import rclpy.task
 import rclpy.timer
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader.run.lockstep import actions, endpoints, waitsets
+from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import Kind
-from grader.run.student import chance, clocks, deadlock, executor, graph
+from grader.run.lockstep.times import EPOCH_NS
+from grader.run.student import chance, deadlock, executor, graph
 from grader.run.student.scheduler import Scheduler
-from grader.run.student.simulator_link import World
-from grader.run.student.waiting import VirtualWaiter
+from grader.run.student.simulator_link import SimulatorLink
+from grader.run.student.waiting import VirtualWaiter, clock_event_class
 
 
-def install(scheduler: Scheduler, link: socket.socket, refuse: Callable[[str], None]) -> World:
-    """Replace what tells or waits for time in rclpy; returns the world that it now lives in."""
-    world = World(scheduler, link)
+def install(
+    scheduler: Scheduler, connection: socket.socket, refuse: Callable[[str], None]
+) -> SimulatorLink:
+    """Replace what tells or waits for time in rclpy; returns the link to the simulator."""
+    link = SimulatorLink(scheduler, connection)
 
     def now_ns() -> int:
         return scheduler.now_ns
 
-    rclpy_clocks = clocks.install_in_rclpy(_rclpy, now_ns, scheduler.charge)
-    scheduler.clocks.append(rclpy_clocks.set_now)
-    scheduler.world = _Guarded(world, refuse)
-    _rclpy.ClockEvent = clocks.clock_event_class(scheduler)
-    waiter = VirtualWaiter(scheduler, world, rclpy_clocks)
+    clocks = rclpy_clocks.install(_rclpy, now_ns, scheduler.charge)
+    scheduler.clocks.append(clocks.set_now)
+    scheduler.time_source = _Guarded(link, refuse)
+    _rclpy.ClockEvent = clock_event_class(scheduler)
+    waiter = VirtualWaiter(scheduler, link, clocks)
     waitsets.install(waiter)
-    endpoints.install(world, lambda: clocks.EPOCH_NS + scheduler.now_ns)
+    endpoints.install(link, lambda: EPOCH_NS + scheduler.now_ns)
     actions.install()
-    graph.install(world, rclpy.node.Node)
+    graph.install(link, rclpy.node.Node)
     chance.order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
     _charge_for(rclpy.context.Context, "ok", scheduler)
@@ -49,20 +52,20 @@ def install(scheduler: Scheduler, link: socket.socket, refuse: Callable[[str], N
     scheduler.on_foreign_thread = lambda: refuse(
         "runs Python in a thread that a C extension has started"
     )
-    world.on_standstill = lambda: _look_for_deadlock(scheduler, world, waiter)
-    return world
+    link.on_standstill = lambda: _look_for_deadlock(scheduler, link, waiter)
+    return link
 
 
 class _Guarded:
     """A mistake of ours must not become the submission's: it is then graded in real time."""
 
-    def __init__(self, world: World, refuse: Callable[[str], None]) -> None:
-        self._world = world
+    def __init__(self, link: SimulatorLink, refuse: Callable[[str], None]) -> None:
+        self._link = link
         self._refuse = refuse
 
     def advance(self, deadline_ns: int) -> None:
         try:
-            self._world.advance(deadline_ns)
+            self._link.advance(deadline_ns)
         except Exception as error:
             self._refuse(f"broke our virtual time ({error!r})")
 
@@ -91,10 +94,10 @@ def _replace_events_executor() -> None:
         setattr(module, EventsExecutor.__name__, EventsExecutor)
 
 
-def _look_for_deadlock(scheduler: Scheduler, world: World, waiter: VirtualWaiter) -> None:
+def _look_for_deadlock(scheduler: Scheduler, link: SimulatorLink, waiter: VirtualWaiter) -> None:
     if waiter.is_hopeful():
         return
-    world.on_standstill = lambda: None  # once is enough
+    link.on_standstill = lambda: None  # once is enough
     waits = [
         rclpy.client.Client.call,
         rclpy.timer.Rate.sleep,
@@ -106,4 +109,4 @@ def _look_for_deadlock(scheduler: Scheduler, world: World, waiter: VirtualWaiter
     found = deadlock.find(scheduler, runs_callback, frozenset(w.__code__ for w in waits))
     if found:
         print(found, file=sys.stderr, flush=True)
-    world.note(Kind.STUCK if found else Kind.WAITING)
+    link.note(Kind.STUCK if found else Kind.WAITING)

@@ -2,7 +2,7 @@
 
 One thread holds the baton and runs; the others stand at their gates. The baton is handed on only
 where a thread would block, always in the same order, so a program of many threads runs the same
-way every time. Time moves only when no thread can run: then the world is asked for what comes
+way every time. Time moves only when no thread can run: then the simulator is asked for what comes
 next. A program that never blocks would stop time, so asking for the time, publishing and polling
 cost a little of it.
 """
@@ -15,9 +15,8 @@ from collections.abc import Callable
 from typing import Protocol
 
 from grader.run.lockstep import real
+from grader.run.lockstep.times import NEVER
 
-#: No deadline.
-NEVER = 1 << 62
 #: What asking for the time or the like costs [units], and how many units make a pause.
 UNITS_A_PAUSE = 200
 #: A pause [ns]. One unit stands for 5 us of a real machine.
@@ -32,8 +31,8 @@ LEAST_SLEEP_NS = 50_000
 SIGNAL_S = 0.05
 
 
-class World(Protocol):
-    """What lies outside of this process."""
+class TimeSource(Protocol):
+    """Whatever lies outside of this process and lets time pass."""
 
     def advance(self, deadline_ns: int) -> None:
         """Let something happen: set the scheduler's time, at most to the deadline, wake runners."""
@@ -60,7 +59,7 @@ class Scheduler:
         self.now_ns = 0
         self.main = self.current = Runner(real.get_ident())
         self.runners = [self.main]
-        self.world: World
+        self.time_source: TimeSource
         #: told the new time whenever it moves
         self.clocks: list[Callable[[int], None]] = []
         #: looked at before time moves: something from outside Python may have woken a runner
@@ -212,7 +211,7 @@ class Scheduler:
         alarms = self._alarms
         while alarms and alarms[0][2].alarm != alarms[0][1]:
             heapq.heappop(alarms)
-        self.world.advance(alarms[0][0] if alarms else NEVER)
+        self.time_source.advance(alarms[0][0] if alarms else NEVER)
 
 
 def _no_foreign_threads() -> None:

@@ -1,4 +1,4 @@
-"""The world outside of the student's process: the simulator, and DDS between the two.
+"""The student's end of the link to the simulator, and DDS between the two.
 
 Before time moves, the simulator hears how much has been sent to it; afterwards we really wait
 until everything that it has sent is here. Where readers or writers are new, both sides first wait
@@ -33,66 +33,67 @@ from grader.run.lockstep.protocol import (
 )
 from grader.run.lockstep.registry import (
     IN_FLIGHT,
-    End,
-    Inbox,
-    Office,
-    Outlet,
+    Endpoint,
+    EndpointRegistry,
+    Reader,
+    Writer,
     compatible,
+    distinct_arrivals,
     policies,
-    tallies,
 )
+from grader.run.lockstep.times import NEVER
 from grader.run.processes import cores
-from grader.run.student.scheduler import NEVER, Scheduler
+from grader.run.student.scheduler import Scheduler
 
-#: How long DDS may take to connect two ends, or to deliver a message [s].
+#: How long DDS may take to connect two endpoints, or to deliver a message [s].
 MATCH_PATIENCE_S = 3.0
 ARRIVAL_PATIENCE_S = 2.0
 #: How many ticks may pass at once where poses come but nobody waits for them.
 BATCH_TICKS = 16
 UNBOUNDED = 0xFFFFFFFF
-#: What sending a message costs: 20 us. What counting the ends of a wire costs.
+#: What sending a message costs: 20 us. What counting the endpoints of a channel costs.
 SEND_UNITS = 4
 QUESTION_UNITS = 4
 
 
 @dataclass(eq=False)
-class Remote(End):
+class RemoteEndpoint(Endpoint):
     """A reader or writer of the simulator.
 
     Attributes:
         id: as in the tables.
         writes: which of the two it is.
         sent: how much we have sent to it; it has sent so much.
-        inboxes: ours that it writes to.
+        readers: ours that it writes to.
     """
 
     id: int = 0
     writes: bool = False
     sent: int = 0
-    inboxes: list[Inbox] = field(default_factory=list)
+    readers: list[Reader] = field(default_factory=list)
 
 
-class World(Office):
-    """The student's side of the link, and all its mail."""
+class SimulatorLink(EndpointRegistry):
+    """The student's side of the link, and all endpoints of its process."""
 
-    def __init__(self, scheduler: Scheduler, link: socket.socket) -> None:
+    def __init__(self, scheduler: Scheduler, connection: socket.socket) -> None:
         super().__init__()
         self.tick = 0
-        #: counts how often the ends were connected anew
+        #: counts how often the endpoints were connected anew
         self.graph_epoch = 0
-        #: whether a thread waits for what comes on these inboxes
+        #: whether a thread waits for what comes on these readers
         self.is_listening: Callable[[], bool] = lambda: False
         #: called after something may have arrived
         self.on_arrival: Callable[[], None] = lambda: None
         #: called when nothing can ever happen any more
         self.on_standstill: Callable[[], None] = lambda: None
-        self.remotes: dict[int, Remote] = {}
+        self.remotes: dict[int, RemoteEndpoint] = {}
         self._scheduler = scheduler
-        self._link = link
+        self._connection = connection
         #: the processor core to share with the simulator from the first tick on; -1: any
         self.core = -1
         self._is_connected = self._has_started = False
-        self._unannounced: dict[int, Remote] = {}
+        self._unannounced: dict[int, RemoteEndpoint] = {}
         self._flying = 0
 
     # Time -------------------------------------------------------------------------------------
@@ -116,7 +117,7 @@ class World(Office):
     def _most(self) -> int:
         if self.is_listening():
             return 1
-        return BATCH_TICKS if any(inbox.remote for inbox in self.inboxes) else UNBOUNDED
+        return BATCH_TICKS if any(reader.remote for reader in self.readers) else UNBOUNDED
 
     def synchronise(self) -> None:
         """Have the simulator take everything that we have sent, in no time."""
@@ -136,66 +137,68 @@ class World(Office):
                 return
             if reply.state == State.OVER:
                 real.leave(0)
-            # the simulator's ends have changed in the middle of a tick
+            # the simulator's endpoints have changed in the middle of a tick
             self._update(self._receive(Table))
             self.settle()
 
     def _await(self, reply: Reply) -> None:
         """Really wait for what the simulator says that it has sent."""
-        awaited: list[Inbox] = []
+        awaited: list[Reader] = []
         for number, total in reply.sent:
             remote = self.remotes[number]
             news, remote.sent = total - remote.sent, total
-            for tally in tallies(remote.inboxes):
-                tally.expected += news
-            awaited += remote.inboxes
+            for arrivals in distinct_arrivals(remote.readers):
+                arrivals.expected += news
+            awaited += remote.readers
         self._complain(self.await_arrivals(awaited, ARRIVAL_PATIENCE_S))
 
-    def _complain(self, late: list[Inbox]) -> None:
-        for inbox in late:
-            missing = inbox.tally.expected - inbox.tally.received
-            inbox.tally.received = inbox.tally.expected
+    def _complain(self, late: list[Reader]) -> None:
+        for reader in late:
+            missing = reader.arrivals.expected - reader.arrivals.received
+            reader.arrivals.received = reader.arrivals.expected
             if missing > 0:
-                self.note(Kind.WARNING, f"{missing} messages on {inbox.wire} did not arrive")
+                self.note(Kind.WARNING, f"{missing} messages on {reader.channel} did not arrive")
 
-    # Mail -------------------------------------------------------------------------------------
+    # Messages ---------------------------------------------------------------------------------
 
     def before_question(self) -> None:
         """Answers of DDS must not depend on how fast it is."""
         self.settle()
         self._scheduler.charge(QUESTION_UNITS)
 
-    def before_send(self, outlet: Outlet) -> None:
+    def before_send(self, writer: Writer) -> None:
         """Nothing is sent before those who should hear it are connected."""
         if self.changed:
             self.settle()
 
-    def after_send(self, outlet: Outlet) -> None:
+    def after_send(self, writer: Writer) -> None:
         """Count; deliver within this process; now and then have the simulator take it."""
-        super().after_send(outlet)
-        for remote in outlet.remote:
+        super().after_send(writer)
+        for remote in writer.remote:
             remote.sent += 1
             self._unannounced[remote.id] = remote
             self._flying += 1
         if self._flying >= IN_FLIGHT:
             self.synchronise()
-        if outlet.local:
-            self._complain(self.await_arrivals(outlet.local, ARRIVAL_PATIENCE_S))
+        if writer.local:
+            self._complain(self.await_arrivals(writer.local, ARRIVAL_PATIENCE_S))
             self.on_arrival()
         self._scheduler.charge(SEND_UNITS)
 
-    def retire(self, ends: list[End], destroy: Callable[[], None]) -> None:
+    def request_destroy(self, endpoints: list[Endpoint], destroy: Callable[[], None]) -> None:
         """Nothing that was sent gets lost with its writer."""
         self.synchronise()
-        for end in ends:
-            if isinstance(end, Inbox) and end.wire.startswith("response"):
+        for endpoint in endpoints:
+            if isinstance(endpoint, Reader) and endpoint.channel.startswith("response"):
                 asked = sum(
                     other.sent
-                    for other in ends
-                    if isinstance(other, Outlet) and other.name == end.name
+                    for other in endpoints
+                    if isinstance(other, Writer) and other.name == endpoint.name
                 )
-                end.tally.received += asked - end.received  # nobody will take these answers
-        super().retire(ends, destroy)
+                endpoint.arrivals.received += (
+                    asked - endpoint.received
+                )  # nobody will take these answers
+        super().request_destroy(endpoints, destroy)
 
     # Connections ------------------------------------------------------------------------------
 
@@ -208,7 +211,7 @@ class World(Office):
             self.changed = False
             self._pair()
             matched = [(remote.id, self._partners(remote)) for remote in self.remotes.values()]
-            publishers = sum(outlet.is_stream for outlet in self.outlets)
+            publishers = sum(writer.is_stream for writer in self.writers)
             self._send(Hello([count for count in matched if count[1]], publishers))
             self._receive(Hello)
             self._await_matches()
@@ -220,48 +223,50 @@ class World(Office):
             self._unannounced.pop(number, None)
         for entry in table.added:
             qos = policies(entry.reliability, entry.durability)
-            self.remotes[entry.id] = Remote(
-                entry.wire, entry.type, qos, None, id=entry.id, writes=entry.writes
+            self.remotes[entry.id] = RemoteEndpoint(
+                entry.channel, entry.type, qos, None, id=entry.id, writes=entry.writes
             )
         self.changed = True
 
     def _pair(self) -> None:
         self.pair_locally()
-        remotes: dict[str, list[Remote]] = defaultdict(list)
+        remotes: dict[str, list[RemoteEndpoint]] = defaultdict(list)
         for remote in self.remotes.values():
-            remotes[remote.wire].append(remote)
-            remote.inboxes = []
-        for inbox in self.inboxes:
-            before, inbox.remote = inbox.remote, []
-            for remote in remotes[inbox.wire]:
-                if remote.writes and compatible(remote, inbox):
-                    inbox.remote.append(remote)
-                    remote.inboxes.append(inbox)
-                    if remote not in before and remote.sent and _remembers(remote, inbox):
-                        inbox.tally.expected += 1
-        for outlet in self.outlets:
-            readers = [remote for remote in remotes[outlet.wire] if not remote.writes]
-            outlet.remote = [remote for remote in readers if compatible(outlet, remote)]
+            remotes[remote.channel].append(remote)
+            remote.readers = []
+        for reader in self.readers:
+            before, reader.remote = reader.remote, []
+            for remote in remotes[reader.channel]:
+                if remote.writes and compatible(remote, reader):
+                    reader.remote.append(remote)
+                    remote.readers.append(reader)
+                    if remote not in before and remote.sent and _remembers(remote, reader):
+                        reader.arrivals.expected += 1
+        for writer in self.writers:
+            readers = [remote for remote in remotes[writer.channel] if not remote.writes]
+            writer.remote = [remote for remote in readers if compatible(writer, remote)]
 
-    def _partners(self, remote: Remote) -> int:
+    def _partners(self, remote: RemoteEndpoint) -> int:
         if remote.writes:
-            return len(remote.inboxes)
-        return sum(remote in outlet.remote for outlet in self.outlets)
+            return len(remote.readers)
+        return sum(remote in writer.remote for writer in self.writers)
 
     def _await_matches(self) -> None:
-        wanted: list[tuple[End, int]] = []
-        for outlet in self.outlets:
-            wanted.append((outlet, len(outlet.remote) + len(outlet.local)))
-        for inbox in self.inboxes:
-            wanted.append((inbox, len(inbox.remote) + self.local_writers(inbox)))
+        wanted: list[tuple[Endpoint, int]] = []
+        for writer in self.writers:
+            wanted.append((writer, len(writer.remote) + len(writer.local)))
+        for reader in self.readers:
+            wanted.append((reader, len(reader.remote) + self.local_writers(reader)))
         deadline = real.monotonic() + MATCH_PATIENCE_S
         while wanted := [(e, n) for e, n in wanted if e.matches and not e.matches(n)]:
             if real.monotonic() > deadline:
-                for end, number in wanted:
-                    self.note(Kind.WARNING, f"{end.wire} was not connected to {number} others")
+                for endpoint, number in wanted:
+                    self.note(
+                        Kind.WARNING, f"{endpoint.channel} was not connected to {number} others"
+                    )
                 return
             real.sleep(0.0002)
-        history = [inbox for inbox in self.inboxes if inbox.is_late]
+        history = [reader for reader in self.readers if reader.is_late]
         self._complain(self.await_arrivals(history, ARRIVAL_PATIENCE_S))
 
     # The link ---------------------------------------------------------------------------------
@@ -272,13 +277,13 @@ class World(Office):
 
     def _send(self, packet: Packet) -> None:
         try:
-            self._link.send(encode(packet))
+            self._connection.send(encode(packet))
         except OSError:
             real.leave(1)
 
     def _receive(self, kind: type[Any]) -> Any:
         try:
-            data = self._link.recv(LIMIT_BYTES)
+            data = self._connection.recv(LIMIT_BYTES)
         except OSError:
             data = b""
         if not data:
@@ -288,7 +293,7 @@ class World(Office):
         return packet
 
 
-def _remembers(writer: End, reader: End) -> bool:
+def _remembers(writer: Endpoint, reader: Endpoint) -> bool:
     """Whether a new reader still gets the writer's last message."""
     lasting = QoSDurabilityPolicy.TRANSIENT_LOCAL
     return bool(writer.qos.durability == lasting and reader.qos.durability == lasting)

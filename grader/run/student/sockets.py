@@ -7,7 +7,8 @@ import selectors
 from collections.abc import Callable
 from typing import Any
 
-from grader.run.student.scheduler import NEVER, Runner, Scheduler
+from grader.run.lockstep.times import NEVER
+from grader.run.student.scheduler import Runner, Scheduler
 
 
 def install(scheduler: Scheduler) -> None:

@@ -13,8 +13,9 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from grader.run.lockstep.times import NEVER
 from grader.run.student.refusal import Unsupported
-from grader.run.student.scheduler import NEVER, Runner, Scheduler
+from grader.run.student.scheduler import Runner, Scheduler
 
 SCHEDULER: Scheduler
 

@@ -36,11 +36,11 @@ def main() -> None:
     """Run one submission; does not return."""
     _, fd, core, root, target, *more = sys.argv
     student_main.die_with_parent()
-    link = socket.socket(fileno=int(fd))
+    connection = socket.socket(fileno=int(fd))
     scheduler = Scheduler()
 
     def refuse(what: str) -> None:
-        link.send(encode(Note(Kind.UNSUPPORTED, what)))
+        connection.send(encode(Note(Kind.UNSUPPORTED, what)))
         real.leave(0)
 
     try:
@@ -52,8 +52,8 @@ def main() -> None:
         signals.install(scheduler, refuse)
         from grader.run.student import install as inside_rclpy
 
-        world = inside_rclpy.install(scheduler, link, refuse)
-        world.core = int(core)
+        link = inside_rclpy.install(scheduler, connection, refuse)
+        link.core = int(core)
     except Exception as error:  # another Python or rclpy than those that this was made for
         refuse(f"runs on a Python or rclpy that virtual time does not know ({error!r})")
     refusal.watch(refuse)
@@ -61,8 +61,8 @@ def main() -> None:
     code = student_main.call(root, target, more[0] if more else None)
     threads.join_all()
     atexit._run_exitfuncs()
-    world.synchronise()
-    world.note(Kind.LEAVING)
+    link.synchronise()
+    link.note(Kind.LEAVING)
     real.leave(code)
 
 

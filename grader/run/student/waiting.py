@@ -1,13 +1,14 @@
-"""How rclpy's wait sets wait in virtual time, and what polling costs."""
+"""How rclpy's wait sets and clocks wait in virtual time, and what polling costs."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from grader.run.lockstep.rclpy_clocks import RclpyClocks
+from grader.run.lockstep.times import NEVER
 from grader.run.lockstep.waitsets import WaitSet
-from grader.run.student.clocks import Clocks
-from grader.run.student.scheduler import NEVER, Runner, Scheduler
-from grader.run.student.simulator_link import World
+from grader.run.student.scheduler import Runner, Scheduler
+from grader.run.student.simulator_link import SimulatorLink
 
 #: What looking costs, and what handing out work costs on top [units].
 LOOK_UNITS = 2
@@ -19,19 +20,19 @@ EMPTY_NS = (*(250_000,) * 8, 2_000_000)
 class VirtualWaiter:
     """Blocks the running thread in the scheduler."""
 
-    def __init__(self, scheduler: Scheduler, world: World, clocks: Clocks) -> None:
+    def __init__(self, scheduler: Scheduler, link: SimulatorLink, clocks: RclpyClocks) -> None:
         self._scheduler = scheduler
-        self._world = world
+        self._link = link
         self._waiting: list[tuple[WaitSet, Runner]] = []
         self._empty = 0
         self.tell_time = clocks.tell
-        world.is_listening = self.is_listening
-        world.on_arrival = self.on_arrival
+        link.is_listening = self.is_listening
+        link.on_arrival = self.on_arrival
 
     @property
     def graph_epoch(self) -> int:
         """Counts the changes of the graph."""
-        return self._world.graph_epoch
+        return self._link.graph_epoch
 
     def look_first(self) -> None:
         """Others first, if any can run."""
@@ -71,7 +72,7 @@ class VirtualWaiter:
     def on_arrival(self) -> None:
         """Wake those for whom something has come."""
         for wait_set, runner in self._waiting:
-            if any(inbox.items for inbox in wait_set.inboxes):
+            if any(reader.items for reader in wait_set.readers):
                 self._scheduler.wake(runner)
 
     def is_listening(self) -> bool:
@@ -81,16 +82,49 @@ class VirtualWaiter:
     def is_hopeful(self) -> bool:
         """Whether anything can still wake somebody."""
         return self.is_listening() or any(
-            inbox.tally.received < sum(remote.sent for remote in _asked(self._world, inbox))
+            reader.arrivals.received < sum(remote.sent for remote in _asked(self._link, reader))
             for wait_set, _ in self._waiting
-            for inbox in wait_set.inboxes
-            if inbox.wire.startswith("response")
+            for reader in wait_set.readers
+            if reader.channel.startswith("response")
         )
 
 
 def _hears(wait_set: WaitSet) -> bool:
-    return any(inbox.remote and inbox.wire.startswith("topic") for inbox in wait_set.inboxes)
+    return any(reader.remote and reader.channel.startswith("topic") for reader in wait_set.readers)
 
 
-def _asked(world: World, inbox: Any) -> list[Any]:
-    return [r for r in world.remotes.values() if r.wire == f"request {inbox.name}"]
+def _asked(link: SimulatorLink, reader: Any) -> list[Any]:
+    return [r for r in link.remotes.values() if r.channel == f"request {reader.name}"]
+
+
+def clock_event_class(scheduler: Scheduler) -> type:
+    """What `Clock.sleep_until` waits on."""
+
+    class ClockEvent:
+        def __init__(self) -> None:
+            self._is_set = False
+            self._waiting: Any = None
+
+        def wait_until_steady(self, clock: Any, until: Any) -> None:
+            if clock.is_overridden:  # and nobody publishes /clock
+                deadline_ns = scheduler.now_ns + 10**18
+            else:
+                deadline_ns = until.nanoseconds - clock.offset_ns
+            self._waiting = scheduler.current
+            while not self._is_set and scheduler.now_ns < deadline_ns:
+                scheduler.block(deadline_ns)
+
+        wait_until_system = wait_until_ros = wait_until_steady
+
+        def set(self) -> None:
+            self._is_set = True
+            if self._waiting is not None:
+                scheduler.wake(self._waiting)
+
+        def clear(self) -> None:
+            self._is_set = False
+
+        def is_set(self) -> bool:
+            return self._is_set
+
+    return ClockEvent

@@ -28,7 +28,7 @@ class HookedNode(TurtlesimNode):
         """Serve what has arrived, if anything has."""
         if now_ns is None:
             now_ns = int(self.get_clock().now().nanoseconds)
-        if not self._hooks.has_mail() and self.arena.ticks % SERVE_TICKS:
+        if not self._hooks.has_unread() and self.arena.ticks % SERVE_TICKS:
             self.arena.now_ns = now_ns
             return now_ns
         super().serve(now_ns)

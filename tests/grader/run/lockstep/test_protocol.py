@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from grader.run.lockstep.protocol import (
     TICK_NS,
     Advance,
-    Endpoint,
+    EndpointInfo,
     Hello,
     Kind,
     Note,
@@ -40,7 +40,7 @@ def test_packets_survive_the_link(packet: Advance | Hello | Reply | Note) -> Non
 
 
 def test_tables_survive_the_link() -> None:
-    endpoint = Endpoint(3, "topic /turtle1/pose", "turtlesim/msg/Pose", True, 1, 2)
+    endpoint = EndpointInfo(3, "topic /turtle1/pose", "turtlesim/msg/Pose", True, 1, 2)
     table = Table((endpoint,), (1, 2))
     assert decode(encode(table)) == table
 

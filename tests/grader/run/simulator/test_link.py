@@ -10,7 +10,7 @@ import pytest
 
 from grader.run.lockstep.protocol import Advance, Kind, Note, Table, encode
 from grader.run.simulator import link
-from grader.run.simulator.link import HostLink, Patience, Refused
+from grader.run.simulator.link import Patience, Refused, StudentLink
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def ends() -> Iterator[tuple[socket.socket, socket.socket]]:
 def test_nonsense_ends_the_conversation(
     ends: tuple[socket.socket, socket.socket], data: bytes
 ) -> None:
-    heard = HostLink(ends[0], os.getpid(), Patience())
+    heard = StudentLink(ends[0], os.getpid(), Patience())
     ends[1].send(data)
     assert heard.receive() is None
     assert heard.silence == "broken"
@@ -34,7 +34,7 @@ def test_nonsense_ends_the_conversation(
 def test_requests_come_through_and_notes_are_kept(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
-    heard = HostLink(ends[0], os.getpid(), Patience())
+    heard = StudentLink(ends[0], os.getpid(), Patience())
     for packet in (Note(Kind.WARNING, "late\x1b[31m\n"), Note(Kind.STUCK), Advance(5, 1, [])):
         ends[1].send(encode(packet))
     assert heard.receive() == Advance(5, 1, [])
@@ -43,7 +43,7 @@ def test_requests_come_through_and_notes_are_kept(
 
 
 def test_a_million_warnings_are_few_flags(ends: tuple[socket.socket, socket.socket]) -> None:
-    heard = HostLink(ends[0], os.getpid(), Patience())
+    heard = StudentLink(ends[0], os.getpid(), Patience())
     for number in range(100):
         ends[1].send(encode(Note(Kind.WARNING, f"warning {number}")))
     ends[1].close()
@@ -54,14 +54,14 @@ def test_a_million_warnings_are_few_flags(ends: tuple[socket.socket, socket.sock
 def test_what_is_not_supported_is_refused(ends: tuple[socket.socket, socket.socket]) -> None:
     ends[1].send(encode(Note(Kind.UNSUPPORTED, "forks")))
     with pytest.raises(Refused, match="forks"):
-        HostLink(ends[0], os.getpid(), Patience()).receive()
+        StudentLink(ends[0], os.getpid(), Patience()).receive()
 
 
 def test_computing_without_end_is_a_stall(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
     with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as process:
-        heard = HostLink(ends[0], process.pid, Patience(start_cpu_s=0.3))
+        heard = StudentLink(ends[0], process.pid, Patience(start_cpu_s=0.3))
         assert heard.receive() is None
         process.kill()
     assert heard.silence == "stalled"
@@ -72,5 +72,5 @@ def test_sleeping_outside_of_virtual_time_is_refused(
 ) -> None:
     with subprocess.Popen(["sleep", "60"]) as process:
         with pytest.raises(Refused):
-            HostLink(ends[0], process.pid, Patience(asleep_s=0.5)).receive()
+            StudentLink(ends[0], process.pid, Patience(asleep_s=0.5)).receive()
         process.kill()

@@ -1,12 +1,13 @@
 import pytest
 
+from grader.run.lockstep.times import NEVER
 from grader.run.student import threads
-from grader.run.student.scheduler import COARSER, NEVER, PAUSE_NS, UNITS_A_PAUSE, Scheduler
+from grader.run.student.scheduler import COARSER, PAUSE_NS, UNITS_A_PAUSE, Scheduler
 from grader.run.student.threads import Lock
 
 
 class Emptiness:
-    """A world in which only our own deadlines happen."""
+    """A source of time where only our own deadlines happen."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self.scheduler = scheduler
@@ -21,7 +22,7 @@ class Emptiness:
 @pytest.fixture
 def scheduler(monkeypatch: pytest.MonkeyPatch) -> Scheduler:
     scheduler = Scheduler()
-    scheduler.world = Emptiness(scheduler)
+    scheduler.time_source = Emptiness(scheduler)
     monkeypatch.setattr(threads, "SCHEDULER", scheduler, raising=False)
     return scheduler
 
