@@ -12,7 +12,6 @@ from rich.console import Console
 
 from grader import reports
 from grader.cli import progress
-from grader.cli.watch import each_save
 from grader.errors import GraderFailure, UsageError
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
@@ -20,6 +19,7 @@ from grader.grading import Runner, run_all
 from grader.recording import folder
 from grader.recording.recording import Recordings
 from grader.reports import terminal
+from grader.requirements import require
 from grader.result import result as results
 from grader.result.result import Result
 from grader.run import real_time, virtual_time
@@ -61,8 +61,12 @@ def points(text: str) -> float:
 
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
+    require("rosbags")  # now, not when a run is to be saved
     if not args.watch:
         return _grade(args)
+    require("watchdog")
+    from grader.cli.watch import each_save
+
     for _ in each_save(args.submission):
         _grade_and_go_on(args)
     return 0

@@ -1,34 +1,106 @@
-"""Wait for a submission to be saved again."""
+"""Wait for a submission to be saved again; imported by `grader run --watch` only."""
 
 from __future__ import annotations
 
+import os
+import platform
 from collections.abc import Iterator
 from pathlib import Path
+from queue import Empty, SimpleQueue
 
-import watchfiles
+from watchdog.events import FileSystemEvent, FileSystemEventHandler
+from watchdog.observers import Observer
+from watchdog.observers.api import BaseObserver
+from watchdog.observers.polling import PollingObserver
 
-#: Files whose change can change a verdict, beside Python's own. What the grader writes has others.
-SETUP_FILES = (".cfg", ".toml", ".xml", ".zip")
+from grader.errors import UsageError
+
+#: Files whose change can change a verdict. What the grader writes has other names.
+SUFFIXES = (".py", ".cfg", ".toml", ".xml", ".zip")
+#: Folders in which other programs write such files.
+FOREIGN = frozenset(
+    {".git", ".hg", ".venv", "venv", "__pycache__", "build", "install", "node_modules"}
+)
+#: An editor's save is several events; it is over when this long none came.
+QUIET_S = 0.3
 
 
 def each_save(submission: Path) -> Iterator[None]:
     """Yield at once, and then whenever the submission has been saved; ends at Ctrl-C.
 
     A save that comes while the caller is busy is not lost.
+
+    Raises:
+        UsageError: the folder to watch does not exist.
     """
     # The folder of a single file is watched: many editors replace a file instead of writing it.
-    folder = submission if submission.is_dir() else submission.absolute().parent
-    only = None if submission.is_dir() else submission.name
-    changes = watchfiles.watch(
-        folder,
-        watch_filter=watchfiles.PythonFilter(extra_extensions=SETUP_FILES),
-        debounce=300,
-        rust_timeout=100,
-        yield_on_timeout=True,
-        raise_interrupt=True,
-    )
-    next(changes)  # from here on it watches
-    yield
-    for changed in changes:
-        if changed and (only is None or any(Path(path).name == only for _, path in changed)):
+    is_folder = submission.is_dir()
+    folder = (submission if is_folder else submission.parent).absolute()
+    if not folder.is_dir():
+        raise UsageError(f"cannot watch {submission}: {folder} does not exist")
+    saves = Saves(folder, None if is_folder else submission.name)
+    observer = _watching(saves, folder, is_folder)
+    try:
+        yield
+        while True:
+            saves.wait()
             yield
+    finally:
+        observer.stop()
+        observer.join()
+
+
+class Saves(FileSystemEventHandler):
+    """Remembers saves until somebody waits for them.
+
+    Args:
+        folder: what is watched.
+        only: the name of the one file in it that counts; None for all.
+    """
+
+    def __init__(self, folder: Path, only: str | None) -> None:
+        self._folder = folder
+        self._only = only
+        self._seen: SimpleQueue[FileSystemEvent] = SimpleQueue()
+
+    def on_any_event(self, event: FileSystemEvent) -> None:
+        """Called by watchdog, in a thread of its own."""
+        # not "opened" and "closed": grading reads the files
+        if event.event_type not in ("created", "modified", "moved", "deleted"):
+            return
+        paths = (event.src_path, getattr(event, "dest_path", ""))
+        if not event.is_directory and any(self._counts(os.fsdecode(p)) for p in paths if p):
+            self._seen.put(event)
+
+    def wait(self) -> None:
+        """Wait for a save, and until it is over."""
+        self._seen.get()
+        try:
+            while True:
+                self._seen.get(timeout=QUIET_S)
+        except Empty:
+            return
+
+    def _counts(self, name: str) -> bool:
+        path = Path(name)
+        if self._only is not None:
+            return path == self._folder / self._only
+        inside = path.relative_to(self._folder) if path.is_relative_to(self._folder) else path
+        return path.suffix in SUFFIXES and FOREIGN.isdisjoint(inside.parts)
+
+
+def _watching(saves: Saves, folder: Path, recursive: bool) -> BaseObserver:
+    """Something that reports to `saves` from now on."""
+    # WSL hears nothing of Windows' own files, so there they are looked at again and again
+    if "microsoft" not in platform.release().lower():
+        try:
+            return _start(Observer(), saves, folder, recursive)
+        except OSError:
+            pass  # e.g. the system watches as many files already as it may
+    return _start(PollingObserver(), saves, folder, recursive)
+
+
+def _start(observer: BaseObserver, saves: Saves, folder: Path, recursive: bool) -> BaseObserver:
+    observer.schedule(saves, str(folder), recursive=recursive)
+    observer.start()
+    return observer

@@ -20,11 +20,9 @@ from rosbags.typesys.store import Typestore
 from grader.errors import RecordingError
 from grader.scenes.scene import Message, Scene, Trace
 
-METADATA = "metadata.yaml"
-
 
 def write(trace: Trace, scene: Scene, folder: Path) -> Path:
-    """Write a bag; returns its .mcap, which is named like the folder. Last comes `METADATA`.
+    """Write a bag; returns its .mcap, which is named like the folder. Last comes metadata.yaml.
 
     The same trace gives the same bytes.
 

@@ -8,6 +8,20 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+from watchdog.events import (
+    DirCreatedEvent,
+    FileClosedEvent,
+    FileCreatedEvent,
+    FileDeletedEvent,
+    FileModifiedEvent,
+    FileMovedEvent,
+    FileOpenedEvent,
+)
+
+from grader.cli.watch import Saves, each_save
+from grader.errors import UsageError
+
 ROOT = Path(__file__).parents[3]
 
 
@@ -50,3 +64,90 @@ def read_until(process: subprocess.Popen[str], words: str) -> str:
         if words in line:
             return said
     raise AssertionError(f"it ended without saying {words!r}: {said}")
+
+
+def test_a_save_while_the_caller_is_busy_is_not_lost(tmp_path):
+    controller = tmp_path / "turtle_controller.py"
+    controller.touch()
+    saves = each_save(controller)
+    next(saves)
+    for _ in range(2):  # the second time it has been waiting before
+        controller.write_text("saved while busy")
+        next(saves)
+
+
+def test_an_editor_may_replace_the_file(tmp_path):
+    controller = tmp_path / "turtle_controller.py"
+    controller.touch()
+    saves = each_save(controller)
+    next(saves)
+    (tmp_path / ".turtle_controller.py.swp").write_text("new")
+    (tmp_path / ".turtle_controller.py.swp").replace(controller)
+    next(saves)
+
+
+def test_a_file_deep_in_a_package_counts(tmp_path):
+    module = tmp_path / "package" / "package" / "node.py"
+    module.parent.mkdir(parents=True)
+    saves = each_save(tmp_path / "package")
+    next(saves)
+    module.write_text("saved")
+    next(saves)
+
+
+def test_a_folder_that_does_not_exist_cannot_be_watched(tmp_path):
+    with pytest.raises(UsageError, match="missing does not exist"):
+        next(each_save(tmp_path / "missing" / "turtle_controller.py"))
+
+
+@pytest.fixture
+def reported(monkeypatch):
+    """Which of these events make a save: of the submission /work/pkg, or of one file in it."""
+
+    def counted(*events, only=None):
+        saves = Saves(Path("/work/pkg"), only)
+        taken = []
+        monkeypatch.setattr(saves, "_seen", type("Queue", (), {"put": taken.append}))
+        for event in events:
+            saves.dispatch(event)
+        return taken
+
+    return counted
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        FileModifiedEvent("/work/pkg/pkg/node.py"),
+        FileCreatedEvent("/work/pkg/setup.cfg"),
+        FileDeletedEvent("/work/pkg/node.py"),
+        FileMovedEvent("/work/pkg/node.py~", "/work/pkg/node.py"),
+        FileModifiedEvent(b"/work/pkg/node.py"),
+    ],
+)
+def test_what_can_change_a_verdict_is_a_save(reported, event):
+    assert reported(event) == [event]
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        FileOpenedEvent("/work/pkg/node.py"),
+        FileClosedEvent("/work/pkg/node.py"),
+        DirCreatedEvent("/work/pkg/graded/turtle_controller.py"),
+        FileCreatedEvent("/work/pkg/graded/pkg/result.json"),
+        FileCreatedEvent("/work/pkg/graded/pkg/report.html"),
+        FileMovedEvent("/work/pkg/graded/pkg/a", "/work/pkg/graded/pkg/recording/metadata.yaml"),
+        FileModifiedEvent("/work/pkg/__pycache__/node.py"),
+        FileModifiedEvent("/work/pkg/.git/hooks/hook.py"),
+        FileModifiedEvent("/work/pkg/.node.py.swp"),
+    ],
+)
+def test_what_grading_reads_and_writes_is_no_save(reported, event):
+    assert reported(event) == []
+
+
+def test_of_a_single_file_its_neighbours_do_not_count(reported):
+    own = FileModifiedEvent("/work/pkg/node.py")
+    others = [FileModifiedEvent(f"/work/pkg/{name}") for name in ("other.py", "graded/node.py")]
+    assert reported(own, *others, only="node.py") == [own]

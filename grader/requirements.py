@@ -1,0 +1,42 @@
+"""Packages that only part of the grader needs: named in one line where they are missing.
+
+pip brings all of them. `rosdep install` brings what Ubuntu has; the others are for pip, which Ubuntu
+keeps from the system's Python unless it is told otherwise.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+from grader.errors import GraderFailure
+
+#: The module that is imported, what it is needed for, and what pip is told to install; the bounds
+#: are those of pyproject.toml.
+OPTIONAL = {
+    "rosbags": ("rosbags.rosbag2", "recordings are rosbag2 folders", "rosbags>=0.11.9,<0.12"),
+    "watchdog": ("watchdog.observers", "--watch waits for saves with it", "watchdog>=3.0.0,<7"),
+}
+
+
+def require(package: str) -> None:
+    """Find out whether a package can be imported, before anything is done that needs it.
+
+    Args:
+        package: one of `OPTIONAL`.
+
+    Raises:
+        GraderFailure: it is missing, or a package that it needs is.
+    """
+    module, use, requirement = OPTIONAL[package]
+    try:
+        importlib.import_module(module)
+    except ImportError as error:
+        found = error.name or package
+        own = found.partition(".")[0] == package
+        missing = package if own else f"{found}, which {package} needs,"
+        raise GraderFailure(
+            f"the Python package {missing} is missing ({use}). Install it with: "
+            f"{sys.executable} -m pip install '{requirement}' (in a system's own Python, where pip "
+            "refuses that, with --break-system-packages)"
+        ) from None
