@@ -1,0 +1,209 @@
+"""Arrows run one way: who may import whom, no circle, nothing imported from above.
+
+All imports count, also those inside functions and for type checkers only. What is named by a string
+does not, e.g. a process that is started with -m.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("turtlesim_py", "turtlesim_challenge", "grader")
+STARTER = "turtlesim_challenge.starter"  # a student's own package
+
+
+def below(package: str, *names: str) -> set[str]:
+    return {f"{package}.{name}" for name in names}
+
+
+#: What every station of the grader may import.
+GROUND = below("grader", "errors", "text", "files", "scratch", "requirements")
+STATIONS = below(
+    "grader",
+    "submission",
+    "recording",
+    "scenes",
+    "run",
+    "exercise",
+    "exercises",
+    "result",
+    "reports",
+)
+
+#: What may import what of ours, besides itself. A name stands for all that is below it; of two
+#: names that fit a module the longer is its rule. The lowest come first.
+MAY_IMPORT: dict[str, set[str]] = {
+    "turtlesim_challenge": set(),
+    "turtlesim_py.__init__": set(),
+    "turtlesim_py.world": set(),
+    "turtlesim_py.png": {"turtlesim_py.world"},
+    "turtlesim_py.replay": {"turtlesim_py.world"},
+    "turtlesim_py.scenario": below("turtlesim_py", "world", "replay", "png"),
+    "turtlesim_py.ros": below("turtlesim_py", "world", "png"),
+    "turtlesim_py.programs": below("turtlesim_py", "world", "ros"),
+    **dict.fromkeys(GROUND, GROUND),
+    "grader.submission": GROUND,
+    "grader.recording": GROUND,
+    "grader.scenes": GROUND | below("grader", "recording", "scenes"),
+    "grader.scenes.turtlesim": GROUND | below("grader", "recording", "scenes") | {"turtlesim_py"},
+    "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
+    "grader.run.processes": GROUND,
+    "grader.run.lockstep": GROUND | {"grader.run.processes"},
+    "grader.run.student": below("grader.run", "lockstep", "processes.cores"),
+    "grader.run.simulator": GROUND
+    | below("grader", "recording", "scenes", "run.lockstep", "run.processes"),
+    "grader.exercise": GROUND | below("grader", "recording", "scenes"),
+    "grader.exercises": GROUND
+    | below("grader", "recording", "scenes", "exercise")
+    | {"turtlesim_py"},
+    "grader.result": GROUND | below("grader", "recording", "exercise"),
+    "grader.reports": GROUND | below("grader", "recording", "scenes", "result"),
+    "grader.grading": GROUND | STATIONS - below("grader", "reports"),
+    "grader.__init__": GROUND | STATIONS | {"grader.grading"},
+    "grader.testing": GROUND | STATIONS | {"grader.__init__", "grader.grading", "turtlesim_py"},
+    "grader.cli": GROUND | STATIONS | below("grader", "__init__", "grading", "testing"),
+    "grader.__main__": {"grader.cli"},
+}
+
+#: The world knows no ROS, no clock, no threads, no files.
+NOT_IN_WORLD = {"rclpy", "time", "threading", "asyncio", "os", "io", "pathlib", "tempfile"}
+WORLD_OPENS_FILES = {"open", "save", "read_text", "write_text", "read_bytes", "write_bytes"}
+
+
+class Import(NamedTuple):
+    importer: str
+    imported: str
+    line: int
+
+
+@cache
+def modules() -> dict[str, ast.Module]:
+    """Every module by its name, parsed; a package's own file is NAME.__init__."""
+    paths = [path for package in PACKAGES for path in (ROOT / package).rglob("*.py")]
+    names = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in paths}
+    return {
+        name: ast.parse(path.read_bytes())
+        for name, path in sorted(names.items())
+        if not name.startswith(STARTER)
+    }
+
+
+@cache
+def imports() -> list[Import]:
+    """Every import of a module of ours."""
+    found = []
+    for importer, tree in modules().items():
+        package = importer.rpartition(".")[0]
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                names = [(alias.name, "") for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                origin = importlib.util.resolve_name(
+                    "." * node.level + (node.module or ""), package
+                )
+                names = [(origin, alias.name) for alias in node.names]
+            else:
+                continue
+            for origin, name in names:
+                imported = defining(origin, name)
+                if imported is not None and imported != importer:
+                    found.append(Import(importer, imported, node.lineno))
+    return found
+
+
+def defining(origin: str, name: str) -> str | None:
+    """The module that `from origin import name` loads; None where it is not ours."""
+    of_package = [f"{origin}.{name}.__init__", f"{origin}.{name}"] if name else []
+    candidates = [*of_package, f"{origin}.__init__", origin]
+    return next((module for module in candidates if module in modules()), None)
+
+
+def inside(module: str, name: str) -> bool:
+    return f"{module}.".startswith(f"{name}.")
+
+
+def rule(module: str) -> str | None:
+    return max((name for name in MAY_IMPORT if inside(module, name)), key=len, default=None)
+
+
+def allowed(edge: Import) -> bool:
+    own = rule(edge.importer)
+    if own is None or rule(edge.imported) == own:
+        return own is not None
+    return any(inside(edge.imported, name) for name in MAY_IMPORT[own])
+
+
+def test_nobody_imports_what_stands_above_or_beside():
+    wrong = [
+        f"{edge.importer}, line {edge.line}, must not import {edge.imported}"
+        for edge in imports()
+        if not allowed(edge)
+    ]
+    assert not wrong, "\n".join(["", *wrong])
+
+
+def test_every_module_has_its_rule_and_every_rule_its_module():
+    rules = {rule(module) for module in modules()}
+    assert sorted(module for module in modules() if rule(module) is None) == []
+    assert sorted(MAY_IMPORT.keys() - rules) == []
+
+
+def test_nothing_goes_round_in_a_circle():
+    """Neither modules nor packages: what directly is in a package has an order."""
+    circles = []
+    for package in sorted({name.rpartition(".")[0] for name in modules()}):
+        arrows: dict[str, dict[str, Import]] = {}
+        for edge in imports():
+            importer, imported = child(package, edge.importer), child(package, edge.imported)
+            if importer and imported and importer != imported:
+                arrows.setdefault(importer, {})[imported] = edge
+        try:
+            TopologicalSorter(arrows).prepare()
+        except CycleError as error:
+            circle = pairwise(reversed(error.args[1]))
+            steps = [arrows[importer][imported] for importer, imported in circle]
+            circles.append(", ".join(f"{e.importer} imports {e.imported}" for e in steps))
+    assert not circles, "\n".join(["", *circles])
+
+
+def child(package: str, module: str) -> str | None:
+    """What directly in the package holds the module."""
+    if not inside(module, package):
+        return None
+    return module.removeprefix(f"{package}.").partition(".")[0]
+
+
+def test_the_world_knows_no_ros_no_clock_no_threads_and_no_files():
+    wrong = []
+    for module, tree in modules().items():
+        if not inside(module, "turtlesim_py.world"):
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                used = {alias.name.partition(".")[0] for alias in node.names} & NOT_IN_WORLD
+            elif isinstance(node, ast.ImportFrom):
+                used = {(node.module or "").partition(".")[0]} & NOT_IN_WORLD
+            elif isinstance(node, ast.Call):
+                function = node.func
+                called = getattr(function, "id", getattr(function, "attr", ""))
+                used = {called} & WORLD_OPENS_FILES
+            else:
+                continue
+            wrong += [f"{module}, line {node.lineno}: {name}" for name in used]
+    assert not wrong, "\n".join(["", *wrong])
+
+
+def test_every_module_says_in_its_first_line_what_is_inside():
+    silent = []
+    for module, tree in modules().items():
+        first = (ast.get_docstring(tree) or "").partition("\n")[0]
+        if len(first.split()) < 3:
+            silent.append(f"{module}: {first!r}")
+    assert not silent, "\n".join(["", *silent])
