@@ -10,13 +10,18 @@ ifdef _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH
 endif
 
-.PHONY: help install test lint demo bench clean
+# what test-lowest leaves out: tests of the installation and of files for other services
+NOT_AT_LOWEST := --ignore=tests/examples --ignore=tests/packaging/test_check_setup.py \
+	--ignore=tests/packaging/test_colcon.py --ignore=tests/packaging/test_wheel.py
+
+.PHONY: help install test test-lowest lint demo bench clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make install   make .venv with everything in it; the programs are in .venv/bin"
 	@echo "make demo      grade the reference controller: pictures and result in demo/"
 	@echo "make test      run all tests                   (ARGS=\"-k name\" for some)"
+	@echo "make test-lowest   run them with our dependencies at their lower bounds"
 	@echo "make lint      ruff and mypy"
 	@echo "make bench     what the simulator and a grading cost: tables (minutes)"
 	@echo "make clean     remove everything that was made here"
@@ -28,6 +33,12 @@ install:
 test: install
 	@echo "== running the tests"
 	@$(BIN)/python -m pytest $(ARGS)
+
+# an environment of its own, with the oldest packages that pyproject.toml promises to work with
+test-lowest:
+	@VENV=.venv-lowest BOUNDS=lowest scripts/install.sh
+	@echo "== running the tests at the lower bounds"
+	@.venv-lowest/bin/python -m pytest $(NOT_AT_LOWEST) $(ARGS)
 
 lint: install
 	@echo "== ruff"
@@ -47,5 +58,5 @@ bench: install
 	@$(BIN)/python benchmarks/grading.py
 
 clean:
-	rm -rf .venv build install log demo *.egg-info .eggs .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .venv-* build install log demo *.egg-info .eggs .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -4,6 +4,7 @@
 #
 #   PYTHON      the Python to take; without it the first that fits
 #   ROS_DISTRO  set where ROS is sourced: then nothing is compiled
+#   BOUNDS      lowest: for dependencies at their lower bounds, which are older than Python 3.13
 
 fail() {
     echo "Cannot install: $*" >&2
@@ -11,6 +12,7 @@ fail() {
 }
 
 wanted="Python 3.11, 3.12 or 3.13"
+[ "${BOUNDS:-}" != lowest ] || wanted="Python 3.11 or 3.12"
 
 # "3.12" when the command $1 is a Python that starts
 version_of() {
@@ -18,8 +20,11 @@ version_of() {
 }
 
 fits() {
-    case "$(version_of "$1")" in 3.11 | 3.12 | 3.13) return 0 ;; esac
-    return 1
+    case "$(version_of "$1")" in
+    3.11 | 3.12) return 0 ;;
+    3.13) [ "${BOUNDS:-}" != lowest ] ;;
+    *) return 1 ;;
+    esac
 }
 
 system="$(uname -s) $(uname -m)"

@@ -2,6 +2,9 @@
 # Makes .venv and installs the project into it, with everything that its tests need. Does only what
 # is not done yet, so it may be called before every test.
 #
+#   VENV     another folder than .venv
+#   BOUNDS   lowest: our dependencies at their lower bounds
+#
 # The project goes in without pip's own build environment: .venv has all that a build needs, and
 # need not download it a second time. `pip install .` works as well, elsewhere.
 set -euo pipefail
@@ -16,7 +19,7 @@ fi
 exec 9<Makefile
 flock 9
 
-venv=.venv
+venv=${VENV:-.venv}
 log=$venv/install.log
 
 say() { echo "== $*"; }

@@ -1,16 +1,30 @@
-"""Prints everything to install into .venv before the project itself, one requirement a line."""
+"""Prints everything to install into .venv before the project itself, one requirement a line.
+
+BOUNDS=lowest asks for our dependencies at their lower bounds.
+"""
 
 import os
 import tomllib
 from pathlib import Path
 
+# Needs newer packages than our lower bounds; only tests/examples uses it.
+NOT_AT_LOWEST = ("check-jsonschema",)
+
+
+def lowest(requirement: str) -> str:
+    """The requirement at its lower bound: name==1.2 for name>=1.2,<2."""
+    return requirement.partition(",")[0].replace(">=", "==")
+
+
 pyproject = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))
 ours = pyproject["tool"]["turtlesim-py"]
-requirements = [
-    *pyproject["build-system"]["requires"],
-    *ours["dependencies"],
-    *pyproject["project"]["optional-dependencies"]["test"],
-]
+build = pyproject["build-system"]["requires"]
+dependencies = ours["dependencies"]
+tests = pyproject["project"]["optional-dependencies"]["test"]
+if os.environ.get("BOUNDS") == "lowest":
+    build, dependencies = map(lowest, build), map(lowest, dependencies)
+    tests = [name for name in tests if not name.startswith(NOT_AT_LOWEST)]
+requirements = [*build, *dependencies, *tests]
 if not os.environ.get("ROS_DISTRO"):  # the same rule as in setup.py
     requirements += [*ours["ros"], *ours["ros-build"]]
 print("\n".join(requirements))
