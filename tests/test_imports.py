@@ -50,15 +50,19 @@ MAY_IMPORT: dict[str, set[str]] = {
     "turtlesim_py.programs": below("turtlesim_py", "world", "ros"),
     **dict.fromkeys(GROUND, GROUND),
     "grader.submission": GROUND,
-    "grader.recording": GROUND,
-    "grader.scenes": GROUND | below("grader", "recording", "scenes"),
-    "grader.scenes.turtlesim": GROUND | below("grader", "recording", "scenes") | {"turtlesim_py"},
+    "grader.scenes": GROUND,
+    "grader.scenes.turtlesim": GROUND | {"grader.scenes", "turtlesim_py"},
+    "grader.recording": GROUND | {"grader.scenes"},
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
     "grader.run.processes": GROUND,
     "grader.run.lockstep": GROUND | {"grader.run.processes"},
     "grader.run.student": below("grader.run", "lockstep", "processes.cores"),
+    # what the grader's process and the simulator's have to agree on
+    "grader.run.plan": {"grader.scenes"},
+    "grader.run.handover": GROUND | below("grader", "recording", "scenes"),
     "grader.run.simulator": GROUND
-    | below("grader", "recording", "scenes", "run.lockstep", "run.processes"),
+    | below("grader", "recording", "scenes", "run.lockstep", "run.processes")
+    | below("grader.run", "plan", "handover"),
     "grader.exercise": GROUND | below("grader", "recording", "scenes"),
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes", "exercise")

@@ -158,7 +158,7 @@ def _write_json(path: Path, data: dict[str, Any], indent: int | None = 2) -> Non
 
 
 def _bag() -> ModuleType:
-    """The module that reads and writes bags: rosbags is not everywhere, and costs a tenth of a second.
+    """The module that reads and writes bags: rosbags is not everywhere, and slow to import.
 
     Raises:
         GraderFailure: rosbags is missing.

@@ -6,8 +6,6 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-import grader
-
 #: Variables that change how ROS or Python works: the user's are not for graded runs ...
 PERSONAL = ("CYCLONEDDS_", "FASTDDS_", "FASTRTPS_", "PYTHON", "RCL_", "RCUTILS_", "RMW_", "ROS_")
 #: ... but for those that tell which ROS there is.
@@ -49,6 +47,6 @@ def is_ros_sourced() -> bool:
 
 def simulator_environment(env: Mapping[str, str]) -> dict[str, str]:
     """The simulator finds our own packages first, and nothing that lies about."""
-    ours = str(Path(grader.__file__).parents[1])
+    ours = str(Path(__file__).resolve().parents[2])
     path = os.pathsep.join(filter(None, [ours, env.get("PYTHONPATH", "")]))
     return {**env, "PYTHONPATH": path, "PYTHONSAFEPATH": "1"}
