@@ -18,9 +18,9 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.waitable import NumberOfEntities, Waitable
 
-from turtlesim_py.ros.arrivals import Doorbell
+from turtlesim_py.ros.arrivals import Arrivals
 
-#: How often it looks for what does not ring [spins]: QoS events, which bring no more than a
+#: How often it looks for what is not counted [spins]: QoS events, which bring no more than a
 #: warning in the log, and old goals that can be forgotten.
 QUIET_SPINS = 16
 
@@ -41,16 +41,16 @@ class TickExecutor:
         self._events: list[Waitable] = []
         self._spins = 0
         self._found_something = True
-        self._doorbell: Doorbell | None = None
+        self._arrivals: Arrivals | None = None
         node.executor = self
 
-    def hang_doorbell(self) -> None:
-        """From now on, look for arrivals only when the doorbell has rung: much cheaper.
+    def watch_arrivals(self) -> None:
+        """From now on, look at the entities only when something has arrived: much cheaper.
 
         Only where nobody else has rcl tell him of arrivals: it has one listener for each entity.
         """
         with suppress(OSError):  # without rcl's libraries it looks in every spin
-            self._doorbell = Doorbell()
+            self._arrivals = Arrivals()
         self.wake()
 
     def spin_some(self) -> None:
@@ -85,7 +85,7 @@ class TickExecutor:
 
     def _something_may_have_arrived(self) -> bool:
         # after a look that found something: it takes one of each only, there may be more
-        return self._doorbell is None or self._found_something or self._doorbell.has_rung()
+        return self._arrivals is None or self._found_something or self._arrivals.any_new()
 
     def wait_for(self, topic: str, patience_ns: int) -> None:
         """Serve the subscription to `topic` alone, as soon as it has a message.
@@ -134,9 +134,9 @@ class TickExecutor:
         count = NumberOfEntities()
         for waitable in node.waitables:
             count += waitable.get_num_entities()
-        if self._doorbell is not None:
+        if self._arrivals is not None:
             for entity in (*node.subscriptions, *node.services, *self._actions):
-                self._doorbell.hang(entity)
+                self._arrivals.watch(entity)
         self._wait_set = _rclpy.WaitSet(
             len(self._subscriptions) + count.num_subscriptions,
             count.num_guard_conditions,

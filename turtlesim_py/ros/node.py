@@ -241,7 +241,7 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
     # What exists now stays: no search through it in the middle of a tick
     gc.collect()
     gc.freeze()
-    node.tick_executor.hang_doorbell()
+    node.tick_executor.watch_arrivals()
 
     def goes_on(follows_ros_clock: bool) -> bool:
         return not stopped() and node.follows_ros_clock == follows_ros_clock

@@ -24,7 +24,7 @@ from grader.reports.page.pins import RADIUS_PX, Pin, pins
 from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
 from grader.reports.page.tracks import Film, film
 from grader.reports.report import Report
-from grader.scenes.scene import Floats
+from grader.scenes.view import Floats
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000

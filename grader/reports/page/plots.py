@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grader.reports.page.tracks import svg_path
-from grader.scenes.scene import Call, Curve, Floats, View
+from grader.scenes.view import Call, Curve, Floats, View
 
 #: A curve is drawn in a box of this size, which the page stretches. Two points a column.
 WIDTH, HEIGHT = 500, 100

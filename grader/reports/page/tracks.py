@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grader.scenes.scene import Floats, Rest, Track, View
+from grader.scenes.view import Floats, Rest, Track, View
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000

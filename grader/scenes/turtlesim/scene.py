@@ -10,15 +10,14 @@ from grader.scenes.scene import (
     Introduction,
     Limits,
     Message,
-    Pictures,
     Scene,
     Simulation,
     Start,
     Trace,
-    View,
 )
 from grader.scenes.turtlesim import remarks, starts, trace, view
 from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.scenes.view import Pictures, View
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import to_json
 

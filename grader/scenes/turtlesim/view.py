@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grader.scenes.scene import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.scenes.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
 from turtlesim_py.world.canvas import SIZE_PX, Pen
 from turtlesim_py.world.events import Clear, CmdVel, Event, Reset, SetPen
 from turtlesim_py.world.trajectory import Trajectory

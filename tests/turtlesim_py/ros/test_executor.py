@@ -130,13 +130,13 @@ def test_what_it_does_not_serve_is_not_left_waiting_silently(served: Served) -> 
         served.executor.spin_some()
 
 
-def test_with_a_doorbell_it_looks_only_for_what_has_arrived(
+def test_watching_arrivals_it_looks_only_for_what_has_arrived(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(executor, "QUIET_SPINS", 10**9)
     _, publisher = served.subscription("topic")
     served.service("service")
-    served.executor.hang_doorbell()
+    served.executor.watch_arrivals()
     looks = 0
     look = TickExecutor._polled
 
