@@ -1,7 +1,7 @@
 """Packages that only part of the grader needs: named in one line where they are missing.
 
-pip brings all of them. `rosdep install` brings what Ubuntu has; the others are for pip, which
-Ubuntu keeps from the system's Python unless it is told otherwise.
+pip brings all of them. `rosdep install` brings what Ubuntu has; the rest is for pip, which may not
+touch the Python of Ubuntu unless it is told to.
 """
 
 from __future__ import annotations

@@ -18,9 +18,7 @@ from grader.errors import UsageError
 #: Files whose change can change a verdict. What the grader writes has other names.
 SUFFIXES = (".py", ".cfg", ".toml", ".xml", ".zip")
 #: Folders in which other programs write such files.
-FOREIGN = frozenset(
-    {".git", ".hg", ".venv", "venv", "__pycache__", "build", "install", "node_modules"}
-)
+FOREIGN = frozenset({".git", ".venv", "venv", "__pycache__", "build", "install"})
 #: An editor's save is several events; it is over when this long none came.
 QUIET_S = 0.3
 

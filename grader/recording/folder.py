@@ -158,7 +158,7 @@ def _write_json(path: Path, data: dict[str, Any], indent: int | None = 2) -> Non
 
 
 def _bag() -> ModuleType:
-    """The module that reads and writes bags: rosbags is not everywhere, and slow to import.
+    """The module that reads and writes bags; imported late, because rosbags may be missing.
 
     Raises:
         GraderFailure: rosbags is missing.

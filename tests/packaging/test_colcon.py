@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from .conftest import ROOT, Environment, FindProgram, RunNode
+from .rosdep import KEYS, hide_all_but
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,22 @@ def test_programs_run_from_the_workspace(
     assert "Starting turtlesim" in run_until_started(
         ros2_run("turtlesim_py", "turtlesim_node", env), env
     )
+
+
+def test_the_grader_starts_with_what_rosdep_gets_from_apt(
+    workspace: Workspace, ros2_run: FindProgram, tmp_path: Path
+) -> None:
+    program = ros2_run("grader", "grader", workspace.env)
+    apt = [name for name, key in KEYS.items() if not key.endswith("-pip")]
+    hiding = str(hide_all_but(tmp_path / "hiding", apt))
+    path = os.pathsep.join([hiding, workspace.env["PYTHONPATH"]])
+    env = workspace.env | {"PYTHONPATH": path, "ROS_DISTRO": "jazzy"}
+    for arguments in (["--help"], ["run", "--help"], ["new", "my_solution"]):
+        call = subprocess.run(
+            [program, *arguments], cwd=tmp_path, env=env, capture_output=True, text=True
+        )
+        assert call.returncode == 0, call.stderr
+    assert (tmp_path / "my_solution" / "package.xml").exists()
 
 
 def test_python_imports_from_the_workspace(workspace: Workspace) -> None:

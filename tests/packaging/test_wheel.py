@@ -83,6 +83,7 @@ def test_every_file_of_the_packages_is_in_the_wheel(
     }
     names = wheel_names(checkout, ros_sourced)
     assert files - set(names) == set()
+    assert {"grader/py.typed", "turtlesim_py/py.typed"} <= files
     assert [name for name in names if name.endswith(".so")] == []
 
 

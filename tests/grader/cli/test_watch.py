@@ -71,7 +71,7 @@ def test_a_save_while_the_caller_is_busy_is_not_lost(tmp_path):
     controller.touch()
     saves = each_save(controller)
     next(saves)
-    for _ in range(2):  # the second time it has been waiting before
+    for _ in range(2):
         controller.write_text("saved while busy")
         next(saves)
 

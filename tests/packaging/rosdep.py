@@ -1,0 +1,85 @@
+"""What of the packages that are not ROS's rosdep brings, and a Python that has only those."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from importlib.metadata import PackageNotFoundError, packages_distributions, requires
+from pathlib import Path
+
+from .conftest import ROOT
+
+#: rosdep's name for each package that pip knows by another; a key that ends in -pip is not in apt.
+KEYS = {
+    "jinja2": "python3-jinja2",
+    "jsonschema": "python3-jsonschema",
+    "numpy": "python3-numpy",
+    "pillow": "python3-pil",
+    "psutil": "python3-psutil",
+    "pyyaml": "python3-yaml",
+    "rich": "python3-rich",
+    "rosbags": "python3-rosbags-pip",
+    "watchdog": "python3-watchdog",
+}
+
+#: Hides packages from every Python that finds it on its path.
+SITECUSTOMIZE = """
+import sys
+
+HIDDEN = {hidden}
+
+class Hidden:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in HIDDEN:
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+
+sys.meta_path.insert(0, Hidden())
+"""
+
+
+def dependencies() -> dict[str, str]:
+    """What setup.py tells pip to install, by name."""
+    pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    return {_name(line): line for line in pyproject["tool"]["turtlesim-py"]["dependencies"]}
+
+
+def keys(manifest: str) -> set[str]:
+    """The Python packages that a package.xml wants from rosdep."""
+    depends = ET.parse(ROOT / manifest).getroot().iter("exec_depend")
+    return {key for depend in depends if (key := depend.text or "").startswith("python3-")}
+
+
+def hide_all_but(folder: Path, names: Iterable[str]) -> Path:
+    """A folder for PYTHONPATH that hides every installed package but these and ROS's own.
+
+    Args:
+        names: as pip calls them; what they need themselves stays as well.
+    """
+    installed = packages_distributions()
+    ros = {name for owners in installed.values() for name in owners if name.startswith("ros-")}
+    kept: set[str] = {"turtlesim-py"}
+    wanted = [*names, *ros]
+    while wanted:
+        name = _name(wanted.pop())
+        if name not in kept:
+            kept.add(name)
+            wanted += [line for line in _requires(name) if "extra ==" not in line]
+    hidden = {module for module, owners in installed.items() if kept.isdisjoint(map(_name, owners))}
+    folder.mkdir()
+    (folder / "sitecustomize.py").write_text(SITECUSTOMIZE.format(hidden=sorted(hidden)))
+    return folder
+
+
+def _requires(name: str) -> list[str]:
+    try:
+        return requires(name) or []
+    except PackageNotFoundError:  # another Python or system needs it
+        return []
+
+
+def _name(requirement: str) -> str:
+    match = re.match(r"[\w.-]+", requirement)
+    assert match, requirement
+    return re.sub(r"[-_.]+", "-", match[0]).lower()

@@ -1,0 +1,149 @@
+"""Beside a sourced ROS: what package.xml asks for is enough for every verb."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.reports import FORMATS
+from grader.requirements import OPTIONAL
+
+from .conftest import ROOT
+from .rosdep import KEYS, dependencies, hide_all_but, keys
+
+pytestmark = pytest.mark.skipif(
+    "ROS_DISTRO" in os.environ, reason="there the packages are apt's, which this imitates"
+)
+CLASSROOM_50 = {
+    **dict.fromkeys(("CLASSROOM", "ASSIGNMENT", "COMMIT_URL", "RELEASE_URL", "OWNER"), "x"),
+    "SUBMISSION_TAG": "submit/x",
+}
+
+
+class Shell:
+    """Runs the grader where rosdep has installed what package.xml asks for, and nothing else is.
+
+    Args:
+        hiding: what `hide_all_but` has made.
+        folder: the current folder.
+    """
+
+    def __init__(self, hiding: Path, folder: Path) -> None:
+        self.folder = folder
+        path = os.pathsep.join([str(hiding), str(ROOT)])
+        # ROS_DISTRO: as beside a sourced ROS, PYTHONPATH reaches all processes of a run
+        self.env = os.environ | CLASSROOM_50 | {"PYTHONPATH": path, "ROS_DISTRO": "jazzy"}
+
+    def grader(self, *arguments: str | Path, code: int = 0) -> subprocess.CompletedProcess[str]:
+        call = subprocess.run(
+            [sys.executable, "-P", "-m", "grader", *arguments],
+            cwd=self.folder,
+            env=self.env,
+            capture_output=True,
+            text=True,
+        )
+        assert call.returncode == code, call.stdout + call.stderr
+        return call
+
+
+@pytest.fixture(scope="module")
+def shell(tmp_path_factory: pytest.TempPathFactory) -> Shell:
+    """What rosdep brings, and pip for what ends in -pip."""
+    folder = tmp_path_factory.mktemp("rosdep")
+    return Shell(hide_all_but(folder / "hiding", KEYS), folder)
+
+
+@pytest.fixture(scope="module")
+def shell_of_apt(tmp_path_factory: pytest.TempPathFactory) -> Shell:
+    """Only what rosdep gets from apt: Ubuntu's pip refuses the rest unless it is told otherwise."""
+    folder = tmp_path_factory.mktemp("apt")
+    names = [name for name, key in KEYS.items() if not key.endswith("-pip")]
+    return Shell(hide_all_but(folder / "hiding", names), folder)
+
+
+@pytest.fixture(scope="module")
+def graded(shell: Shell) -> Path:
+    """The folder of a graded run of the reference controller."""
+    controller = ROOT / "turtlesim_challenge" / "turtle_controller.py"
+    shell.grader("run", controller, "--out", "graded")
+    return shell.folder / "graded"
+
+
+@pytest.mark.parametrize("manifest", ["package.xml", "grader/package.xml"])
+def test_package_xml_asks_for_what_pip_is_asked_for(manifest):
+    assert keys(manifest) == {KEYS[name] for name in dependencies()}
+
+
+def test_a_package_that_is_missing_is_named_with_the_bounds_of_pyproject():
+    assert {name: wanted for name, (_, _, wanted) in OPTIONAL.items()} == {
+        name: dependencies()[name] for name in OPTIONAL
+    }
+
+
+def test_what_is_not_in_package_xml_is_hidden_from_these_tests(shell):
+    code = (
+        "import numpy, rclpy, rosbags.rosbag2\n"
+        "try: import pytest\nexcept ImportError: print('hidden')"
+    )
+    call = subprocess.run(
+        [sys.executable, "-P", "-c", code], env=shell.env, capture_output=True, text=True
+    )
+    assert call.stdout == "hidden\n", call.stderr
+
+
+@pytest.mark.parametrize("verb", ["run", "check", "report", "new"])
+def test_every_verb_has_help_without_pip(shell_of_apt, verb):
+    assert verb in shell_of_apt.grader("--help").stdout
+    assert verb in shell_of_apt.grader(verb, "--help").stdout
+
+
+def test_new_needs_nothing_of_pip(shell_of_apt):
+    shell_of_apt.grader("new", "my_solution")
+    assert (shell_of_apt.folder / "my_solution" / "package.xml").exists()
+
+
+def test_run_and_check_judge_the_reference_alike(shell, graded):
+    shell.grader("check", graded, "--json", "again.json")
+    results = [graded / "result.json", shell.folder / "again.json"]
+    assert [json.loads(path.read_text())["score"] for path in results] == [100, 100]
+
+
+@pytest.mark.parametrize("form", sorted(FORMATS.keys() - {"html"}))
+def test_a_format_that_shows_no_recording_needs_nothing_of_pip(shell_of_apt, graded, form):
+    assert shell_of_apt.grader("report", graded / "result.json", "--format", form).stdout
+
+
+def test_the_page_is_written(shell, graded):
+    assert "<svg" in shell.grader("report", graded / "result.json", "--format", "html").stdout
+
+
+@pytest.mark.parametrize("verb", ["run", "watch", "check", "html"])
+def test_without_rosbags_one_line_says_how_to_get_it(shell_of_apt, graded, verb):
+    controller = ROOT / "turtlesim_challenge" / "turtle_controller.py"
+    arguments = {
+        "run": ["run", controller, "--out", "new"],
+        "watch": ["run", controller, "--out", "new", "--watch"],
+        "check": ["check", graded],
+        "html": ["report", graded / "result.json", "--format", "html"],
+    }
+    call = shell_of_apt.grader(*arguments[verb], code=3)
+    (line,) = call.stderr.splitlines()
+    assert "this is not the submission's fault" in line
+    assert "the Python package rosbags is missing" in line
+    assert f"{sys.executable} -m pip install 'rosbags>=" in line
+    assert "--break-system-packages" in line
+    assert call.stdout == ""
+    assert not (shell_of_apt.folder / "new").exists()  # it said so before the run
+
+
+def test_watch_says_that_watchdog_is_missing(tmp_path):
+    shell = Shell(hide_all_but(tmp_path / "hiding", KEYS.keys() - {"watchdog"}), tmp_path)
+    (tmp_path / "turtle_controller.py").touch()
+    call = shell.grader("run", "turtle_controller.py", "--watch", code=3)
+    (line,) = call.stderr.splitlines()
+    assert "the Python package watchdog is missing" in line
