@@ -103,6 +103,17 @@ def test_the_python_that_is_asked_for_is_too_old(system: System) -> None:
     assert "PYTHON=python3.8 is Python 3.8, needed is" in system.complaint()
 
 
+def test_the_lower_bounds_are_older_than_the_newest_python(system: System) -> None:
+    system.add("python3", "echo 3.13")
+    system.add(
+        "python3.12", f'case "$2" in *version_info*) echo 3.12 ;; *) exec {PYTHON} "$@" ;; esac'
+    )
+    system.env["BOUNDS"] = "lowest"
+    assert system.check().stdout.strip() == PYTHON
+    (system.folder / "python3.12").unlink()
+    assert "no Python 3.11 or 3.12 found" in system.complaint()
+
+
 def test_the_python_that_is_asked_for_is_not_there(system: System) -> None:
     system.env["PYTHON"] = "python4"
     assert "PYTHON=python4: no such command" in system.complaint()
