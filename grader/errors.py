@@ -1,13 +1,70 @@
-"""The ways in which grading fails without a verdict."""
+"""The tree of errors: all of them say in one text what was found, and whose turn it is.
+
+| error | whose | exit code |
+|---|---|---|
+| `UsageError`, `RecordingError` | call | 2 |
+| `SubmissionError` | submission | 2 |
+| `ExerciseError` | exercise | 2 |
+| `GraderFailure` | grader | 3 |
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from grader.text import without_controls
+
+#: Whose turn it is: the student's, the exercise's author's, the caller's, ours.
+Whose = Literal["submission", "exercise", "call", "grader"]
 
 
-class UsageError(Exception):
-    """The call, or what was handed in, cannot be used; the text says what to do (exit code 2)."""
+class GraderError(Exception):
+    """Why there is no verdict.
+
+    Attributes:
+        message: what was found, what was expected, and what to do.
+        whose: whose turn it is.
+        exit_code: the command line's.
+    """
+
+    whose: ClassVar[Whose] = "grader"
+    exit_code: ClassVar[int] = 3
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.message = message
 
 
-class RecordingError(Exception):
-    """The folder holds no recording that can be judged; the text says why."""
+class UsageError(GraderError):
+    """The call cannot be carried out."""
+
+    whose = "call"
+    exit_code = 2
 
 
-class GraderFailure(Exception):
-    """The grader itself failed; never the submission's fault (exit code 3)."""
+class SubmissionError(GraderError):
+    """The submission cannot be used; its text has file names in it, and may go to terminals."""
+
+    whose = "submission"
+    exit_code = 2
+
+    def __init__(self, message: str) -> None:
+        super().__init__(without_controls(message, "?", keep="\n"))
+
+
+class ExerciseError(GraderError):
+    """The exercise cannot be used."""
+
+    whose = "exercise"
+    exit_code = 2
+
+
+class RecordingError(GraderError):
+    """There is no recording that can be judged where one should be."""
+
+    whose = "call"
+    exit_code = 2
+
+
+class GraderFailure(GraderError):
+    """The grader itself failed; never the submission's fault."""

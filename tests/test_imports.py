@@ -67,7 +67,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes", "exercise")
     | {"turtlesim_py"},
-    "grader.result": GROUND | below("grader", "recording", "exercise"),
+    "grader.result": GROUND | below("grader", "recording", "scenes", "exercise"),
     "grader.reports": GROUND | below("grader", "recording", "scenes", "result"),
     "grader.grading": GROUND | STATIONS - below("grader", "reports"),
     "grader.__init__": GROUND | STATIONS | {"grader.grading"},

@@ -12,8 +12,8 @@ from grader.cli.run import points
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
 from grader.recording.folder import WINDOW_PICTURE, load_all
-from grader.reports import terminal
-from grader.result import result as results
+from grader.reports import Report, terminal
+from grader.result.result import build
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,8 +38,8 @@ def main(args: argparse.Namespace) -> int:
     if args.json:
         beside = os.path.relpath(folder, args.json.parent)
         artifacts = {"recording": beside, "canvas": f"{beside}/{WINDOW_PICTURE}"}
-    result = results.build(args.recording.name, exercise, recordings, verdicts, artifacts)
+    result = build(args.recording.name, exercise, recordings, verdicts, artifacts)
     if args.json:
-        results.write(result, args.json)
-    terminal.show(result, Console())
-    return int(args.fail_under is not None and result["score"] < args.fail_under)
+        result.write(args.json)
+    terminal.show(Report.of(result, folder, recordings), Console())
+    return int(args.fail_under is not None and result.score < args.fail_under)

@@ -9,9 +9,10 @@ from pathlib import Path
 
 from rich.console import Console
 
-from grader import reports
+from grader import files, reports
 from grader.errors import UsageError
-from grader.reports import FORMATS, Report, markdown, terminal
+from grader.exercise.loading import load_exercise
+from grader.reports import FORMATS, Report, terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,11 +23,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         f"  {name:{width}}  {form.summary}" for name, form in FORMATS.items()
     )
     parser.add_argument(
-        "result", type=Path, nargs="+", metavar="RESULT.json", help="several only with csv"
+        "result",
+        type=Path,
+        nargs="+",
+        metavar="RESULT.json",
+        help="a result, or what --error-json has written; several only with csv",
     )
     parser.add_argument("--format", choices=FORMATS, default="terminal", metavar="NAME")
     parser.add_argument(
         "--out", type=Path, metavar="FILE", help="write there, not to standard output"
+    )
+    parser.add_argument(
+        "--exercise", metavar="NAME", help="which checks get 0 points for an error; autolab only"
     )
     parser.add_argument(
         "--github-summary",
@@ -37,18 +45,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Show the results; see `grader.cli` for the exit codes."""
-    shown = [Report.read(path) for path in args.result]
+    checks = tuple(load_exercise(args.exercise).points) if args.exercise else ()
+    shown = [reports.read(path, checks) for path in args.result]
     summary = _summary_file() if args.github_summary else None
     if args.format == "terminal" and args.out is None and len(shown) == 1:
-        terminal.show(shown[0].result, Console())
+        (only,) = shown
+        if isinstance(only, Report):
+            terminal.show(only, Console())
+        else:
+            terminal.show_error(only, Console())
     else:
         content = reports.render(args.format, shown)
         if args.out is not None:
-            reports.write(content, args.out)
+            files.write(args.out, content)
         else:
             _print(content)
     if summary is not None:
-        _append(summary, "".join(markdown.render(report) for report in shown))
+        _append(summary, "".join(reports.render("markdown", [each]) for each in shown))
     return 0
 
 

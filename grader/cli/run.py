@@ -10,18 +10,17 @@ from pathlib import Path
 from PIL import Image
 from rich.console import Console
 
-from grader import reports
-from grader.cli import progress
-from grader.errors import GraderFailure, UsageError
+from grader import files
+from grader.cli import error_file, progress
+from grader.errors import GraderError
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
 from grader.grading import Runner, run_all
 from grader.recording import folder
 from grader.recording.recording import Recordings
-from grader.reports import terminal
+from grader.reports import Report, render, terminal
 from grader.requirements import require
-from grader.result import result as results
-from grader.result.result import Result
+from grader.result.result import build
 from grader.run import real_time, virtual_time
 from grader.scenes import load_scene
 from grader.submission.opening import open_submission
@@ -75,10 +74,12 @@ def main(args: argparse.Namespace) -> int:
 def _grade_and_go_on(args: argparse.Namespace) -> None:
     """Grade; what cannot be used now may be usable after the next save."""
     messages = Console(stderr=True, highlight=False)
+    error_file.prepare(args)
     try:
         _grade(args)
-    except (UsageError, GraderFailure) as error:
-        messages.print(str(error), markup=False, soft_wrap=True)
+    except GraderError as error:
+        messages.print(error.message, markup=False, soft_wrap=True)
+        error_file.write(error, args)
     messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
 
 
@@ -97,13 +98,16 @@ def _grade(args: argparse.Namespace) -> int:
         name = submission.name
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     artifacts = _write(recordings, out)
-    result = results.build(name, exercise, recordings, verdicts, artifacts)
-    _write_result(result, out, args.json)
+    result = build(name, exercise, recordings, verdicts, artifacts)
+    report = Report.of(result, out, recordings)
+    result.write(out / "result.json")
+    if args.json:
+        result.write(args.json)
     page = out / "report.html"
-    reports.write(reports.render("html", [reports.Report.read(out / "result.json")]), page)
-    terminal.show(result, console)
+    files.write(page, render("html", [report]))
+    terminal.show(report, console)
     console.print(f"The page with picture and plots: {page}", highlight=False, soft_wrap=True)
-    return int(args.fail_under is not None and result["score"] < args.fail_under)
+    return int(args.fail_under is not None and result.score < args.fail_under)
 
 
 def _default_out(submission: Path) -> Path:
@@ -123,17 +127,12 @@ def _prepare(out: Path, copy: Path | None) -> None:
     Raises:
         UsageError: one of the places cannot be written; nothing has changed then.
     """
-    files = [out / "result.json", *([copy] if copy else [])]
-    for path in files:
-        if path.is_dir():
-            raise UsageError(f"{path} is a folder; expected the name of a file to write")
-        there = next(folder for folder in path.absolute().parents if os.path.lexists(folder))
-        if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
-            raise UsageError(f"cannot write {path}: {there} is no folder that you may write into")
-    for path in files:
+    written = [out / "result.json", *([copy] if copy else [])]
+    for path in written:
+        files.check_writable(path)
+    for path in written:
         path.parent.mkdir(parents=True, exist_ok=True)
-        if path.is_file() and not path.is_symlink():
-            path.unlink()
+        files.withdraw(path)
 
 
 def _write(recordings: Recordings, out: Path) -> dict[str, str]:
@@ -144,9 +143,3 @@ def _write(recordings: Recordings, out: Path) -> dict[str, str]:
     Image.fromarray(window).save(out / "canvas.png")
     (out / "output.txt").write_text(recordings.nominal.output, encoding="utf-8")
     return {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
-
-
-def _write_result(result: Result, out: Path, copy: Path | None) -> None:
-    results.write(result, out / "result.json")
-    if copy:
-        results.write(result, copy)

@@ -12,7 +12,7 @@ from typing import Any
 
 import yaml
 
-from grader.errors import UsageError
+from grader.errors import ExerciseError
 from grader.exercise.check import Checks
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
@@ -80,7 +80,7 @@ def load_exercise(name_or_file: str) -> Exercise:
     What an edited copy leaves out of `limits` and `tolerances` stays as it is in the original.
 
     Raises:
-        UsageError: there is no such exercise, or the file does not describe one.
+        ExerciseError: there is no such exercise, or the file does not describe one.
     """
     path = Path(name_or_file)
     if path.suffix in (".yaml", ".yml"):
@@ -88,19 +88,15 @@ def load_exercise(name_or_file: str) -> Exercise:
             edited = _read(path.read_text(encoding="utf-8"))
             return _build(_merged(_installed(edited.get("exercise")), edited))
         except OSError as error:
-            raise UsageError(f"cannot read the exercise {path}: {error.strerror}") from None
+            raise ExerciseError(f"cannot read the exercise {path}: {error.strerror}") from None
         except (ExerciseError, ValueError) as error:
-            raise UsageError(f"{path} is not an exercise: {error}") from None
+            raise ExerciseError(f"{path} is not an exercise: {error}") from None
     if name_or_file in names():
         return _build(_installed(name_or_file))
-    raise UsageError(
+    raise ExerciseError(
         f"there is no exercise {name_or_file!r}; there are: {', '.join(names())}. "
         "An edited copy is given as the path of its exercise.yaml."
     )
-
-
-class ExerciseError(Exception):
-    """What is wrong with an exercise.yaml."""
 
 
 def _installed(name: object) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from pathlib import PurePath
 
 from grader.recording.recording import Recording
 from grader.scenes import load_scene
+from grader.text import without_controls
 
 _FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
@@ -38,7 +39,8 @@ def last_error(output: str) -> str:
     if not error:
         return ""
     where = frames[-1]
-    return _visible(f"{error.rstrip('.')} ({PurePath(where['file']).name}, line {where['line']})")
+    place = f"({PurePath(where['file']).name}, line {where['line']})"
+    return without_controls(f"{error.rstrip('.')} {place}", "?")
 
 
 def remarks(recording: Recording) -> list[str]:
@@ -49,8 +51,3 @@ def remarks(recording: Recording) -> list[str]:
     published = [topic.topic for topic in recording.topics]
     found += load_scene(recording.scene).remarks(recording.trace, published)
     return found
-
-
-def _visible(text: str) -> str:
-    """The text without characters that a terminal obeys."""
-    return "".join(c if c.isprintable() else "?" for c in text)

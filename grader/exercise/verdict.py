@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, Literal
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, Self
 
 Status = Literal["passed", "failed", "not_judged"]
 
@@ -27,6 +29,21 @@ class Evidence:
     note: str
     run: int = 0
 
+    @property
+    def has_place(self) -> bool:
+        """Whether it was anywhere: a position can be not a number."""
+        return math.isfinite(self.x) and math.isfinite(self.y)
+
+    def to_json(self) -> dict[str, Any]:
+        """The evidence as the result file holds it."""
+        return dict(vars(self))
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """The evidence that a result file holds; it follows the schema."""
+        whole = {key: int(data[key]) for key in ("tick", "run") if key in data}
+        return cls(**{**data, **whole})
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -47,7 +64,15 @@ class Finding:
 
 @dataclass(frozen=True)
 class Verdict:
-    """The judgement of one check, as it stands in the result file."""
+    """The judgement of one check.
+
+    Attributes:
+        check: its name.
+        title: what it asks for.
+        score, max_score: the points that it earned, and that it can earn.
+        rationale, help, evidence: see `Finding`.
+        depends_on: the checks that have to pass before it is judged.
+    """
 
     check: str
     title: str
@@ -57,9 +82,9 @@ class Verdict:
     rationale: str
     help: str = ""
     evidence: tuple[Evidence, ...] = ()
-    depends_on: tuple[str, ...] = field(default=())
+    depends_on: tuple[str, ...] = ()
 
-    def as_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, Any]:
         """The verdict as the result file holds it."""
         return {
             "check": self.check,
@@ -69,6 +94,29 @@ class Verdict:
             "max_score": self.max_score,
             "rationale": self.rationale,
             "help": self.help,
-            "evidence": [vars(item) for item in self.evidence],
+            "evidence": [item.to_json() for item in self.evidence],
             "depends_on": list(self.depends_on),
         }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """The verdict that a result file holds; it follows the schema."""
+        evidence = tuple(Evidence.from_json(item) for item in data["evidence"])
+        return cls(**{**data, "evidence": evidence, "depends_on": tuple(data["depends_on"])})
+
+    @property
+    def passed(self) -> bool:
+        """Whether it passed; not judged is not passed."""
+        return self.status == "passed"
+
+    @property
+    def is_partial(self) -> bool:
+        """Whether it failed, and earned points all the same."""
+        return self.status == "failed" and self.score > 0
+
+    @property
+    def share(self) -> float:
+        """How much of the points is earned, 0 to 1."""
+        if self.max_score <= 0:
+            return 1.0 if self.passed else 0.0
+        return min(self.score / self.max_score, 1.0)

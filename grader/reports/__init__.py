@@ -1,23 +1,27 @@
 """A result in many formats, one file each; a report knows verdicts, not checks.
 
-A format is a module with `render(report: Report) -> str`; one that can hold several results has
-`render_all(reports: Sequence[Report]) -> str` as well. `FORMATS` lists them all.
+A format is a module with `render(report: Report) -> str`, and `render_error(report: ErrorReport)`
+for where there is no result; one that can hold several has `render_all(reports)` as well. `FORMATS`
+lists them all.
 """
 
 from __future__ import annotations
 
-import contextlib
 import importlib
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from grader.errors import UsageError
+from grader.reports.beside import Beside
+from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
+from grader.result import error, json_file
+from grader.result.error import ErrorResult
+from grader.result.result import Result
 
-__all__ = ["FORMATS", "Format", "Report", "render", "write"]
+__all__ = ["FORMATS", "ErrorReport", "Format", "Report", "read", "render"]
 
 
 @dataclass(frozen=True)
@@ -54,11 +58,28 @@ FORMATS: Final[Mapping[str, Format]] = {
 }
 
 
-def render(name: str, reports: Sequence[Report]) -> str:
-    """One or several results in a format.
+def read(path: Path, checks: Sequence[str] = ()) -> Report | ErrorReport:
+    """Read a result file or an error file.
+
+    Args:
+        checks: the names of the exercise's checks, for errors; see `ErrorReport`.
 
     Raises:
-        UsageError: the format shows one result and there are more, or it lacks something.
+        UsageError: it cannot be read or is neither.
+    """
+    data = json_file.read(path)
+    if isinstance(data, dict) and data.get("schema") == error.SCHEMA:
+        made = json_file.made(ErrorResult.from_json, path, data)
+        return ErrorReport(made, path.parent, checks)
+    result = json_file.made(Result.from_json, path, data)
+    return Report(result, Beside(result, path.parent))
+
+
+def render(name: str, reports: Sequence[Report | ErrorReport]) -> str:
+    """One or several results or errors in a format.
+
+    Raises:
+        UsageError: the format shows one and there are more, or it lacks something.
     """
     form = FORMATS[name]
     if form.takes_several:
@@ -69,21 +90,6 @@ def render(name: str, reports: Sequence[Report]) -> str:
             f"the format {name} shows one result, found {len(reports)}; several can be given "
             f"with: {several}"
         )
-    return str(form.load().render(reports[0]))
-
-
-def write(content: str, path: Path) -> None:
-    """Write a report whole or not at all.
-
-    Raises:
-        UsageError: the file cannot be written.
-    """
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished.write_text(content, encoding="utf-8", newline="")
-        unfinished.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            unfinished.unlink(missing_ok=True)
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+    (report,) = reports
+    module = form.load()
+    return str(module.render(report) if isinstance(report, Report) else module.render_error(report))

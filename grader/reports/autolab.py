@@ -3,27 +3,51 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
-from grader.reports import text
+from grader import text
+from grader.errors import UsageError
+from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
+from grader.reports.wording import word
 
 _STAGE = "Checks"
 
 
 def render(report: Report) -> str:
     """Two lines of JSON: how to show the checks, and the scores. Nothing may be printed after."""
-    feedback = {
-        "_presentation": "semantic",
-        "stages": [_STAGE],
-        _STAGE: {
-            verdict.name: {"passed": True}
+    return _lines(
+        {
+            verdict.check: {"passed": True}
             if verdict.passed
-            else {"passed": False, "hint": _hint(verdict.word, verdict.lines())}
+            else {"passed": False, "hint": _hint(word(verdict), report.lines(verdict))}
             for verdict in report.verdicts
         },
-    }
-    scores = {"scores": {v.name: text.number(v.score) for v in report.verdicts}}
-    return f"{json.dumps(feedback)}\n{json.dumps(scores)}\n"
+        {verdict.check: text.number(verdict.score) for verdict in report.verdicts},
+    )
+
+
+def render_error(report: ErrorReport) -> str:
+    """0 points for each problem.
+
+    Raises:
+        UsageError: there is no judgement, or the problems are not known. Autolab takes output that
+            does not end in scores for an autograder that failed.
+    """
+    if not report.is_judged:
+        raise UsageError(
+            "the format autolab cannot say that nothing was judged; end without scores instead: "
+            f"{text.one_line(report.message)}"
+        )
+    if not report.checks:
+        raise UsageError("the format autolab needs the exercise of an error: add --exercise NAME")
+    hint = {"passed": False, "hint": _hint(report.title, [text.one_line(report.message)])}
+    return _lines(dict.fromkeys(report.checks, hint), dict.fromkeys(report.checks, 0))
+
+
+def _lines(checks: dict[str, Any], scores: dict[str, Any]) -> str:
+    feedback = {"_presentation": "semantic", "stages": [_STAGE], _STAGE: checks}
+    return f"{json.dumps(feedback)}\n{json.dumps({'scores': scores})}\n"
 
 
 def _hint(word: str, lines: list[str]) -> str:

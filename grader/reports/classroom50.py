@@ -8,10 +8,11 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import Any
 
+from grader import text
 from grader.errors import UsageError
-from grader.reports import text
+from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.reports.whole_points import whole_points
+from grader.reports.whole_points import WholePoints, whole_points, zero_points
 
 _SCHEMA = "classroom50/result/v1"
 _NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "COMMIT_URL", "RELEASE_URL")
@@ -24,36 +25,60 @@ def render(report: Report) -> str:
     Raises:
         UsageError: the environment is not the one that Classroom 50 gives to an autograder.
     """
-    return json.dumps(_document(report, os.environ, datetime.now(UTC)), indent=2) + "\n"
-
-
-def _document(report: Report, env: Mapping[str, str], now: datetime) -> dict[str, Any]:
-    who = _identity(env)
     points = whole_points(report.verdicts)
-    instant = now.strftime("%Y-%m-%dT%H:%M:%SZ")
-    return {
-        "schema": _SCHEMA,
-        **who,
-        # The runner puts the time of the commit here; this is for whoever calls without it.
-        "datetime": instant,
-        "graded_at": instant,
+    tests = [
+        {
+            "test-name": verdict.check,
+            "passed": verdict.passed,
+            "score": score,
+            "max-score": max_score,
+            "status": verdict.status,
+            "exact-score": text.number(verdict.score),
+            "message": "\n".join(report.lines(verdict)),
+        }
+        for verdict, score, max_score in zip(
+            report.verdicts, points.scores, points.max_scores, strict=True
+        )
+    ]
+    return _document(points, tests)
+
+
+def render_error(report: ErrorReport) -> str:
+    """0 points, with one test that says why.
+
+    Raises:
+        UsageError: as above, or there is no judgement. Classroom 50 takes an exit code other than 0
+            for that, and no result.json.
+    """
+    if not report.is_judged:
+        raise UsageError(
+            "the format classroom50 cannot say that nothing was judged; leave with an exit code "
+            f"other than 0 instead: {text.one_line(report.message)}"
+        )
+    points = zero_points(report.max_score or 0)
+    test = {
+        "test-name": "submission",
+        "passed": False,
         "score": points.total,
         "max-score": points.max_total,
-        "tests": [
-            {
-                "test-name": verdict.name,
-                "passed": verdict.passed,
-                "score": score,
-                "max-score": max_score,
-                "status": verdict.status,
-                "exact-score": text.number(verdict.score),
-                "message": "\n".join(verdict.lines()),
-            }
-            for verdict, score, max_score in zip(
-                report.verdicts, points.scores, points.max_scores, strict=True
-            )
-        ],
+        "message": "\n\n".join(report.paragraphs),
     }
+    return _document(points, [test])
+
+
+def _document(points: WholePoints, tests: list[dict[str, Any]]) -> str:
+    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    document = {
+        "schema": _SCHEMA,
+        **_identity(os.environ),
+        # The runner puts the time of the commit here; this is for whoever calls without it.
+        "datetime": now,
+        "graded_at": now,
+        "score": points.total,
+        "max-score": points.max_total,
+        "tests": tests,
+    }
+    return json.dumps(document, indent=2) + "\n"
 
 
 def _identity(env: Mapping[str, str]) -> dict[str, str]:

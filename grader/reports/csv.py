@@ -7,8 +7,10 @@ import io
 from collections.abc import Sequence
 from typing import Any
 
-from grader.reports import text
+from grader import text
+from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
+from grader.reports.wording import word
 
 _BEFORE = ("submission", "exercise", "score", "max_score")
 _AFTER = ("outcome", "first_to_mend", "flags", "trace_sha256", "folder")
@@ -19,13 +21,19 @@ def render(report: Report) -> str:
     return render_all([report])
 
 
-def render_all(reports: Sequence[Report]) -> str:
-    """A header and one row a result.
+def render_error(report: ErrorReport) -> str:
+    """The table of one error."""
+    return render_all([report])
+
+
+def render_all(reports: Sequence[Report | ErrorReport]) -> str:
+    """A header and one row a result, or error.
 
     Each check has two columns: its points under its name, and its verdict under `NAME verdict`. An
-    exercise's checks that another does not have stay empty.
+    exercise's checks that another does not have stay empty, and the points of what was not judged.
     """
-    checks = list(dict.fromkeys(v.name for report in reports for v in report.verdicts))
+    results = [report for report in reports if isinstance(report, Report)]
+    checks = list(dict.fromkeys(v.check for report in results for v in report.verdicts))
     header = [*_BEFORE]
     for name in checks:
         column = f"{name} (check)" if name in (*_BEFORE, *_AFTER) else name
@@ -33,12 +41,15 @@ def render_all(reports: Sequence[Report]) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([_cell(title) for title in (*header, *_AFTER)])
-    writer.writerows([_row(report, checks) for report in reports])
+    for each in reports:
+        writer.writerow(
+            _row(each, checks) if isinstance(each, Report) else _error_row(each, checks)
+        )
     return out.getvalue()
 
 
 def _row(report: Report, checks: list[str]) -> list[Any]:
-    verdicts = {verdict.name: verdict for verdict in report.verdicts}
+    verdicts = {verdict.check: verdict for verdict in report.verdicts}
     row: list[Any] = [
         _cell(report.submission),
         _cell(report.exercise),
@@ -47,15 +58,26 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
     ]
     for name in checks:
         verdict = verdicts.get(name)
-        row += [text.number(verdict.score), verdict.word] if verdict else ["", ""]
+        row += [text.number(verdict.score), word(verdict)] if verdict else ["", ""]
     first = report.first_to_mend
     return [
         *row,
-        report.run["outcome"],
-        _cell(text.clip(f"{first.name}: {report.headline}", 300) if first else ""),
-        _cell("; ".join(report.run["flags"])),
-        _cell(report.run["trace_sha256"]),
+        report.run.outcome,
+        _cell(text.clip(f"{first.check}: {report.headline}", 300) if first else ""),
+        _cell("; ".join(report.run.flags)),
+        _cell(report.run.trace_sha256),
         _cell(str(report.folder)),
+    ]
+
+
+def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
+    score = 0 if report.is_judged else ""
+    max_score = "" if report.max_score is None else text.number(report.max_score)
+    what = _cell(text.clip(report.message, 300))
+    return [
+        *("", "", score, max_score),
+        *[""] * (2 * len(checks)),
+        *(report.title.lower(), what, "", "", _cell(str(report.folder))),
     ]
 
 

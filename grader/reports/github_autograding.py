@@ -6,29 +6,51 @@ import base64
 import json
 from typing import Any
 
-from grader.reports import text
-from grader.reports.report import Report, ShownVerdict
+from grader import text
+from grader.reports.error_report import ErrorReport
+from grader.reports.report import Report
 
 
 def render(report: Report) -> str:
     """One line of base64."""
     passed = all(verdict.passed for verdict in report.verdicts)
+    tests = [
+        _test(
+            verdict.check,
+            f"{verdict.check}: {verdict.title}",
+            "pass" if verdict.passed else "fail",
+            verdict.score,
+            report.lines(verdict),
+        )
+        for verdict in report.verdicts
+    ]
+    return _document("pass" if passed else "fail", report.max_score, tests)
+
+
+def render_error(report: ErrorReport) -> str:
+    """One line of base64, with the status `error` where there is no judgement."""
+    status = "fail" if report.is_judged else "error"
+    test = _test("submission", report.title, status, 0, report.paragraphs)
+    return _document(status, report.max_score or 0, [test])
+
+
+def _document(status: str, max_score: float, tests: list[dict[str, Any]]) -> str:
     document = {
         "version": 1,
-        "status": "pass" if passed else "fail",
-        "max_score": text.number(report.max_score),
-        "tests": [_test(verdict) for verdict in report.verdicts],
+        "status": status,
+        "max_score": text.number(max_score),
+        "tests": tests,
     }
     return base64.b64encode(json.dumps(document).encode()).decode() + "\n"
 
 
-def _test(verdict: ShownVerdict) -> dict[str, Any]:
+def _test(code: str, name: str, status: str, score: float, lines: list[str]) -> dict[str, Any]:
     return {
-        "name": f"{verdict.name}: {verdict.title}",
-        "status": "pass" if verdict.passed else "fail",
-        "score": text.number(verdict.score),
-        "message": "\n".join(verdict.lines()),
-        "test_code": verdict.name,
+        "name": name,
+        "status": status,
+        "score": text.number(score),
+        "message": "\n".join(lines),
+        "test_code": code,
         "filename": "",
         "line_no": 0,
         "duration": 0,

@@ -6,9 +6,11 @@ import html
 import json
 from typing import Any
 
-from grader.reports import text
+from grader import text
+from grader.exercise.verdict import Verdict
+from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
-from grader.reports.report import Report, ShownVerdict
+from grader.reports.report import Report
 
 _OUTPUT_LIMIT = 20_000
 
@@ -17,25 +19,42 @@ def render(report: Report) -> str:
     """The JSON document; students see the picture and what their node printed above the tests."""
     document = {
         "score": text.number(report.score),
-        "execution_time": text.number(report.run["wall_s"]),
+        "execution_time": text.number(report.run.wall_s),
         "output": _overview(report),
         "output_format": "html",
         "test_output_format": "text",
         "test_name_format": "text",
-        "tests": [_test(verdict) for verdict in report.verdicts],
+        "tests": [_test(report, index, verdict) for index, verdict in enumerate(report.verdicts)],
     }
     return json.dumps(document, indent=2) + "\n"
 
 
-def _test(verdict: ShownVerdict) -> dict[str, Any]:
-    lines = verdict.lines()
+def render_error(report: ErrorReport) -> str:
+    """The JSON document; without a score if there is no judgement.
+
+    Gradescope takes that for an autograder that failed.
+    """
+    document: dict[str, Any] = {
+        "output": "\n\n".join(report.paragraphs),
+        "output_format": "text",
+        "tests": [],
+    }
+    if report.is_judged:
+        document = {"score": 0, **document}
+    else:
+        document["extra_data"] = {"grader_failed": True}
+    return json.dumps(document, indent=2) + "\n"
+
+
+def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
+    lines = report.lines(verdict)
     if verdict.status == "not_judged":
         lines.insert(0, "Not judged.")
     elif verdict.is_partial:
         lines.insert(0, "Partial credit.")
     return {
-        "name": f"{verdict.name}: {verdict.title}",
-        "number": str(verdict.index + 1),
+        "name": f"{verdict.check}: {verdict.title}",
+        "number": str(index + 1),
         "score": text.number(verdict.score),
         "max_score": text.number(verdict.max_score),
         "status": "passed" if verdict.passed else "failed",

@@ -5,51 +5,75 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
-from grader.reports import text
-from grader.reports.report import Report, ShownVerdict
+from grader import text
+from grader.exercise.verdict import Verdict
+from grader.reports.error_report import ErrorReport
+from grader.reports.report import Report
+from grader.reports.wording import score_text, word
 
 
 def render(report: Report) -> str:
     """The XML document. Points stand in the suite's properties and in each case's system-out."""
-    verdicts = report.verdicts
+    properties = {
+        "submission": report.submission,
+        "score": text.points(report.score),
+        "max_score": text.points(report.max_score),
+        "outcome": report.run.outcome,
+    }
+    cases = [_case(report, verdict) for verdict in report.verdicts]
+    return _document(report.exercise, max(report.run.wall_s, 0), properties, cases)
+
+
+def render_error(report: ErrorReport) -> str:
+    """The XML document: a failure of the only case, or an error where there is no judgement."""
+    properties = {"score": "0"} if report.is_judged else {}
+    if report.max_score is not None:
+        properties["max_score"] = text.points(report.max_score)
+    case = ElementTree.Element(
+        "testcase", {"classname": "grader", "name": report.title, "time": "0"}
+    )
+    said = {"message": text.one_line(report.message), "type": report.whose}
+    kind = "failure" if report.is_judged else "error"
+    ElementTree.SubElement(case, kind, said).text = "\n\n".join(report.paragraphs)
+    return _document("grader", 0, properties, [case])
+
+
+def _document(
+    name: str, time_s: float, properties: dict[str, str], cases: list[ElementTree.Element]
+) -> str:
+    kinds = [child.tag for case in cases for child in case]
     counts = {
-        "tests": str(len(verdicts)),
-        "failures": str(sum(v.status == "failed" for v in verdicts)),
-        "errors": "0",
-        "skipped": str(sum(v.status == "not_judged" for v in verdicts)),
-        "time": f"{max(report.run['wall_s'], 0):.3f}",
+        "tests": str(len(cases)),
+        "failures": str(kinds.count("failure")),
+        "errors": str(kinds.count("error")),
+        "skipped": str(kinds.count("skipped")),
+        "time": f"{time_s:.3f}",
     }
     root = ElementTree.Element("testsuites", counts)
-    suite = ElementTree.SubElement(root, "testsuite", {"name": report.exercise, **counts})
-    properties = ElementTree.SubElement(suite, "properties")
-    for name, value in (
-        ("submission", report.submission),
-        ("score", text.points(report.score)),
-        ("max_score", text.points(report.max_score)),
-        ("outcome", report.run["outcome"]),
-    ):
-        ElementTree.SubElement(properties, "property", {"name": name, "value": value})
-    for verdict in verdicts:
-        suite.append(_case(report, verdict))
+    suite = ElementTree.SubElement(root, "testsuite", {"name": name, **counts})
+    listed = ElementTree.SubElement(suite, "properties")
+    for key, value in properties.items():
+        ElementTree.SubElement(listed, "property", {"name": key, "value": value})
+    suite.extend(cases)
     ElementTree.indent(root)
     body = ElementTree.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'
 
 
-def _case(report: Report, verdict: ShownVerdict) -> ElementTree.Element:
+def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
     case = ElementTree.Element(
         "testcase",
         # GitLab shows the class as the suite.
-        {"classname": report.exercise, "name": f"{verdict.name}: {verdict.title}", "time": "0"},
+        {"classname": report.exercise, "name": f"{verdict.check}: {verdict.title}", "time": "0"},
     )
     message = {"message": text.one_line(verdict.rationale)}
-    lines = verdict.lines()
+    lines = report.lines(verdict)
     if verdict.status == "failed":
         failure = ElementTree.SubElement(case, "failure", {**message, "type": "failed"})
         failure.text = "\n".join(lines)
     elif verdict.status == "not_judged":
         ElementTree.SubElement(case, "skipped", message)
-    said = [f"{verdict.word}, {verdict.score_text} points"]
+    said = [f"{word(verdict)}, {score_text(verdict)} points"]
     if verdict.status != "failed":
         said += [_quote(line) for line in lines]
     elif attachment := _canvas_here(report):
@@ -65,6 +89,7 @@ def _quote(line: str) -> str:
 
 def _canvas_here(report: Report) -> str:
     """The picture's path as GitLab needs it: relative to the project, where its jobs run."""
-    if report.canvas_path is None or not report.canvas_path.is_relative_to(Path.cwd()):
+    path = report.beside.canvas_path
+    if path is None or not path.is_relative_to(Path.cwd()):
         return ""
-    return report.canvas_path.relative_to(Path.cwd()).as_posix()
+    return path.relative_to(Path.cwd()).as_posix()

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import re
 
-from grader.reports import text
-from grader.reports.report import Report, ShownVerdict
+from grader import text
+from grader.exercise.verdict import Verdict
+from grader.reports.error_report import ErrorReport
+from grader.reports.report import Report
+from grader.reports.wording import score_text, word
 
 _SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
 #: What can begin something in Markdown, anywhere or at the start of a line. A backslash before it
@@ -23,8 +26,16 @@ def render(report: Report) -> str:
         _first(report),
         _table(report),
     ]
-    parts += [_seen(verdict) for verdict in report.verdicts if verdict.status == "failed"]
+    parts += [_seen(report, verdict) for verdict in report.verdicts if verdict.status == "failed"]
     parts += [_run(report), _output(report)]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def render_error(report: ErrorReport) -> str:
+    """The error, ending with a line break."""
+    points = f": {report.score_text} points" if report.is_judged else ""
+    message = "\\\n".join(map(_quote, report.message.splitlines()))
+    parts = [f"## {report.title}{points}", report.before, message, report.after]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -39,26 +50,26 @@ def _first(report: Report) -> str:
     first = report.first_to_mend
     if first is None:
         return f"**{_quote(report.headline)}**"
-    return f"**First to mend, {_quote(first.name)}:** {_quote(report.headline)}"
+    return f"**First to mend, {_quote(first.check)}:** {_quote(report.headline)}"
 
 
 def _table(report: Report) -> str:
     rows = ["| verdict | check | points | asked for |", "| --- | --- | ---: | --- |"]
     for verdict in report.verdicts:
         asked = _quote(verdict.title)
-        if verdict.waited_for:
-            asked += f" (waits for {_quote(', '.join(verdict.waited_for))})"
-        points = verdict.score_text + (" (partial credit)" if verdict.is_partial else "")
-        sign = f"{_SIGNS[verdict.status]} {verdict.word}"
-        rows.append(f"| {sign} | {_quote(verdict.name)} | {points} | {asked} |")
+        if waited_for := report.waited_for(verdict):
+            asked += f" (waits for {_quote(', '.join(waited_for))})"
+        points = score_text(verdict) + (" (partial credit)" if verdict.is_partial else "")
+        sign = f"{_SIGNS[verdict.status]} {word(verdict)}"
+        rows.append(f"| {sign} | {_quote(verdict.check)} | {points} | {asked} |")
     rows.append(f"| | **total** | **{report.score_text.replace(' of ', ' / ')}** | |")
     return "\n".join(rows)
 
 
-def _seen(verdict: ShownVerdict) -> str:
-    lines = [f"### {_quote(verdict.name)}: {verdict.score_text}", "", _quote(verdict.rationale)]
-    if verdict.points:
-        lines += ["", *(f"- {_quote(str(point))}" for point in verdict.points)]
+def _seen(report: Report, verdict: Verdict) -> str:
+    lines = [f"### {_quote(verdict.check)}: {score_text(verdict)}", "", _quote(verdict.rationale)]
+    if verdict.evidence:
+        lines += ["", *(f"- {_quote(str(point))}" for point in report.points_of(verdict))]
     if verdict.help:
         lines += ["", f"**Look at:** {_quote(verdict.help)}"]
     return "\n".join(lines)
@@ -67,10 +78,10 @@ def _seen(verdict: ShownVerdict) -> str:
 def _run(report: Report) -> str:
     run = report.run
     lines = [
-        f"Run: {_quote(run['outcome'].replace('_', ' '))}, {run['simulated_s']:.1f} s simulated "
-        f"in {run['wall_s']:.1f} s ({run['time']} time)."
+        f"Run: {_quote(run.outcome.replace('_', ' '))}, {run.simulated_s:.1f} s simulated "
+        f"in {run.wall_s:.1f} s ({run.time} time)."
     ]
-    lines += [f"- Note: {_quote(flag)}" for flag in run["flags"]]
+    lines += [f"- Note: {_quote(flag)}" for flag in run.flags]
     return "\n".join(lines)
 
 

@@ -2,29 +2,43 @@
 
 from __future__ import annotations
 
-from grader.reports import text
-from grader.reports.report import Report, ShownVerdict
+from grader import text
+from grader.exercise.verdict import Verdict
+from grader.reports.error_report import ErrorReport
+from grader.reports.report import Report
+from grader.reports.wording import score_text, word
 
 
 def render(report: Report) -> str:
     """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
     lines = ["<|--", "-What to do", f"Now: {_quote(report.headline)}"]
     for verdict in report.verdicts:
-        lines += _verdict(verdict)
+        lines += _verdict(report, verdict)
     lines += ["--|>", f"Grade :=>> {text.points(report.score)}"]
     return "\n".join(lines) + "\n"
 
 
-def _verdict(verdict: ShownVerdict) -> list[str]:
+def render_error(report: ErrorReport) -> str:
+    """The same lines; without a grade if none was judged, and then VPL gives none."""
+    lines = ["<|--", f"-{report.title}", report.before]
+    lines += [f"> {_quote(line)}" for line in report.message.splitlines()]
+    lines += [line for line in (report.after,) if line]
+    lines.append("--|>")
+    if report.is_judged:
+        lines.append("Grade :=>> 0")
+    return "\n".join(lines) + "\n"
+
+
+def _verdict(report: Report, verdict: Verdict) -> list[str]:
     # A title that ended with a number in brackets would be taken for a deduction.
     lines = [
-        f"-{_quote(verdict.name)}: {verdict.word}, {verdict.score_text} points",
+        f"-{_quote(verdict.check)}: {word(verdict)}, {score_text(verdict)} points",
         f"Asked for: {_quote(verdict.title)}",
         f"Seen: {_quote(verdict.rationale)}",
     ]
-    if verdict.waited_for:
-        lines.append(f"Waits for: {_quote(', '.join(verdict.waited_for))}")
-    lines += [f"Where: {_quote(str(point))}" for point in verdict.points]
+    if waited_for := report.waited_for(verdict):
+        lines.append(f"Waits for: {_quote(', '.join(waited_for))}")
+    lines += [f"Where: {_quote(str(point))}" for point in report.points_of(verdict)]
     if verdict.help:
         lines.append(f"Look at: {_quote(verdict.help)}")
     return lines

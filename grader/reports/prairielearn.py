@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from grader.reports import text
+from grader import text
+from grader.exercise.verdict import Verdict
+from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
-from grader.reports.report import Report, ShownVerdict
+from grader.reports.report import Report
+from grader.reports.wording import word
 
 #: PrairieLearn refuses a file above 1 MB.
 LIMIT_BYTES = 1_000_000
@@ -25,6 +28,12 @@ def render(report: Report) -> str:
     return document
 
 
+def render_error(report: ErrorReport) -> str:
+    """The JSON document: not gradable, which costs the student no attempt."""
+    document = {"gradable": False, "score": 0, "format_errors": "\n\n".join(report.paragraphs)}
+    return json.dumps(document) + "\n"
+
+
 def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> dict[str, Any]:
     return {
         "gradable": True,
@@ -32,19 +41,19 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
         "message": text.clip(report.headline, 1000),
         "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
         "images": images,
-        "tests": [_test(verdict, in_full) for verdict in report.verdicts],
+        "tests": [_test(report, verdict, in_full) for verdict in report.verdicts],
     }
 
 
-def _test(verdict: ShownVerdict, in_full: bool) -> dict[str, Any]:
+def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
     test = {
-        "name": f"{verdict.name} ({verdict.word})",
+        "name": f"{verdict.check} ({word(verdict)})",
         "points": text.number(verdict.score),
         "max_points": text.number(verdict.max_score),
     }
     if in_full:
         test["description"] = verdict.title
-        test["message"] = "\n".join(verdict.lines())
+        test["message"] = "\n".join(report.lines(verdict))
     return test
 
 

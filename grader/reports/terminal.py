@@ -5,15 +5,17 @@ from __future__ import annotations
 import io
 import re
 import shutil
-from pathlib import Path
+from collections.abc import Callable
 
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from grader.reports.report import Report, ShownVerdict
-from grader.result.result import Result
+from grader.exercise.verdict import Verdict
+from grader.reports.error_report import ErrorReport
+from grader.reports.report import Report
+from grader.reports.wording import score_text, word
 
 _MARKS = {
     "passed": ("✓", "green"),
@@ -26,34 +28,50 @@ _RUNNER_COMMAND = re.compile(r"::(?=[a-z-]+[ :])|##(?=\[|vso)")
 
 def render(report: Report) -> str:
     """The same as plain text, for a file."""
+    return _captured(lambda console: show(report, console))
+
+
+def render_error(report: ErrorReport) -> str:
+    """The error as plain text."""
+    return _captured(lambda console: show_error(report, console))
+
+
+def show_error(report: ErrorReport, console: Console) -> None:
+    """Print an error."""
+    console.print(_text(f"{report.title}.", "bold"), soft_wrap=True)
+    for part in report.paragraphs:
+        console.print()
+        console.print(_text(part), soft_wrap=True)
+    if report.is_judged:
+        console.print()
+        console.print(_text(f"Score: {report.score_text}", "bold"))
+
+
+def _captured(print_to: Callable[[Console], None]) -> str:
     out = io.StringIO()
     width = shutil.get_terminal_size((100, 24)).columns
-    _show(report, Console(file=out, width=width, color_system=None, force_terminal=False))
+    print_to(Console(file=out, width=width, color_system=None, force_terminal=False))
     return out.getvalue()
 
 
-def show(result: Result, console: Console) -> None:
-    """Print the report of a result."""
-    _show(Report(result, Path()), console)
-
-
-def _show(report: Report, console: Console) -> None:
+def show(report: Report, console: Console) -> None:
+    """Print the report."""
     console.print(_text(report.headline, "bold"), soft_wrap=True)
     console.print()
     console.print(_text(f"{report.submission}: {report.exercise}", "bold"), soft_wrap=True)
     console.print(_table(report, console.width))
     for verdict in report.verdicts:
-        if not verdict.passed and not verdict.waited_for:
-            console.print(_explanation(verdict))
+        if not verdict.passed and not report.waited_for(verdict):
+            console.print(_explanation(report, verdict))
     run = report.run
     console.print()
     console.print(
         _text(
-            f"Run: {run['outcome'].replace('_', ' ')}, {run['simulated_s']:.1f} s simulated "
-            f"in {run['wall_s']:.1f} s ({run['time']} time)."
+            f"Run: {run.outcome.replace('_', ' ')}, {run.simulated_s:.1f} s simulated "
+            f"in {run.wall_s:.1f} s ({run.time} time)."
         )
     )
-    for flag in run["flags"]:
+    for flag in run.flags:
         console.print(_text(f"Note: {flag}"))
     console.print(_text(f"Score: {report.score_text}", "bold"))
 
@@ -64,34 +82,34 @@ def _text(value: str, style: str = "") -> Text:
 
 def _table(report: Report, width: int) -> Table:
     """What a check asks for stands beside its name, or below where the terminal is narrow."""
-    rows = [_row(verdict) for verdict in report.verdicts]
+    rows = [_row(report, verdict) for verdict in report.verdicts]
     widest = [max(cell.cell_len for cell in column) for column in zip(*rows, strict=True)]
     beside = sum(widest) + 2 * len(widest) <= width
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True, justify="right")
-    for verdict, points, name, asked in rows:
+    for said, points, name, asked in rows:
         cells: list[RenderableType] = [name, asked] if beside else [Group(name, asked)]
-        table.add_row(verdict, points, *cells)
+        table.add_row(said, points, *cells)
     return table
 
 
-def _row(verdict: ShownVerdict) -> tuple[Text, Text, Text, Text]:
+def _row(report: Report, verdict: Verdict) -> tuple[Text, Text, Text, Text]:
     sign, color = _MARKS[verdict.status]
     asked = _text(verdict.title, "dim")
-    if verdict.waited_for:
-        asked = _text(f"waits for {', '.join(verdict.waited_for)}", "yellow")
+    if waited_for := report.waited_for(verdict):
+        asked = _text(f"waits for {', '.join(waited_for)}", "yellow")
     elif verdict.is_partial:
         asked.append(" (partial credit)", "yellow")
-    word = Text(f" {sign} {verdict.word}", color)
-    return word, _text(verdict.score_text), _text(verdict.name, "bold"), asked
+    said = Text(f" {sign} {word(verdict)}", color)
+    return said, _text(score_text(verdict)), _text(verdict.check, "bold"), asked
 
 
-def _explanation(verdict: ShownVerdict) -> Group:
-    head = _text(f"{verdict.name}, {verdict.score_text}: ", "red")
+def _explanation(report: Report, verdict: Verdict) -> Group:
+    head = _text(f"{verdict.check}, {score_text(verdict)}: ", "red")
     head.append_text(_text(" ".join(verdict.rationale.split()), "not bold default"))
     lines: list[RenderableType] = [Text(), head]
-    lines += [_indented("•", str(point)) for point in verdict.points]
+    lines += [_indented("•", str(point)) for point in report.points_of(verdict)]
     if verdict.help:
         lines.append(_indented("→", " ".join(verdict.help.split()), "italic"))
     return Group(*lines)

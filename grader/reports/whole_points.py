@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Decimal
 
-from grader.reports.report import ShownVerdict
+from grader.exercise.verdict import Verdict
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class WholePoints:
         return sum(self.max_scores)
 
 
-def whole_points(verdicts: Sequence[ShownVerdict]) -> WholePoints:
+def whole_points(verdicts: Sequence[Verdict]) -> WholePoints:
     """Round by largest remainders.
 
     The total is rounded half up. Every score is rounded down, and the points that are then missing
@@ -53,6 +53,11 @@ def whole_points(verdicts: Sequence[ShownVerdict]) -> WholePoints:
     for index in by_loss[:missing]:
         scores[index] += 1
     return WholePoints(tuple(scores), tuple(max_scores), factor)
+
+
+def zero_points(max_score: float) -> WholePoints:
+    """Nothing of `max_score`, where the parts are not known."""
+    return WholePoints((0,), (int(_half_up(_decimal(max_score))),), 1)
 
 
 def _decimal(value: float) -> Decimal:

@@ -1,1 +1,1 @@
-"""The result file: typed, with a schema."""
+"""The result file and the error file: typed, each with a schema."""

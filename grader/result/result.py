@@ -5,24 +5,129 @@ Its JSON Schema is `result.schema.json` beside this module.
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
-from importlib.resources import files
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
-import jsonschema
-
-from grader.errors import UsageError
+from grader import files
 from grader.exercise.loading import Exercise
 from grader.exercise.sentences import remarks
 from grader.exercise.verdict import Verdict
-from grader.recording.recording import Recording, Recordings
+from grader.recording.recording import Recording, Recordings, Run
+from grader.result import json_file
+from grader.scenes.scene import Start
 
 SCHEMA = "turtlesim-grader/result/v1"
-Result = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class RunSummary(Run):
+    """A run as the result tells of it: with remarks on it among the flags.
+
+    Attributes:
+        start: where it started; None for the usual place.
+    """
+
+    start: Start | None = None
+
+    @classmethod
+    def of(cls, recording: Recording) -> Self:
+        """What the result tells of a recording."""
+        run = {field.name: getattr(recording.run, field.name) for field in fields(Run)}
+        flags = (*recording.run.flags, *remarks(recording))
+        return cls(**{**run, "flags": flags}, start=recording.start)
+
+    def to_json(self) -> dict[str, Any]:
+        """The run as the result file holds it."""
+        run = asdict(self) | {"flags": list(self.flags)}
+        if self.start is None:
+            del run["start"]
+        return run
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """The run that a result file holds; it follows the schema."""
+        run = {**data, "flags": tuple(data["flags"])}
+        for key in ("exit_code", "ticks", "seed"):
+            if run.get(key) is not None:
+                run[key] = int(run[key])
+        if "start" in run:
+            run["start"] = Start(**run["start"])
+        return cls(**run)
+
+
+@dataclass(frozen=True)
+class Result:
+    """One judged run.
+
+    Attributes:
+        exercise, submission: their names.
+        score, max_score: the points of all verdicts, earned and possible.
+        verdicts: of each check that is worth points, in the exercise's order.
+        run: the nominal run.
+        varied_runs: those that start elsewhere.
+        artifacts: what lies beside the result file: name -> relative path.
+    """
+
+    exercise: str
+    submission: str
+    score: float
+    max_score: float
+    verdicts: tuple[Verdict, ...]
+    run: RunSummary
+    varied_runs: tuple[RunSummary, ...] = ()
+    artifacts: Mapping[str, str] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, Any]:
+        """The result as its file holds it."""
+        return {
+            "schema": SCHEMA,
+            "exercise": self.exercise,
+            "submission": self.submission,
+            "score": self.score,
+            "max_score": self.max_score,
+            "verdicts": [verdict.to_json() for verdict in self.verdicts],
+            "run": self.run.to_json(),
+            "varied_runs": [run.to_json() for run in self.varied_runs],
+            "artifacts": dict(self.artifacts),
+        }
+
+    @classmethod
+    def from_json(cls, data: Any) -> Self:
+        """The result that a file holds.
+
+        Raises:
+            ValueError: it does not follow the schema.
+        """
+        json_file.validate(data, "result", SCHEMA)
+        return cls(
+            data["exercise"],
+            data["submission"],
+            data["score"],
+            data["max_score"],
+            tuple(Verdict.from_json(verdict) for verdict in data["verdicts"]),
+            RunSummary.from_json(data["run"]),
+            tuple(RunSummary.from_json(run) for run in data.get("varied_runs", ())),
+            data["artifacts"],
+        )
+
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Read a result file.
+
+        Raises:
+            UsageError: it cannot be read or is no result of this version.
+        """
+        return json_file.made(cls.from_json, path, json_file.read(path))
+
+    def write(self, path: Path) -> None:
+        """Write the result file.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
+        files.write(path, json_file.text(self.to_json()))
 
 
 def build(
@@ -33,60 +138,13 @@ def build(
     artifacts: Mapping[str, str],
 ) -> Result:
     """Put a result together; `artifacts` are paths relative to the result file."""
-    return {
-        "schema": SCHEMA,
-        "exercise": exercise.name,
-        "submission": submission,
-        "score": round(sum(v.score for v in verdicts), 2),
-        "max_score": round(sum(v.max_score for v in verdicts), 2),
-        "verdicts": [v.as_json() for v in verdicts],
-        "run": _run(recordings.nominal),
-        "varied_runs": [_run(recording) for recording in recordings.varied],
-        "artifacts": dict(artifacts),
-    }
-
-
-def _run(recording: Recording) -> dict[str, Any]:
-    run = asdict(recording.run)
-    run["flags"] = [*recording.run.flags, *remarks(recording)]
-    if recording.start is not None:
-        run["start"] = asdict(recording.start)
-    return run
-
-
-def schema() -> dict[str, Any]:
-    """The JSON Schema of a result."""
-    text = (files("grader.result") / "result.schema.json").read_text(encoding="utf-8")
-    loaded: dict[str, Any] = json.loads(text)
-    return loaded
-
-
-def write(result: Result, path: Path) -> None:
-    """Write a result whole or not at all; into a device or a pipe it is simply written."""
-    text = json.dumps(result, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-    if path.exists() and not path.is_file():
-        path.write_text(text, encoding="utf-8")
-        return
-    path = path.resolve()  # a link stays a link
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
-    unfinished.write_text(text, encoding="utf-8")
-    unfinished.replace(path)
-
-
-def read(path: Path) -> Result:
-    """Read a result.
-
-    Raises:
-        UsageError: it cannot be read or is no result of this version.
-    """
-    try:
-        result: Result = json.loads(path.read_text(encoding="utf-8"))
-        jsonschema.validate(result, schema())
-    except OSError as error:
-        raise UsageError(f"cannot read the result {path}: {error.strerror}") from None
-    except ValueError as error:
-        raise UsageError(f"{path} is not JSON: {error}") from None
-    except jsonschema.ValidationError as error:
-        raise UsageError(f"{path} is no result of {SCHEMA}: {error.message}") from None
-    return result
+    return Result(
+        exercise.name,
+        submission,
+        round(sum(verdict.score for verdict in verdicts), 2),
+        round(sum(verdict.max_score for verdict in verdicts), 2),
+        tuple(verdicts),
+        RunSummary.of(recordings.nominal),
+        tuple(RunSummary.of(recording) for recording in recordings.varied),
+        dict(artifacts),
+    )

@@ -12,7 +12,8 @@ import zlib
 from pathlib import Path, PurePosixPath
 from typing import Final
 
-from grader.submission.folder import SubmissionError, is_junk, marks_generated
+from grader.errors import SubmissionError
+from grader.submission.folder import is_junk, marks_generated
 
 MAX_BYTES: Final = 200_000_000  # of all members together, unpacked
 MAX_MEMBERS: Final = 10_000

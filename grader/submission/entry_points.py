@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from grader.submission.folder import HandedIn, SubmissionError, files_below, listed, near
+from grader.errors import SubmissionError
+from grader.submission.folder import HandedIn, files_below, listed, near
 from grader.submission.python_source import read_source
 from grader.submission.setup_files import SETUP_FILES, ConsoleScript, Package, read_package
 

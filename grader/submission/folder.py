@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Final
 
-from grader.errors import UsageError
+from grader.errors import SubmissionError
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
 MAX_ENTRIES: Final = 10_000  # files and folders that are looked at
@@ -21,13 +21,6 @@ _COLCON: Final = {"build", "install", "log"}
 _NO_SOURCES: Final = {"venv", "env", "test", "tests"} | _COLCON
 
 
-class SubmissionError(UsageError):
-    """The submission cannot be used; its text says what was found, expected, and what to do."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__(printable(text))
-
-
 @dataclass(frozen=True)
 class HandedIn:
     """A folder, handed in as such or unpacked, and its words in messages."""
@@ -38,11 +31,6 @@ class HandedIn:
     def called(self, path: Path) -> str:
         """Name a path of the submission in a message."""
         return str(path.relative_to(self.base))
-
-
-def printable(text: str) -> str:
-    """Put `?` for control characters and undecodable bytes: file names go to terminals."""
-    return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
 
 
 def is_junk(name: str) -> bool:

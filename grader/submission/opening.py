@@ -22,6 +22,7 @@ from pathlib import Path
 from sys import stdlib_module_names
 from typing import Final
 
+from grader.errors import SubmissionError
 from grader.scratch import make_folder
 from grader.submission.archive import unpack
 from grader.submission.entry_points import (
@@ -35,19 +36,18 @@ from grader.submission.entry_points import (
 from grader.submission.folder import (
     HAND_IN,
     HandedIn,
-    SubmissionError,
     files_below,
     is_generated,
     is_junk,
     listed,
     near,
-    printable,
     top_of,
 )
 from grader.submission.python_source import Source, read_source
 from grader.submission.setup_files import ConsoleScript, Package
+from grader.text import without_controls
 
-__all__ = ["EntryPoint", "Script", "Submission", "SubmissionError", "open_submission"]
+__all__ = ["EntryPoint", "Script", "Submission", "open_submission"]
 
 _UNREADABLE: Final = (
     *(errno.EACCES, errno.EPERM, errno.ENOENT),
@@ -110,7 +110,7 @@ def open_submission(path: Path, executable: str | None = None) -> Iterator[Submi
 
 
 def _open(path: Path, executable: str | None, scratch: Path) -> Submission:
-    name = printable(path.name or path.resolve().name)
+    name = _clean(path.name or path.resolve().name)
     if not path.exists():
         raise _missing(path)
     if path.is_dir():
@@ -129,6 +129,10 @@ def _open(path: Path, executable: str | None, scratch: Path) -> Submission:
     unpacked.mkdir()
     unpack(path, unpacked)
     return _in_folder(HandedIn(name, unpacked), executable, scratch)
+
+
+def _clean(text: str) -> str:
+    return without_controls(text, "?", keep="\n")
 
 
 def _advice(path: Path) -> str:
@@ -179,7 +183,7 @@ def _from_script(
 ) -> Submission:
     module = find_module(handed_in, package, script)
     start = EntryPoint(script.module, script.function)
-    found = printable(f"console script {script.name} in {handed_in.called(script.file)}")
+    found = _clean(f"console script {script.name} in {handed_in.called(script.file)}")
     if not module.bare:
         return Submission(handed_in.name, module.root, start, found)
     # without its __init__.py, Python prefers any installed package of the same name
@@ -202,7 +206,7 @@ def _left_out(folder: str, names: list[str]) -> list[str]:
 def _from_file(handed_in: HandedIn, file: Path) -> Submission:
     """Start a file that no package describes."""
     source = read_source(file)
-    called = printable(handed_in.called(file))
+    called = _clean(handed_in.called(file))
     if not source.parses or source.has_guard or source.calls_main or not source.has_main:
         return Submission(handed_in.name, file.parent, Script(file), f"file {called}")
     # one called like a module of Python may find that loaded already, instead of itself

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, TypeVar
 
-from grader.submission.folder import MAX_SOURCE_BYTES, SubmissionError, read_bounded
+from grader.errors import SubmissionError
+from grader.submission.folder import MAX_SOURCE_BYTES, read_bounded
 from grader.submission.python_source import UNKNOWN, Constants, parse
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins

@@ -18,12 +18,15 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
-from grader.reports import text
+from grader import text
+from grader.reports import wording
+from grader.reports.error_report import ErrorReport
 from grader.reports.page.pictures import canvas_uri, window_uri
 from grader.reports.page.pins import RADIUS_PX, Pin, pins
 from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
 from grader.reports.page.tracks import Film, film
 from grader.reports.report import Report
+from grader.result.result import RunSummary
 from grader.scenes.view import Floats
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -46,7 +49,7 @@ class RunView:
 
     number: int
     title: str
-    facts: dict[str, Any]
+    facts: RunSummary
     picture: str
     pins: tuple[Pin, ...]
     film: Film | None
@@ -91,6 +94,11 @@ def _outcomes(thing: str) -> dict[str, str]:
     }
 
 
+def render_error(report: ErrorReport) -> str:
+    """A page with the error."""
+    return _environment().get_template("error.html").render(report=report)
+
+
 @cache
 def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
@@ -105,6 +113,8 @@ def _environment() -> jinja2.Environment:
     environment.filters["points"] = text.points
     environment.globals.update(
         place=text.place,
+        word=wording.word,
+        score_text=wording.score_text,
         style=Markup((_TEMPLATES / "page.css").read_text(encoding="utf-8")),
         script=Markup(script),
         script_digest=digest,
@@ -133,11 +143,11 @@ def _view(report: Report, number: int) -> RunView:
 def _title(report: Report, number: int) -> str:
     if number == 0:
         return "Nominal run"
-    start = report.varied_runs[number - 1].get("start")
-    if not start:
+    start = report.varied_runs[number - 1].start
+    if start is None:
         return f"Varied run {number}"
-    heading = math.degrees(start["theta"])
-    return f"Varied run {number}: from {text.place(start['x'], start['y'])}, heading {heading:.0f}°"
+    heading = math.degrees(start.theta)
+    return f"Varied run {number}: from {text.place(start.x, start.y)}, heading {heading:.0f}°"
 
 
 def _film_data(shown: Film) -> dict[str, Any]:

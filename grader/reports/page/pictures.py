@@ -15,9 +15,10 @@ _LIMIT_BYTES = 150_000
 
 def canvas_uri(report: Report) -> str:
     """The window at the end of the nominal run; '' where no picture lies beside the result."""
-    if report.canvas_path is not None:
+    path = report.beside.canvas_file
+    if path is not None:
         try:
-            with Image.open(report.canvas_path, formats=["PNG"]) as image:
+            with Image.open(path, formats=["PNG"]) as image:
                 if max(image.size) <= report.scene.plane.size_px:
                     return _uri(image.convert("RGB"))
         except (OSError, UnidentifiedImageError):

@@ -28,10 +28,12 @@ class Pin:
 
 def pins(report: Report, run: int) -> tuple[Pin, ...]:
     """The pins of one run: those of failed checks have the first choice of a place."""
-    shown = [p for p in report.points if p.run == run and p.has_place]
+    shown = [p for p in report.points if p.evidence.run == run and p.evidence.has_place]
     plane = report.scene.plane
     status = {p.number: report.verdicts[p.verdict].status for p in shown}
-    places = {p.number: _inside(*plane.to_px(p.x, p.y), plane.size_px) for p in shown}
+    places = {
+        p.number: _inside(*plane.to_px(p.evidence.x, p.evidence.y), plane.size_px) for p in shown
+    }
     placed: list[Pin] = []
     for point in sorted(shown, key=lambda p: status[p.number] == "passed"):
         x, y = places[point.number]

@@ -22,6 +22,7 @@ from grader.run.lockstep.protocol import (
     decode,
     encode,
 )
+from grader.text import without_controls
 
 #: How often it is looked at [ms].
 LOOK_MS = 250
@@ -116,7 +117,7 @@ class StudentLink:
         self._stall_cpu_s = self._patience.stall_cpu_s
 
     def _hear(self, note: Note) -> None:
-        text = "".join(c if c.isprintable() else "?" for c in note.text[:200])
+        text = without_controls(note.text[:200], "?")
         match note.kind:
             case Kind.LEAVING:
                 self.has_left = True

@@ -19,7 +19,7 @@ import psutil
 import pytest
 import yaml
 
-from grader.result import result as results
+from grader.result import json_file
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 ROOT = Path(__file__).parents[3]
@@ -160,8 +160,21 @@ def test_a_submission_that_starts_processes_is_graded_in_real_time_and_the_resul
 
 def test_every_result_follows_the_schema_and_its_files_exist(graded):
     for run in graded.values():
-        jsonschema.validate(run.result, results.schema())
+        jsonschema.validate(run.result, json_file.schema("result"))
         assert all((run.out / path).exists() for path in run.result["artifacts"].values())
+
+
+def test_the_page_of_a_run_is_the_one_that_report_makes_of_its_folder(graded):
+    for run in (graded["quick_spiral"], graded["missing_import"], graded["in_real_time"]):
+        page = run.out / "report.html"
+        words = ["report", run.out / "result.json", "--format", "html"]
+        again = subprocess.run(
+            [sys.executable, "-m", "grader", *map(str, words)],
+            check=True,
+            capture_output=True,
+            cwd=ROOT,
+        )
+        assert page.read_bytes() == again.stdout
 
 
 def test_no_process_is_left_behind(graded):

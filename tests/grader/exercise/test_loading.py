@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from grader.errors import UsageError
+from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise, names
 
 NAME = "turtlesim_challenge"
@@ -51,7 +51,7 @@ def test_the_same_seed_gives_the_same_starts():
     ],
 )
 def test_a_mistake_in_an_edited_copy_is_named(tmp_path, changes, words):
-    with pytest.raises(UsageError) as error:
+    with pytest.raises(ExerciseError) as error:
         load_exercise(edited(tmp_path, **changes))
     assert words in str(error.value)
 
@@ -60,17 +60,17 @@ def test_a_mistake_in_an_edited_copy_is_named(tmp_path, changes, words):
 def test_what_is_no_yaml_object_is_refused(tmp_path, text):
     path = tmp_path / "mine.yaml"
     path.write_text(text)
-    with pytest.raises(UsageError, match="is not an exercise"):
+    with pytest.raises(ExerciseError, match="is not an exercise"):
         load_exercise(str(path))
 
 
 def test_a_syntax_error_is_named_with_its_line(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text("exercise: x\npoints: [1\nlimits: {}\n")
-    with pytest.raises(UsageError, match="line 3"):
+    with pytest.raises(ExerciseError, match="line 3"):
         load_exercise(str(path))
 
 
 def test_an_unknown_name_lists_the_known_ones():
-    with pytest.raises(UsageError, match=NAME):
+    with pytest.raises(ExerciseError, match=NAME):
         load_exercise("chess")

@@ -11,11 +11,12 @@ import yaml
 from rosbags.rosbag2 import StoragePlugin, Writer
 
 from grader import cli
+from grader.errors import RecordingError
 from grader.recording import bag
 from grader.recording import folder as storage
 from grader.recording import messages as bag_messages
 from grader.recording import recording as recordings
-from grader.recording.recording import Recording, RecordingError, Recordings
+from grader.recording.recording import Recording, Recordings
 from tests.grader.driving import Spiral, drive
 
 CIRCUMSTANCES = "circumstances.json"

@@ -10,6 +10,8 @@ from PIL import Image
 
 from grader.recording.recording import Recording
 from grader.reports import Report
+from grader.reports.beside import Beside
+from grader.result.result import Result
 
 #: The environment that Classroom 50 gives to an autograder.
 CLASSROOM50 = {
@@ -85,7 +87,13 @@ MIXED = [
 
 def report(*verdicts: dict[str, Any], **more: Any) -> Report:
     """A report without anything beside it."""
-    return Report(result(*verdicts, **more), Path("/nowhere"))
+    return report_in(Path("/nowhere"), result(*verdicts, **more))
+
+
+def report_in(folder: Path, data: dict[str, Any]) -> Report:
+    """A report of what a result file in a folder would hold."""
+    made = Result.from_json(data)
+    return Report(made, Beside(made, folder))
 
 
 def graded(
@@ -101,7 +109,7 @@ def graded(
     for number, other in enumerate(varied, 1):
         other.save(folder / "recording" / f"varied_{number}")
     Image.fromarray(recording.window).save(folder / "canvas.png")
-    (folder / "output.txt").write_text(output, encoding="utf-8")
+    (folder / "output.txt").write_bytes(output.encode())
     artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
     if varied:
         start = {"x": 4.0, "y": 7.0, "theta": 1.0}

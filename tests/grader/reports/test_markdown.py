@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 from markdown_it import MarkdownIt
 
-from grader.reports import Report, markdown
+from grader.reports import markdown
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 
@@ -62,7 +62,7 @@ def test_the_table_has_a_row_for_each_verdict_and_the_total():
 
 def test_printed_fences_do_not_end_the_fence(tmp_path):
     (tmp_path / "out.txt").write_text("```\n</details>\n````\n# title\n")
-    report = Report(samples.result(artifacts={"output": "out.txt"}), tmp_path)
+    report = samples.report_in(tmp_path, samples.result(artifacts={"output": "out.txt"}))
     html = rendered(markdown.render(report))
     assert "<h1>" not in html
     assert html.count("</details>") == 1

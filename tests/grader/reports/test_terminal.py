@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -12,7 +13,7 @@ from tests.grader.reports.samples import verdict
 
 def shown(result, width=80):
     out = io.StringIO()
-    terminal.show(result, Console(file=out, width=width))
+    terminal.show(samples.report_in(Path(), result), Console(file=out, width=width))
     return out.getvalue()
 
 

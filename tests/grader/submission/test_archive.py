@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from grader.errors import SubmissionError
 from grader.submission.archive import unpack
-from grader.submission.folder import SubmissionError
 
 
 def pack(archive: Path, *members: str | zipfile.ZipInfo, data: str = "x") -> Path:

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.submission.opening import EntryPoint, Submission, SubmissionError, open_submission
+from grader.errors import SubmissionError
+from grader.submission.opening import EntryPoint, Submission, open_submission
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
 GUARDED = NODE + '\n\nif __name__ == "__main__":\n    main()\n'

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.errors import UsageError
+from grader.errors import SubmissionError
 from grader.submission.folder import HAND_IN
 from grader.submission.opening import (
     EntryPoint,
     Script,
     Submission,
-    SubmissionError,
     open_submission,
 )
 
@@ -290,8 +289,3 @@ def test_a_folder_with_too_many_files_is_refused(
 ) -> None:
     monkeypatch.setattr("grader.submission.folder.MAX_ENTRIES", 2)
     assert "more than 2 files" in refused(lay(tmp_path, dict.fromkeys(("a", "b", "c"), "")))
-
-
-def test_a_refusal_is_an_error_of_the_call(tmp_path: Path) -> None:
-    with pytest.raises(UsageError), open_submission(tmp_path):
-        pass

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.submission.folder import SubmissionError
+from grader.errors import SubmissionError
 from grader.submission.setup_files import Package, read_package
 
 

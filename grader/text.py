@@ -1,37 +1,50 @@
-"""Text made fit to stand in any report: a submission may print and name what it likes."""
+"""Text made fit to be shown: a submission may print, raise and name what it likes."""
 
 from __future__ import annotations
 
 import math
 import re
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 _ESCAPE_SEQUENCES = re.compile(
     r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)?|[@-Z\\^_])"
 )
 _LINE_BREAKS = re.compile(r"\r\n?|[\u2028\u2029]")
-#: Control characters (XML 1.0 has none of them), halves of characters, non-characters, and the
-#: marks that turn the direction of the text behind them.
-_UNFIT = re.compile(
-    r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069]"
+#: Control characters (XML 1.0 has none of them), breaks of a line or paragraph, halves of
+#: characters, non-characters, and the marks that turn the direction of the text behind them.
+_CONTROLS = re.compile(
+    r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069]"
 )
 _REPLACEMENT = "\ufffd"
 
 
+def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str:
+    """The text with `sign` for each character that a terminal, a log or XML would stumble over.
+
+    Args:
+        keep: those of them that may stay.
+    """
+    return _CONTROLS.sub(lambda match: match[0] if match[0] in keep else sign, text)
+
+
 def plain(text: str) -> str:
     r"""The text without colours and control characters; `\n` is its only line break."""
-    text = _ESCAPE_SEQUENCES.sub("", text)
-    return _UNFIT.sub(_REPLACEMENT, _LINE_BREAKS.sub("\n", text))
+    return without_controls(_LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", text)), keep="\t\n")
 
 
 def plain_all(value: Any) -> Any:
-    """The same JSON value with each of its texts made plain."""
+    """The same value, JSON or a dataclass, with each of its texts made plain."""
     if isinstance(value, str):
         return plain(value)
     if isinstance(value, dict):
         return {plain(key): plain_all(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [plain_all(item) for item in value]
+    if isinstance(value, list | tuple):
+        return type(value)(plain_all(item) for item in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(
+            value, **{field.name: plain_all(getattr(value, field.name)) for field in fields(value)}
+        )
     return value
 
 

@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from grader.reports import text
+from grader import text
+from grader.exercise.verdict import Evidence, Finding
 
 
 @pytest.mark.parametrize(
@@ -20,6 +21,28 @@ from grader.reports import text
 )
 def test_plain_text_has_no_colours_and_no_control_characters(raw, plain):
     assert text.plain(raw) == plain
+
+
+@pytest.mark.parametrize(
+    ("raw", "clean"),
+    [
+        ("bell\x07, nul\x00, a line\n", "bell?, nul?, a line?"),
+        ("half: \udcff", "half: ?"),
+        ("gpj\u202eexe", "gpj?exe"),
+        ("\u2028", "?"),
+        ("größer 🐢 x\u00a0=\u30001", "größer 🐢 x\u00a0=\u30001"),
+    ],
+)
+def test_control_characters_are_replaced_and_nothing_else(raw, clean):
+    assert text.without_controls(raw, "?") == clean
+    assert text.without_controls("a\n\tb\x07", "?", keep="\n") == "a\n?b?"
+
+
+def test_dataclasses_are_made_plain_as_well():
+    found = Finding(1.0, "a\x00", evidence=(Evidence(1, 0.1, 2.0, 3.0, "\x1b[1mb"),))
+    assert text.plain_all(found) == Finding(
+        1.0, "a\ufffd", evidence=(Evidence(1, 0.1, 2.0, 3.0, "b"),)
+    )
 
 
 def test_every_text_of_a_result_is_made_plain_and_numbers_stay():

@@ -1,0 +1,106 @@
+"""Files that are written whole or not at all, so that nobody reads a half of one."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import re
+from pathlib import Path
+
+from grader.errors import UsageError
+
+_STREAMS = {"/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
+_DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,9})")
+
+
+def write(path: Path, content: str) -> None:
+    """Write a text as UTF-8, whole or not at all; folders are made if need be.
+
+    A link stays a link. Devices and pipes are simply written to. A name of one of our own
+    descriptors (/dev/fd/3) means just that: it also works where the file behind it could not be
+    opened again, because another user has handed it to us.
+
+    Raises:
+        UsageError: it cannot be written; what was there before is still there.
+    """
+    data = content.encode("utf-8")
+    try:
+        descriptor = _descriptor(path)
+        if descriptor is not None:
+            with os.fdopen(os.dup(descriptor), "wb") as file:
+                file.write(data)
+        elif path.exists() and not path.is_file():
+            path.write_bytes(data)
+        else:
+            _write_beside(_target(path), data)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
+def check_writable(path: Path) -> None:
+    """Find out whether a file can be written, without changing anything.
+
+    Raises:
+        UsageError: it cannot.
+    """
+    try:
+        why_not = _why_not(path)
+    except OSError as error:
+        why_not = error.strerror
+    if why_not:
+        raise UsageError(f"cannot write {path}: {why_not}")
+
+
+def _why_not(path: Path) -> str | None:
+    descriptor = _descriptor(path)
+    if descriptor is not None:
+        mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
+        return "it is open for reading only" if mode == os.O_RDONLY else None
+    if path.is_dir():
+        return "it is a folder; expected the name of a file to write"
+    if path.exists() and not path.is_file():
+        return None if os.access(path, os.W_OK) else "you may not write into it"
+    there = next(folder for folder in _target(path).parents if os.path.lexists(folder))
+    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+        return f"{there} is no folder that you may write into"
+    return None
+
+
+def withdraw(path: Path) -> None:
+    """Remove what an earlier call has written there; a link, a device, a pipe stays.
+
+    Raises:
+        UsageError: it cannot be removed.
+    """
+    try:
+        if _descriptor(path) is None and path.is_file():
+            _target(path).unlink(missing_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
+def _write_beside(path: Path, data: bytes) -> None:
+    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished.write_bytes(data)
+        unfinished.replace(path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            unfinished.unlink(missing_ok=True)
+        raise
+
+
+def _target(path: Path) -> Path:
+    """The file itself, where the path is a link."""
+    return Path(os.path.realpath(path))
+
+
+def _descriptor(path: Path) -> int | None:
+    """The number of the descriptor of ours that a path names; None for any other path."""
+    name = str(path)
+    if name in _STREAMS:
+        return _STREAMS[name]
+    match = _DESCRIPTOR.fullmatch(name)
+    return int(match[1]) if match else None

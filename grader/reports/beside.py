@@ -1,0 +1,91 @@
+"""What lies beside a result: the picture, the recordings, and what the node printed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+
+from grader.errors import RecordingError
+from grader.recording import folder as storage
+from grader.recording.recording import Recording, Recordings
+from grader.result.result import Result
+from grader.text import plain_all
+
+
+class Beside:
+    """What lies beside a result file; read only when it is asked for.
+
+    Attributes:
+        folder: where the result file lies; its artifacts are looked for below.
+    """
+
+    def __init__(self, result: Result, folder: Path) -> None:
+        self.folder = folder
+        self._artifacts = plain_all(dict(result.artifacts))
+        self._runs = 1 + len(result.varied_runs)
+
+    @cached_property
+    def canvas_path(self) -> Path | None:
+        """The picture of the window at the end; None where there is none."""
+        return self._artifact("canvas")
+
+    @property
+    def canvas_file(self) -> Path | None:
+        """The same, if the picture has to be read from there."""
+        return self.canvas_path
+
+    @cached_property
+    def recordings(self) -> Mapping[int, Recording | str]:
+        """A recording for each run, 0 nominal, 1, 2, ... varied, or why it cannot be read."""
+        base = self._artifact("recording")
+        if base is None:
+            return {}
+        loaded: dict[int, Recording | str] = {}
+        for run in range(self._runs):
+            try:
+                loaded[run] = storage.load(base / f"varied_{run}" if run else base)
+            except RecordingError as error:
+                loaded[run] = str(error)
+        return loaded
+
+    @cached_property
+    def output(self) -> str:
+        """What the node printed in the nominal run."""
+        path = self._artifact("output")
+        if path is not None and path.is_file():
+            return path.read_bytes().decode(errors="replace")
+        nominal = self.recordings.get(0)
+        return nominal.output if isinstance(nominal, Recording) else ""
+
+    def _artifact(self, name: str) -> Path | None:
+        """Where an artifact lies; None if it is not there or not below the result's folder."""
+        relative = self._artifacts.get(name)
+        if not relative:
+            return None
+        folder = self.folder.resolve()
+        path = (folder / relative).resolve()
+        return path if path.is_relative_to(folder) and path.exists() else None
+
+
+class StillInMemory(Beside):
+    """The same before anything of it has been written, or without reading it back."""
+
+    def __init__(self, result: Result, folder: Path, recordings: Recordings) -> None:
+        super().__init__(result, folder)
+        self._made = recordings
+
+    @property
+    def canvas_file(self) -> Path | None:
+        """None: the recording has the picture."""
+        return None
+
+    @cached_property
+    def recordings(self) -> Mapping[int, Recording | str]:
+        """A recording for each run."""
+        return dict(enumerate(self._made))
+
+    @cached_property
+    def output(self) -> str:
+        """What the node printed in the nominal run."""
+        return self._made.nominal.output

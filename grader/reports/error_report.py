@@ -1,0 +1,75 @@
+"""What every format is made from where there is no result: an error, and whose turn it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from grader import text
+from grader.result.error import ErrorResult
+
+_TEXT_LIMIT: Final = 4000
+_NOT_YOURS: Final = (
+    "This is not your fault, and it says nothing about your work. Please tell the course staff: "
+    "they have to grade it again."
+)
+_WHAT: Final = {
+    "exercise": "The exercise cannot be used.",
+    "call": "The grader was not called as it should be.",
+    "grader": "The grader failed.",
+}
+
+
+class ErrorReport:
+    """An error to be shown. Its texts are plain, as those of a `Report`.
+
+    A submission that cannot be used has earned nothing. Any other error is no judgement: there is
+    no score then, and a format must not show one, not even 0.
+
+    Args:
+        error: the error.
+        folder: where its file lies.
+        checks: the names of the exercise's checks, for formats that have a score for each.
+
+    Attributes:
+        is_judged: whether it is the student's turn, so that there is a score: 0.
+        message: what was found, what was expected, what to do; may have several lines.
+        max_score: the exercise's points; None where they are not known.
+        folder, checks: as above.
+    """
+
+    def __init__(self, error: ErrorResult, folder: Path, checks: Sequence[str] = ()) -> None:
+        self.is_judged = error.whose == "submission"
+        self.whose = error.whose
+        self.message = text.clip_middle(text.plain(error.message).strip(), _TEXT_LIMIT)
+        self.max_score = None if error.max_score is None else float(error.max_score)
+        self.folder = folder
+        self.checks = tuple(checks)
+
+    @property
+    def title(self) -> str:
+        """What has happened, in two words."""
+        return "Cannot be graded" if self.is_judged else "Not graded"
+
+    @property
+    def score_text(self) -> str:
+        """The points, where there are some: '0 of 100'."""
+        return "0" if self.max_score is None else f"0 of {text.points(self.max_score)}"
+
+    @property
+    def before(self) -> str:
+        """The sentence that leads to the message."""
+        if self.is_judged:
+            return "This cannot be graded, so it has no points:"
+        return f"{_WHAT[self.whose]} {_NOT_YOURS}"
+
+    @property
+    def after(self) -> str:
+        """The sentence that follows it; may be ''."""
+        return "Mend that, and hand in again." if self.is_judged else ""
+
+    @property
+    def paragraphs(self) -> list[str]:
+        """Everything, for formats that show plain text."""
+        return [part for part in (self.before, self.message, self.after) if part]

@@ -1,0 +1,26 @@
+"""How verdicts and their points are put into words, the same in all formats."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grader import text
+from grader.exercise.verdict import Evidence, Verdict
+
+WORDS: Final = {"passed": "passed", "failed": "failed", "not_judged": "not judged"}
+
+
+def word(verdict: Verdict) -> str:
+    """The verdict in words."""
+    return WORDS[verdict.status]
+
+
+def score_text(verdict: Verdict) -> str:
+    """The points: '12.5 / 30'."""
+    return f"{text.points(verdict.score)} / {text.points(verdict.max_score)}"
+
+
+def where(evidence: Evidence) -> str:
+    """Time and place: 'at 12.34 s, at (5.54, 7.20)'."""
+    run = f"varied run {evidence.run}, " if evidence.run else ""
+    return f"{run}at {evidence.time_s:.2f} s, at {text.place(evidence.x, evidence.y)}"

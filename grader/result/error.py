@@ -1,0 +1,65 @@
+"""The error file `turtlesim-grader/error/v1`: what stands in place of a result where there is none.
+
+Its JSON Schema is `error.schema.json` beside this module.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from grader import files
+from grader.errors import GraderError, Whose
+from grader.result import json_file
+from grader.text import plain
+
+SCHEMA = "turtlesim-grader/error/v1"
+
+
+@dataclass(frozen=True)
+class ErrorResult:
+    """Why there is no result.
+
+    Attributes:
+        whose: whose turn it is. The submission has earned nothing where it is the student's;
+            otherwise nothing is known about it.
+        message: what was found, what was expected, what to do.
+        max_score: the exercise's points; None where it could not be loaded, or was not asked for.
+    """
+
+    whose: Whose
+    message: str
+    max_score: float | None = None
+
+    @classmethod
+    def of(cls, error: GraderError, max_score: float | None) -> Self:
+        """What an exception says."""
+        return cls(error.whose, plain(error.message), max_score)
+
+    def to_json(self) -> dict[str, Any]:
+        """The error as its file holds it."""
+        return {
+            "schema": SCHEMA,
+            "whose": self.whose,
+            "message": self.message,
+            "max_score": self.max_score,
+        }
+
+    @classmethod
+    def from_json(cls, data: Any) -> Self:
+        """The error that a file holds.
+
+        Raises:
+            ValueError: it does not follow the schema.
+        """
+        json_file.validate(data, "error", SCHEMA)
+        return cls(data["whose"], data["message"], data["max_score"])
+
+    def write(self, path: Path) -> None:
+        """Write the error file.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
+        files.write(path, json_file.text(self.to_json()))

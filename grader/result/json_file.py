@@ -1,0 +1,70 @@
+"""What the files of this package have in common: JSON that follows a schema beside the module."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, TypeVar
+
+import jsonschema
+
+from grader.errors import UsageError
+
+Made = TypeVar("Made")
+
+
+def schema(name: str) -> dict[str, Any]:
+    """The JSON Schema of `result` or `error`."""
+    text = (files("grader.result") / f"{name}.schema.json").read_text(encoding="utf-8")
+    loaded: dict[str, Any] = json.loads(text)
+    return loaded
+
+
+def validate(data: object, name: str, version: str) -> None:
+    """Hold data against a schema.
+
+    Raises:
+        ValueError: it does not follow it.
+    """
+    error = jsonschema.exceptions.best_match(_validator(name).iter_errors(data))
+    if error is not None:
+        raise ValueError(f"is no {name} of {version}: {error.message}")
+
+
+def text(data: dict[str, Any]) -> str:
+    """The text of a file."""
+    return json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def read(path: Path) -> Any:
+    """Read JSON.
+
+    Raises:
+        UsageError: it cannot be read or is none.
+    """
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"cannot read the result {path}: {error.strerror}") from None
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{path} is not JSON: {error}") from None
+
+
+def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
+    """What a `from_json` makes of a file's data.
+
+    Raises:
+        UsageError: the data does not follow the schema; the text names the file.
+    """
+    try:
+        return make(data)
+    except ValueError as error:
+        raise UsageError(f"{path} {error}") from None
+
+
+@cache
+def _validator(name: str) -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(schema(name))

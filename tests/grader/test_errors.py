@@ -1,0 +1,32 @@
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+
+from grader import errors
+from grader.errors import GraderError, GraderFailure, SubmissionError, Whose
+
+
+def kinds():
+    found = [kind for kind in vars(errors).values() if isinstance(kind, type)]
+    return {kind for kind in found if issubclass(kind, GraderError)}
+
+
+def test_every_error_says_whose_turn_it_is_in_one_text():
+    for kind in kinds():
+        error = kind("what was found")
+        assert (error.message, str(error)) == ("what was found", "what was found")
+        assert error.whose in get_args(Whose)
+
+
+def test_only_the_graders_own_failure_exits_with_3():
+    assert {kind for kind in kinds() if kind.exit_code == 3} == {GraderError, GraderFailure}
+    assert all((kind.exit_code == 3) == (kind.whose == "grader") for kind in kinds())
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"), [("\x1b[31mred", "?[31mred"), ("a\nb", "a\nb"), ("x\udcff", "x?")]
+)
+def test_names_of_a_students_files_are_harmless_in_a_terminal(name, shown):
+    assert SubmissionError(name).message == shown
