@@ -26,7 +26,9 @@ def render(report: Report) -> str:
 
 def render_error(report: ErrorReport) -> str:
     """The XML document: a failure of the only case, or an error where there is no judgement."""
-    properties = {"score": "0"} if report.is_judged else {}
+    properties = {"whose": str(report.whose)}
+    if report.is_judged:
+        properties["score"] = "0"
     if report.max_score is not None:
         properties["max_score"] = text.points(report.max_score)
     case = ElementTree.Element(

@@ -1,0 +1,151 @@
+"""`--error-json FILE`: what went wrong as data, and nothing where nothing did."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+import pytest
+import yaml
+
+from grader.cli import main
+from grader.result import json_file
+from tests.grader.reports import samples
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def error(tmp_path):
+    return tmp_path / "errors" / "error.json"
+
+
+def said(path):
+    data = json.loads(path.read_text(encoding="utf-8"))
+    jsonschema.validate(data, json_file.schema("error"))
+    return data["whose"], data["message"], data["max_score"]
+
+
+def test_an_unusable_submission_is_the_students(tmp_path, error, capsys):
+    missing = tmp_path / "missing.py"
+    assert main(["run", str(missing), "--error-json", str(error)]) == 2
+    whose, message, max_score = said(error)
+    assert (whose, max_score) == ("submission", 100)
+    assert message.startswith(f"{missing} does not exist.")
+    assert message in capsys.readouterr().err
+
+
+def test_the_points_are_those_of_the_exercise(tmp_path, error):
+    words = ["run", str(tmp_path / "missing.py"), "--exercise", "square"]
+    assert main([*words, "--error-json", str(error)]) == 2
+    source = ROOT / "grader/exercises/square/exercise.yaml"
+    assert said(error)[2] == sum(yaml.safe_load(source.read_text())["points"].values())
+
+
+def test_a_mistake_in_the_exercise_is_its_authors(tmp_path, error):
+    exercise = tmp_path / "exercise.yaml"
+    exercise.write_text("points: [nonsense\n")
+    words = ["run", str(tmp_path / "missing.py"), "--exercise", str(exercise)]
+    assert main([*words, "--error-json", str(error)]) == 2
+    whose, message, max_score = said(error)
+    assert (whose, max_score) == ("exercise", None)
+    assert "is not an exercise" in message
+
+
+@pytest.mark.parametrize(
+    ("words", "part", "max_score"),
+    [
+        (["run", "--nonsense"], "required: submission", None),
+        (["run", "x.py", "--nonsense", "--exercise", "square"], "--nonsense", 100),
+        (["run", "x.py", "--time", "mine"], "invalid choice: 'mine'", None),
+        (["check", "missing"], "missing does not exist", 100),
+        (["report", "missing.json"], "cannot read the result missing.json", None),
+        (["new", "/dev/null"], "is a file", None),
+        ([], "argument VERB", None),
+    ],
+)
+def test_a_wrong_call_is_the_callers(tmp_path, error, monkeypatch, capsys, words, part, max_score):
+    monkeypatch.chdir(tmp_path)
+    assert main([*words, "--error-json", str(error)]) == 2
+    whose, message, most = said(error)
+    assert (whose, most) == ("call", max_score)
+    assert part in message
+    assert message in capsys.readouterr().err
+
+
+def test_without_a_file_name_the_call_is_refused_all_the_same(capsys):
+    assert main(["run", "x.py", "--error-json"]) == 2
+    assert "usage: grader run" in capsys.readouterr().err
+
+
+def test_an_error_file_that_cannot_be_written_is_found_out_at_the_start(tmp_path, capsys):
+    assert main(["new", str(tmp_path / "new"), "--error-json", str(tmp_path)]) == 2
+    assert "it is a folder" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
+
+
+def test_an_old_file_does_not_outlive_a_call_that_works(tmp_path, error):
+    error.parent.mkdir()
+    error.write_text("old")
+    assert main(["new", str(tmp_path / "new"), "--error-json", str(error)]) == 0
+    assert not error.exists()
+
+
+@pytest.mark.parametrize("exception", [RuntimeError("boom"), OSError(28, "No space left")])
+def test_what_nobody_expected_is_the_graders(tmp_path, error, monkeypatch, capsys, exception):
+    def fail(folder):
+        raise exception
+
+    monkeypatch.setattr("grader.cli.check.load_all", fail)
+    assert main(["check", str(tmp_path), "--error-json", str(error)]) == 3
+    whose, message, max_score = said(error)
+    assert (whose, max_score) == ("grader", 100)
+    assert str(exception) in message
+    assert "Traceback" not in message
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_an_interrupted_call_says_so(tmp_path, error):
+    slow = tmp_path / "slow.py"
+    slow.write_text("print('up', flush=True)\nwhile True:\n    pass\n")
+    words = ["run", slow, "--out", tmp_path / "out", "--error-json", error]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "grader", *map(str, words)],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    next(line for line in process.stderr if line.startswith("Running"))
+    process.send_signal(signal.SIGINT)
+    process.communicate()
+    assert process.returncode == 130
+    assert said(error) == ("call", "interrupted", 100)
+
+
+def test_a_report_of_an_error_is_no_error(tmp_path, error, capsys):
+    assert main(["run", str(tmp_path / "x.py"), "--error-json", str(error)]) == 2
+    other = tmp_path / "other.json"
+    assert main(["report", str(error), "--error-json", str(other)]) == 0
+    assert capsys.readouterr().out.startswith("Cannot be graded.\n")
+    assert not other.exists()
+
+
+def test_a_result_goes_to_a_descriptor_of_the_callers(tmp_path):
+    """Its file may belong to another user: a course's CI lets nobody else write it."""
+    (tmp_path / "result.json").write_text(json.dumps(samples.result()))
+    script = (
+        f"{sys.executable} -P -m grader report result.json --out /dev/fd/3 3>out.txt &&"
+        f"! {sys.executable} -P -m grader report x.json --error-json /dev/fd/4 4>error.json"
+    )
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    subprocess.run(["bash", "-c", script], check=True, cwd=tmp_path, env=env, capture_output=True)
+    assert "Score: 18.33 of 40" in (tmp_path / "out.txt").read_text()
+    assert said(tmp_path / "error.json")[0] == "call"

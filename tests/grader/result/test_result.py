@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+
+from grader.errors import UsageError
+from grader.exercise.loading import load_exercise
+from grader.exercise.verdict import Evidence, Verdict
+from grader.recording.recording import Recordings, Run, Start
+from grader.result.result import Result, RunSummary, build
+from tests.grader.driving import Spiral, drive
+from tests.grader.reports import samples
+from tests.grader.reports.test_every_format import any_results
+
+
+@settings(max_examples=50, deadline=None)
+@given(made=any_results())
+def test_whatever_follows_the_schema_can_be_read_and_written_again(made):
+    found = Result.from_json(made).to_json()
+    for run in (made["run"], *made["varied_runs"]):
+        run["seed"] = None
+    for verdict in made["verdicts"]:
+        for item in verdict["evidence"]:
+            item.setdefault("run", 0)
+    # as text: a place can be not a number, which equals nothing
+    assert json.dumps(found, sort_keys=True) == json.dumps(made, sort_keys=True)
+
+
+def test_what_may_be_left_out_has_its_usual_value():
+    result = Result.from_json(samples.result(samples.verdict("a", evidence=[samples.evidence()])))
+    assert result.varied_runs == ()
+    assert (result.run.seed, result.run.start) == (None, None)
+    assert result.verdicts[0].evidence[0].run == 0
+
+
+def test_a_whole_number_may_be_written_as_a_float():
+    run = samples.run(ticks=100.0, exit_code=1.0, seed=7.0)
+    evidence = samples.evidence(tick=5.0, run=1.0)
+    result = Result.from_json(samples.result(samples.verdict("a", evidence=[evidence]), run=run))
+    assert repr((result.run.ticks, result.run.exit_code, result.run.seed)) == "(100, 1, 7)"
+    found = result.verdicts[0].evidence[0]
+    assert repr((found.tick, found.run)) == "(5, 1)"
+
+
+def test_everything_comes_back_as_it_was(tmp_path):
+    seen = (Evidence(1, 0.016, 2.0, 3.0, "n", 1),)
+    verdict = Verdict("a", "A", "failed", 1.5, 4.0, "seen", "help", seen, ("b",))
+    run = RunSummary(exit_code=-9, outcome="killed", ticks=3, flags=("x",), seed=5)
+    varied = replace(run, seed=None, start=Start(1.0, 2.0, 3.0))
+    result = Result("e", "größe 🐢", 1.5, 4.0, (verdict,), run, (varied,), {"canvas": "c.png"})
+    result.write(tmp_path / "new" / "result.json")
+    assert Result.read(tmp_path / "new" / "result.json") == result
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"more": 1},
+        {"score": "100"},
+        {"score": -1},
+        {"schema": "turtlesim-grader/result/v2"},
+        {"run": {"time": "virtual"}},
+        {"verdicts": [samples.verdict("a", more=1)]},
+        {"artifacts": {"canvas": 1}},
+    ],
+)
+def test_what_does_not_follow_the_schema_is_refused(tmp_path, change):
+    with pytest.raises(ValueError, match="is no result of turtlesim-grader/result/v1: "):
+        Result.from_json(samples.result() | change)
+    path = tmp_path / "x.json"
+    path.write_text(json.dumps(samples.result() | change))
+    with pytest.raises(UsageError, match=r"x\.json is no result of"):
+        Result.read(path)
+
+
+@pytest.mark.parametrize("text", ["{", "", "[" * 100_000, "\udcff"])
+def test_what_is_no_json_is_refused(tmp_path, text):
+    path = tmp_path / "x.json"
+    path.write_bytes(text.encode("utf-8", "surrogateescape"))
+    with pytest.raises(UsageError, match=r"x\.json is not JSON"):
+        Result.read(path)
+    with pytest.raises(UsageError, match=r"cannot read .*y\.json: No such file"):
+        Result.read(tmp_path / "y.json")
+
+
+def test_a_result_adds_up_its_verdicts_and_remarks_on_its_runs():
+    recording = drive(Spiral(), ticks=50)
+    crashed = replace(recording, run=replace(recording.run, outcome="crashed", exit_code=1))
+    verdicts = [Verdict(n, n, "failed", 3.33, 10.0, "") for n in ("a", "b", "c")]
+    exercise = load_exercise("turtlesim_challenge")
+    varied = replace(recording, start=Start(1.0, 2.0, 0.5))
+    result = build("s", exercise, Recordings(crashed, (varied,)), verdicts, {})
+    assert (result.exercise, result.score, result.max_score) == ("turtlesim_challenge", 9.99, 30)
+    assert result.run.flags == ("The node ended with an error: exit code 1.",)
+    assert isinstance(result.run, Run)
+    assert result.varied_runs[0].start == Start(1.0, 2.0, 0.5)
+    assert "start" not in result.run.to_json()
