@@ -1,52 +1,17 @@
-"""Recordings made without ROS: a controller function drives the real world, tick by tick."""
+"""The reference's behaviour as a function of the pose, for tests to drive and to spoil."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-
-from grader.recording.recording import Recording, Start
-from grader.scenes.turtlesim.recorder import Recorder
+from grader.scenes.turtlesim.driving import REST_TICKS
+from grader.testing import drive, pen, twist
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import SIZE_M, Pose
 
+__all__ = ["BLUE", "CENTRE", "GREEN", "RED", "REST_TICKS", "WHITE", "Spiral"]
+__all__ += ["drive", "pen", "twist"]  # as grader.testing has them
+
 CENTRE = SIZE_M / 2
-REST_TICKS = 188
 WHITE, RED, GREEN, BLUE = (255, 255, 255), (255, 0, 0), (0, 255, 0), (0, 0, 255)
-
-#: (tick, latest pose or None, arena) -> nothing; called before each tick, as callbacks would be.
-Controller = Callable[[int, Pose | None, Arena], None]
-
-
-def drive(controller: Controller, ticks: int = 4000, start: Start | None = None) -> Recording:
-    """Let a controller drive until the turtle has rested for three seconds, or for `ticks`."""
-    arena = Arena(sprite="rolling")
-    if start is not None:
-        arena.turtles["turtle1"].place(start.x, start.y, start.theta)
-    recorder = Recorder(arena)
-    pose: Pose | None = None
-    still = 0
-    for tick in range(1, ticks + 1):
-        controller(tick, pose, arena)
-        readings = arena.tick()
-        recorder.take(readings)
-        before, pose = pose, readings["turtle1"].pose
-        still = still + 1 if before is not None and before[:3] == pose[:3] else 0
-        if still == REST_TICKS and recorder.ticks > 2 * REST_TICKS:
-            break
-    recording = recorder.recording()
-    outcome = "finished" if still >= REST_TICKS else "time_limit"
-    return replace(recording, start=start).finished(outcome=outcome)
-
-
-def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:
-    """Publish a velocity command."""
-    arena.command("turtle1", (speed, 0.0, 0.0), (0.0, 0.0, turn))
-
-
-def pen(arena: Arena, color: tuple[int, int, int], width: int = 3) -> None:
-    """Call set_pen."""
-    arena.set_pen("turtle1", *color, width, 0)
 
 
 class Spiral:

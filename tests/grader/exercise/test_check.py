@@ -7,7 +7,7 @@ import pytest
 from grader.exercise.check import Checks, judge
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recordings
-from tests.grader.driving import drive
+from grader.testing import drive
 
 
 def verdicts(checks, points):

@@ -31,10 +31,10 @@ def test_an_edited_copy_changes_what_it_names_and_nothing_else(tmp_path):
 
 
 def test_the_same_seed_gives_the_same_starts():
-    varied = load_exercise(NAME).varied
-    assert varied.starts() == varied.starts()
-    assert varied.starts(1) != varied.starts(2)
-    assert len(varied.starts()) == varied.count
+    exercise = load_exercise(NAME)
+    assert exercise.starts() == exercise.starts()
+    assert exercise.starts(1) != exercise.starts(2)
+    assert len(exercise.starts()) == exercise.varied.count
 
 
 @pytest.mark.parametrize(

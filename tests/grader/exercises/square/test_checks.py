@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
-from tests.grader.driving import drive, twist
+from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.testing import drive, twist
 from turtlesim_py.world.turtle import TICK_S
 
 FULL = {
@@ -107,7 +109,7 @@ def recorded(controller, seed=None):
     exercise = load_exercise("square")
     ticks = round(exercise.limits.total_s / TICK_S)
     nominal, *varied = [
-        drive(controller(), ticks, start) for start in (None, *exercise.varied.starts(seed))
+        drive(controller(), ticks, start) for start in (None, *exercise.starts(seed))
     ]
     return Recordings(nominal, tuple(varied))
 
@@ -327,9 +329,9 @@ def test_a_verdict_on_a_wrong_one_says_where_it_went_wrong_and_what_to_look_at(c
         assert bool(verdict.help) == (verdict.status != "passed")
         assert len(verdict.evidence) <= 4
         for item in verdict.evidence:
-            rows = [nominal, *varied][item.run].published["turtle1"]
-            row = rows[rows[:, 0] == item.tick][0]
-            assert (item.x, item.y) == pytest.approx(tuple(row[1:3]), abs=0.001)
+            way = TurtleTrace.of([nominal, *varied][item.run].trace).trajectory()
+            row = int(np.flatnonzero(way.ticks == item.tick)[0])
+            assert (item.x, item.y) == pytest.approx((way.x[row], way.y[row]), abs=0.001)
             assert item.time_s == pytest.approx(item.tick * TICK_S)
             assert item.note
 

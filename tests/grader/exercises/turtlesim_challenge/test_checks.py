@@ -9,7 +9,8 @@ import pytest
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings
-from tests.grader.driving import CENTRE, RED, WHITE, Spiral, drive, pen, twist
+from grader.testing import drive, pen, twist
+from tests.grader.driving import CENTRE, RED, WHITE, Spiral
 
 FULL = {
     "moves": 5,
@@ -197,7 +198,7 @@ def test_a_turtle_that_is_never_anywhere_is_judged_without_a_fault():
 
 def test_a_right_solution_is_right_wherever_it_starts_and_counting_steps_is_not():
     exercise = load_exercise("turtlesim_challenge")
-    starts = [start for seed in (1, 2, 3) for start in exercise.varied.starts(seed)]
+    starts = [start for seed in (1, 2, 3) for start in exercise.starts(seed)]
     for controller, passes in ((Spiral, True), (CountsItsSteps, False)):
         runs = tuple(drive(controller(), start=start) for start in starts)
         recordings = Recordings(drive(controller()), runs)
