@@ -44,7 +44,13 @@ class Trajectory:
 
     @classmethod
     def of_rows(cls, rows: NDArray[np.float64]) -> Self:
-        """The trajectory of an array (n, 9) in the order of `COLUMNS`."""
+        """The trajectory of an array (n, 9) in the order of `COLUMNS`.
+
+        Raises:
+            ValueError: it has another shape.
+        """
+        if rows.ndim != 2 or rows.shape[1] != len(COLUMNS):
+            raise ValueError(f"expected rows of {len(COLUMNS)} columns, found the shape {rows.shape}")
         ticks, x, y, theta, linear, angular = rows[:, :6].T
         rgb = rows[:, 6:].astype(np.uint8)
         return cls(ticks.astype(np.int64), x, y, theta, linear, angular, rgb)

@@ -7,7 +7,7 @@ import io
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -130,8 +130,14 @@ def decode(data: bytes) -> TurtleTrace:
                     for n, name in enumerate(facts["turtles"])
                 },
                 logs=tuple(Log(*line) for line in facts["logs"]),
-                canvas=arrays["canvas"],
-                window=arrays["window"],
+                canvas=_pixels(arrays["canvas"], 4),
+                window=_pixels(arrays["window"], 3),
             )
     except Exception as error:  # numpy's reader may raise anything
         raise ValueError(f"no trace of turtlesim: {type(error).__name__}: {error}") from error
+
+
+def _pixels(array: npt.NDArray[Any], channels: int) -> Pixels:
+    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] != channels:
+        raise ValueError(f"a picture is {array.dtype} of the shape {array.shape}")
+    return array

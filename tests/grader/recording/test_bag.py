@@ -16,8 +16,10 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from grader.recording import bag
-from grader.recording import messages as bag_messages
+from grader.recording import folder as storage
 from grader.recording.recording import Recording
+from grader.scenes import load_scene
+from grader.scenes.turtlesim import messages as bag_messages
 from tests.grader.driving import drive, pen, twist
 
 TICK_NS = 16_000_000
@@ -58,7 +60,7 @@ def recorded() -> Recording:
 @pytest.fixture(scope="module")
 def folder(recorded, tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("bag") / "recording"
-    recorded.save(folder)
+    storage.save(recorded, folder)
     return folder
 
 
@@ -158,25 +160,25 @@ def test_rosbags_reads_it_without_being_told_the_types(folder, recorded):
             for connection, _, data in reader.messages()
             if connection.topic == "/turtle1/pose"
         ]
-    assert [pose.x for pose in poses] == recorded.published["turtle1"][:, 1].tolist()
+    assert [pose.x for pose in poses] == recorded.trace.trajectory("turtle1").x.tolist()
 
 
 # The messages ---------------------------------------------------------------------------------
 
 
 def test_poses_and_colors_are_those_of_the_recording(decoded, recorded):
-    for name, rows in recorded.published.items():
+    for name, way in recorded.trace.trajectories.items():
         poses, colors = (on(f"/{name}/{what}", decoded) for what in READING)
         found = [
             (p.x, p.y, p.theta, p.linear_velocity, p.angular_velocity, c.r, c.g, c.b)
             for (_, p), (_, c) in zip(poses, colors, strict=True)
         ]
-        assert np.array_equal(np.array(found), rows[:, 1:], equal_nan=True)
+        assert np.array_equal(np.array(found), way.rows()[:, 1:], equal_nan=True)
 
 
 def test_the_time_of_a_message_is_its_tick_times_16_ms(decoded, recorded):
-    for name, rows in recorded.published.items():
-        expected = (rows[:, 0] * TICK_NS).tolist()
+    for name, way in recorded.trace.trajectories.items():
+        expected = (way.ticks * TICK_NS).tolist()
         assert [time for time, _ in on(f"/{name}/pose", decoded)] == expected
     assert {time for time, _ in on("/turtle1/cmd_vel", decoded)} == {3 * TICK_NS}
     assert [time for time, _ in on("/turtlesim/window", decoded)] == [9 * TICK_NS]
@@ -213,8 +215,8 @@ def test_log_lines_have_their_level_and_time(decoded):
 
 def test_the_pictures_are_images_of_the_canvas_and_the_window(decoded, recorded):
     for topic, pixels, encoding in (
-        ("/turtlesim/path", recorded.canvas, "rgba8"),
-        ("/turtlesim/window", recorded.window, "rgb8"),
+        ("/turtlesim/path", recorded.trace.canvas, "rgba8"),
+        ("/turtlesim/window", recorded.trace.window, "rgb8"),
     ):
         ((_, image),) = on(topic, decoded)
         assert (image.width, image.height, image.encoding) == (500, 500, encoding)
@@ -233,14 +235,14 @@ def test_the_real_rclpy_reads_the_messages(folder, recorded):
             message = deserialize_message(bytes(data), kind)
             found[connection.topic] += 1
             if connection.topic == "/turtlesim/window":
-                assert bytes(message.data) == recorded.window.tobytes()
+                assert bytes(message.data) == recorded.trace.window.tobytes()
             if connection.topic == "/second/cmd_vel":
                 assert (message.linear.x, message.linear.y) == (0.5, float("inf"))
     assert found == {topic: count for topic, (_, count) in TOPICS.items()}
 
 
 def test_writing_alone_makes_the_same_bag(recorded, folder, tmp_path):
-    written = bag.write(recorded, tmp_path / "recording")
+    written = bag.write(recorded.trace, load_scene("turtlesim"), tmp_path / "recording")
     assert written.read_bytes() == (folder / "recording.mcap").read_bytes()
     assert (tmp_path / "recording" / "metadata.yaml").read_bytes() == (
         folder / "metadata.yaml"

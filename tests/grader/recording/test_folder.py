@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
 from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
 
 from grader import cli
 from grader.errors import RecordingError
 from grader.recording import bag
 from grader.recording import folder as storage
-from grader.recording import messages as bag_messages
-from grader.recording import recording as recordings
 from grader.recording.recording import Recording, Recordings
 from tests.grader.driving import Spiral, drive
 
@@ -29,7 +29,7 @@ def recorded() -> Recording:
 
 @pytest.fixture
 def folder(recorded, tmp_path):
-    recorded.save(tmp_path / "recording")
+    storage.save(recorded, tmp_path / "recording")
     return tmp_path / "recording"
 
 
@@ -55,37 +55,37 @@ def change(path: Path, **values) -> None:
 
 def test_two_saves_of_a_recording_are_the_same_byte_for_byte(recorded, tmp_path):
     for name in ("one", "two"):
-        Recordings(recorded, (recorded,)).save(tmp_path / name)
+        storage.save_all(Recordings(recorded, (recorded,)), tmp_path / name)
     assert contents(tmp_path / "one") == contents(tmp_path / "two")
 
 
 def test_equal_runs_make_equal_files(recorded, folder, tmp_path):
-    drive(Spiral(), ticks=600).save(tmp_path / "again")
+    storage.save(drive(Spiral(), ticks=600), tmp_path / "again")
     assert contents(tmp_path / "again") == contents(folder)
 
 
 def test_a_loaded_recording_saves_as_the_same_files(folder, tmp_path):
-    recordings.load(folder).save(tmp_path / "again")
+    storage.save(storage.load(folder), tmp_path / "again")
     assert contents(tmp_path / "again") == contents(folder)
 
 
 def test_what_differs_between_equal_runs_stands_apart(recorded, folder, tmp_path):
-    other = recorded.finished(wall_s=12.5, isolation="ROS domain 77")
-    other.save(tmp_path / "other")
+    other = replace(recorded, run=replace(recorded.run, wall_s=12.5, isolation="ROS domain 77"))
+    storage.save(other, tmp_path / "other")
     ours, theirs = contents(folder), contents(tmp_path / "other")
     assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
-    assert recordings.load(tmp_path / "other").run == other.run
+    assert storage.load(tmp_path / "other").run == other.run
 
 
 def test_a_recording_can_do_without_its_circumstances(recorded, folder):
     (folder / CIRCUMSTANCES).unlink()
-    assert recordings.load(folder).run == recorded.run
+    assert storage.load(folder).run == recorded.run
 
 
 def test_pictures_and_scenario_are_copies_that_nobody_reads(recorded, folder):
     for name in ("path.png", "window.png", "scenario.json"):
         (folder / name).unlink()
-    assert (recordings.load(folder).canvas == recorded.canvas).all()
+    assert (storage.load(folder).trace.canvas == recorded.trace.canvas).all()
 
 
 # Whole or not at all --------------------------------------------------------------------------
@@ -94,7 +94,7 @@ def test_pictures_and_scenario_are_copies_that_nobody_reads(recorded, folder):
 def test_the_metadata_comes_last(recorded, folder, monkeypatch):
     rename, moved = Path.replace, []
     monkeypatch.setattr(Path, "replace", lambda a, b: moved.append(b.name) or rename(a, b))
-    recorded.save(folder)
+    storage.save(recorded, folder)
     assert moved[-1] == "metadata.yaml"
 
 
@@ -109,9 +109,9 @@ def test_a_save_that_is_cut_off_leaves_no_recording(recorded, tmp_path, monkeypa
 
     monkeypatch.setattr(Path, "replace", cut_off)
     with pytest.raises(OSError, match="no space left"):
-        Recordings(recorded, (recorded,)).save(tmp_path)
+        storage.save_all(Recordings(recorded, (recorded,)), tmp_path)
     with pytest.raises(RecordingError):
-        recordings.load_all(tmp_path)
+        storage.load_all(tmp_path)
     assert not (tmp_path / storage.UNFINISHED).exists()
 
 
@@ -123,7 +123,7 @@ def test_an_older_recording_stays_whole_until_the_new_one_is_written(recorded, f
 
     monkeypatch.setattr(bag, "write", disk_full)
     with pytest.raises(OSError, match="no space left"):
-        recorded.save(folder)
+        storage.save(recorded, folder)
     assert contents(folder) == before
 
 
@@ -131,15 +131,15 @@ def test_what_a_killed_save_left_behind_goes_with_the_next(recorded, folder):
     before = contents(folder)
     (folder / storage.UNFINISHED / "recording").mkdir(parents=True)
     (folder / storage.UNFINISHED / "recording" / "metadata.yaml").write_text("half of it")
-    recorded.save(folder)
+    storage.save(recorded, folder)
     assert contents(folder) == before
 
 
 def test_a_new_recording_replaces_an_older_one_and_nothing_else(recorded, tmp_path):
-    Recordings(drive(Spiral(), ticks=100), (recorded,) * 3).save(tmp_path)
+    storage.save_all(Recordings(drive(Spiral(), ticks=100), (recorded,) * 3), tmp_path)
     (tmp_path / "notes.txt").write_text("mine")
-    Recordings(recorded, (recorded,)).save(tmp_path)
-    loaded = recordings.load_all(tmp_path)
+    storage.save_all(Recordings(recorded, (recorded,)), tmp_path)
+    loaded = storage.load_all(tmp_path)
     assert loaded.nominal.run == recorded.run
     assert len(loaded.varied) == 1
     assert (tmp_path / "notes.txt").read_text() == "mine"
@@ -151,7 +151,7 @@ def test_a_new_recording_replaces_an_older_one_and_nothing_else(recorded, tmp_pa
 def refused(folder: Path) -> str:
     """The text of the error, which the command line prints with exit code 2."""
     with pytest.raises(RecordingError) as error:
-        recordings.load_all(folder)
+        storage.load_all(folder)
     assert cli.main(["check", str(folder)]) == cli.UNUSABLE
     return str(error.value)
 
@@ -180,7 +180,7 @@ def test_a_missing_file_is_named(folder, name):
 def test_garbage_is_an_error_and_no_traceback(folder, name, content):
     (folder / name).write_bytes(content)
     if (name, content) == (CIRCUMSTANCES, b"{}"):
-        recordings.load(folder)
+        storage.load(folder)
     else:
         refused(folder)
 
@@ -210,7 +210,7 @@ def test_a_damaged_bag_whose_digest_fits_is_an_error_or_harmless(folder, place):
     path.write_bytes(whole)
     change(folder / "run.json", bag_sha256=storage._sha256(path))
     try:
-        recordings.load(folder)
+        storage.load(folder)
     except RecordingError as error:
         assert str(folder) in str(error)
 
@@ -233,6 +233,7 @@ def test_the_version_is_checked(folder):
         {"start": {"x": 1.0}},
         {"topics": [3]},
         {"bag_sha256": 7},
+        {"scene": 3},
     ],
 )
 def test_facts_of_the_wrong_kind_are_an_error(folder, values):
@@ -240,14 +241,24 @@ def test_facts_of_the_wrong_kind_are_an_error(folder, values):
     assert "damaged" in refused(folder)
 
 
+def test_a_scene_that_is_not_known_is_named(folder):
+    change(folder / "run.json", scene="moon")
+    assert "there is no scene 'moon'; there are: turtlesim" in refused(folder)
+
+
+def test_the_usual_scene_may_be_named(recorded, folder):
+    change(folder / "run.json", scene="turtlesim")
+    assert storage.load(folder).scene == recorded.scene == "turtlesim"
+
+
 def test_a_lost_varied_run_is_named(recorded, tmp_path):
-    Recordings(recorded, (recorded, recorded)).save(tmp_path)
+    storage.save_all(Recordings(recorded, (recorded, recorded)), tmp_path)
     (tmp_path / "varied_2").rename(tmp_path / "elsewhere")
     assert "varied_2 is missing" in refused(tmp_path)
 
 
 def foreign_bag(folder: Path, plugin: StoragePlugin, topic: str, msgtype: str, text: str) -> None:
-    types = bag_messages.store()
+    types = get_typestore(Stores.ROS2_JAZZY)
     with Writer(folder, version=9, storage_plugin=plugin) as writer:
         connection = writer.add_connection(topic, msgtype, typestore=types)
         message = types.types[msgtype](text)

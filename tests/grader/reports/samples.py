@@ -8,6 +8,7 @@ from typing import Any
 
 from PIL import Image
 
+from grader.recording import folder as storage
 from grader.recording.recording import Recording
 from grader.reports import Report
 from grader.reports.beside import Beside
@@ -105,10 +106,10 @@ def graded(
     **more: Any,
 ) -> Path:
     """A result file with a recording, a picture and an output beside it, as `grader run` leaves."""
-    recording.save(folder / "recording")
+    storage.save(recording, folder / "recording")
     for number, other in enumerate(varied, 1):
-        other.save(folder / "recording" / f"varied_{number}")
-    Image.fromarray(recording.window).save(folder / "canvas.png")
+        storage.save(other, folder / "recording" / f"varied_{number}")
+    Image.fromarray(recording.trace.window).save(folder / "canvas.png")
     (folder / "output.txt").write_bytes(output.encode())
     artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
     if varied:

@@ -15,6 +15,7 @@ from grader.reports.page import html
 from tests.grader.driving import Spiral, drive, pen
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import evidence, verdict
+from turtlesim_py.world.trajectory import Trajectory
 
 
 class OtherColourEveryTick(Spiral):
@@ -108,7 +109,8 @@ def test_pictures_have_names_and_headings_come_in_order(page):
 
 def test_a_full_recording_of_three_runs_with_noise_stays_under_two_megabytes(tmp_path):
     noise = np.random.default_rng(1).integers(0, 256, (500, 500, 3), dtype=np.uint8)
-    worst = replace(drive(OtherColourEveryTick(), ticks=7500), window=noise)
+    drawn = drive(OtherColourEveryTick(), ticks=7500)
+    worst = replace(drawn, trace=replace(drawn.trace, window=noise))
     path = samples.graded(tmp_path, worst, varied=(worst, worst), output="<" * 1_000_000)
     readers.html(html.render(Report.read(path)))
 
@@ -134,9 +136,10 @@ def test_without_recording_and_picture_the_page_says_why_and_is_whole():
 
 
 def test_a_turtle_that_is_not_a_number_is_left_out(tmp_path, good):
-    published = good.published["turtle1"].copy()
-    published[100:, 1:6] = np.nan
-    broken = replace(good, published={"turtle1": published})
+    rows = good.trace.trajectory().rows()
+    rows[100:, 1:6] = np.nan
+    trajectories = {"turtle1": Trajectory.of_rows(rows)}
+    broken = replace(good, trace=replace(good.trace, trajectories=trajectories))
     nowhere = evidence("lost", x=float("nan"))
     path = samples.graded(tmp_path, broken, verdict("a", "failed", 0, evidence=[nowhere]))
     content = html.render(Report.read(path))

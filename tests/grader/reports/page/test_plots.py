@@ -7,13 +7,23 @@ import numpy as np
 import pytest
 
 from grader.reports.page.plots import HEIGHT, WIDTH, plots
+from grader.scenes.scene import Curve, View
+from grader.scenes.turtlesim.view import view
 from tests.grader.driving import Spiral, drive, pen
 from turtlesim_py.world.turtle import TICK_S
 
 
+def plots_of(recording, **columns):
+    """The plots of a recording, in which some columns of turtle1 are others."""
+    trace = recording.trace
+    changed = replace(trace.trajectory(), **columns)
+    seen = view(replace(trace, trajectories={"turtle1": changed}))
+    return plots(seen, recording.run.ticks, TICK_S)
+
+
 @pytest.fixture(scope="module")
 def shown():
-    return plots(drive(Spiral()))
+    return plots_of(drive(Spiral()))
 
 
 def heights(plot):
@@ -46,9 +56,9 @@ def test_curves_stay_in_their_box_and_are_thinned_out(shown):
 
 def test_a_spike_of_one_tick_survives_the_thinning():
     recording = drive(Spiral())
-    rows = recording.published["turtle1"].copy()
-    rows[1233:1235, 4] = np.nan, 77.0  # a neighbour without a value does not hide it
-    speed = plots(replace(recording, published={"turtle1": rows})).curves[1]
+    linear = recording.trace.trajectory().linear.copy()
+    linear[1233:1235] = np.nan, 77.0  # a neighbour without a value does not hide it
+    speed = plots_of(recording, linear=linear).curves[1]
     assert min(heights(speed)) == pytest.approx(
         (1 - 77 / float(speed.ticks[-1].label)) * 100, abs=1
     )
@@ -63,26 +73,29 @@ def test_service_calls_are_counted_and_keep_their_colours(shown):
 
 def test_a_flood_of_calls_is_counted_in_full_and_drawn_sparsely():
     recording = drive(lambda tick, pose, arena: pen(arena, (tick % 256, 0, 0)), ticks=3000)
-    (calls,) = plots(recording).calls
+    (calls,) = plots_of(recording).calls
     assert calls.count == 3000
     assert len(calls.marks) <= 401
 
 
 def test_values_without_end_do_not_break_a_plot():
     recording = drive(Spiral(), ticks=500)
-    rows = recording.published["turtle1"].copy()
-    rows[100, 4], rows[200, 4], rows[300, 5] = np.inf, np.nan, 1e30
-    shown = plots(replace(recording, published={"turtle1": rows}))
+    way = recording.trace.trajectory()
+    linear, angular = way.linear.copy(), way.angular.copy()
+    linear[100], linear[200], angular[300] = np.inf, np.nan, 1e30
+    shown = plots_of(recording, linear=linear, angular=angular)
     assert "nan" not in shown.curves[1].path
     assert shown.curves[2].summary.endswith("1e+30 rad/s")
 
 
 def test_a_turtle_that_stands_still_has_flat_curves():
-    shown = plots(drive(lambda *_: None, ticks=900))
+    shown = plots_of(drive(lambda *_: None, ticks=900))
     assert shown.curves[1].summary == "Speed: from 0 to 0 m/s"
     assert shown.calls == ()
 
 
 def test_nothing_recorded_has_no_plots():
-    recording = drive(lambda *_: None, ticks=1)
-    assert plots(replace(recording, published={})) is None
+    curve = Curve("Speed", "m/s", np.zeros(0), np.zeros(0))
+    nothing = View((), (), "#4556ff", None, (), ())
+    assert plots(nothing, 1, TICK_S) is None
+    assert plots(replace(nothing, curves=(curve,)), 0, TICK_S) is None
