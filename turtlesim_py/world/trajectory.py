@@ -50,7 +50,8 @@ class Trajectory:
             ValueError: it has another shape.
         """
         if rows.ndim != 2 or rows.shape[1] != len(COLUMNS):
-            raise ValueError(f"expected rows of {len(COLUMNS)} columns, found the shape {rows.shape}")
+            expected = f"expected rows of {len(COLUMNS)} columns"
+            raise ValueError(f"{expected}, found the shape {rows.shape}")
         ticks, x, y, theta, linear, angular = rows[:, :6].T
         rgb = rows[:, 6:].astype(np.uint8)
         return cls(ticks.astype(np.int64), x, y, theta, linear, angular, rgb)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from grader.reports.page.plots import HEIGHT, WIDTH, plots
-from grader.scenes.scene import Curve, View
 from grader.scenes.turtlesim.view import view
+from grader.scenes.view import Curve, View
 from tests.grader.driving import Spiral, drive, pen
 from turtlesim_py.world.turtle import TICK_S
 
