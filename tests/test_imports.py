@@ -68,8 +68,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "recording", "scenes", "exercise")
     | {"turtlesim_py"},
     "grader.result": GROUND | below("grader", "recording", "scenes", "exercise"),
-    "grader.reports": GROUND
-    | below("grader", "recording", "scenes", "exercise.verdict", "result"),
+    "grader.reports": GROUND | below("grader", "recording", "scenes", "exercise.verdict", "result"),
     "grader.grading": GROUND | STATIONS - below("grader", "reports"),
     "grader.__init__": GROUND | STATIONS | {"grader.grading"},
     "grader.testing": GROUND | STATIONS | {"grader.__init__", "grader.grading", "turtlesim_py"},

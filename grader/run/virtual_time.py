@@ -29,7 +29,7 @@ WAITS_FOR_EVER = "every thread of the node waits for something that will not com
 STUCK = "the node waits for something that can no longer happen; its output says where"
 PATIENCE = Patience()
 #: What runs as the simulator's process.
-MODULE = "grader.run.simulator.virtual_time"
+MODULE = "grader.run.simulator.virtual_main"
 
 
 def run(
@@ -53,7 +53,7 @@ def run(
     recording, why = _try(submission, plan, patience, {} if marks is None else marks)
     if recording is not None:
         return recording
-    flag = f"graded in real time, because the submission {why}"
+    flag = f"graded in real time, because {why}"
     return real_time.run(submission, replace(plan, flags=(flag, *plan.flags)), progress)
 
 

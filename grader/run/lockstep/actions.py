@@ -7,7 +7,16 @@ from typing import Any
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep import endpoints, waitsets
-from grader.run.lockstep.endpoints import Registered, deepened, profile, ros_type, some, weakly
+from grader.run.lockstep.endpoints import (
+    Registered,
+    deepened,
+    matching,
+    profile,
+    ros_type,
+    some,
+    weakly,
+)
+from grader.run.lockstep.faults import pass_on
 from grader.run.lockstep.registry import Reader, Writer
 from grader.run.lockstep.times import NEVER
 
@@ -49,30 +58,28 @@ class _Action(Registered):
     def send(self, writer: Writer, method: Any, *args: Any) -> Any:
         """Send and count."""
         endpoints.REGISTRY.before_send(writer)
-        result = method(self, *args)
+        result = pass_on(method, self, *args)
         endpoints.REGISTRY.after_send(writer)
         return result
 
     def count(self, question: str, channel: str) -> Any:
         """Whether the graph knows exactly so many others on a channel."""
-        ask = weakly(self._node, getattr(type(self._node), question), channel.partition(" ")[2])
-        return lambda number: ask() == number
+        ask = getattr(type(self._node), question)
+        return matching(self._node, ask, channel.partition(" ")[2])
 
 
 class ActionClient(_Action, _rclpy.ActionClient):
     """An action client that counts, and takes from readers."""
 
     def __init__(
-        self, node: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any, *topics: Any
-    ) -> None:
-        deep = (deepened(c_qos) for c_qos in (goal, result, cancel, *topics))
-        _ActionClient.__init__(self, node, kind, name, *deep)
+        self, node: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
+        feedback: Any, status: Any, *more: Any,
+    ) -> None:  # fmt: skip
+        deep = (deepened(c_qos) for c_qos in (goal, result, cancel, feedback, status))
+        pass_on(_ActionClient.__init__, self, node, kind, name, *deep, *more)
         self.prepare(node, kind, name)
         impl = kind.Impl
-        found = weakly(self, _ActionClient.is_action_server_available)
-
-        def matches(number: int) -> bool:
-            return bool(found() == bool(number))
+        matches = matching(self, _ActionClient.is_action_server_available)
 
         def taking(method: Any, what: type) -> Any:
             return weakly(self, some(method), what)
@@ -88,8 +95,8 @@ class ActionClient(_Action, _rclpy.ActionClient):
         self.results = self.reader("response", "get_result", result, take_result)
         take_feedback = weakly(self, _ActionClient.take_feedback, impl.FeedbackMessage)
         take_status = weakly(self, _ActionClient.take_status, impl.GoalStatusMessage)
-        self.feedback = self.reader("topic", "feedback", topics[0], take_feedback)
-        self.status = self.reader("topic", "status", topics[1], take_status)
+        self.feedback = self.reader("topic", "feedback", feedback, take_feedback)
+        self.status = self.reader("topic", "status", status, take_status)
         for part in ("goal_client", "cancel_client", "result_client"):
             self._signal_arrivals(part)
         for part in ("feedback_subscription", "status_subscription"):
@@ -152,15 +159,14 @@ class ActionServer(_Action, _rclpy.ActionServer):
 
     def __init__(
         self, node: Any, clock: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
-        feedback: Any, status: Any, result_timeout: float,
+        feedback: Any, status: Any, result_timeout: float, *more: Any,
     ) -> None:  # fmt: skip
         deep = (deepened(c_qos) for c_qos in (goal, result, cancel))
         waitsets.WAITER.tell_time(clock)
         self._timeout_ns = int(result_timeout * 1e9)
         self._first_expiry_ns = NEVER
-        _ActionServer.__init__(
-            self, node, clock, kind, name, *deep, feedback, status, result_timeout
-        )
+        rest = (*deep, feedback, status, result_timeout, *more)
+        pass_on(_ActionServer.__init__, self, node, clock, kind, name, *rest)
         self.prepare(node, kind, name)
         parts = (
             ("send_goal", goal, _ActionServer.take_goal_request, kind.Impl.SendGoalService),

@@ -14,6 +14,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 
+from grader.run.lockstep.faults import pass_on
 from grader.run.lockstep.registry import DEPTH, Endpoint, EndpointRegistry, Reader, Writer
 
 _Publisher, _Subscription = _rclpy.Publisher, _rclpy.Subscription
@@ -60,6 +61,20 @@ def weakly(handle: Any, method: Callable[..., Any], *args: Any) -> Callable[[], 
     return call
 
 
+def matching(handle: Any, method: Callable[..., Any], *args: Any) -> Callable[[int], bool]:
+    """Whether DDS knows so many counterparts: `method` counts them, or tells if there is one."""
+    ask = weakly(handle, method, *args)
+
+    def matches(number: int) -> bool:
+        try:
+            known = ask()
+        except _rclpy.RCLError:
+            return True  # after rclpy.shutdown() nobody gets connected any more
+        return bool(known == (bool(number) if isinstance(known, bool) else number))
+
+    return matches
+
+
 class Registered:
     """What our endpoint classes have in common."""
 
@@ -81,14 +96,13 @@ class Registered:
 class Publisher(Registered, _rclpy.Publisher):
     """A publisher that counts."""
 
-    def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any) -> None:
-        _Publisher.__init__(self, node, msg_type, topic, c_qos)
-        count = weakly(self, _Publisher.get_subscription_count)
+    def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any, *more: Any) -> None:
+        pass_on(_Publisher.__init__, self, node, msg_type, topic, c_qos, *more)
         self.writer = Writer(
             f"topic {self.get_topic_name()}",
             ros_type(msg_type),
             profile(c_qos),
-            lambda number: count() == number,
+            matching(self, _Publisher.get_subscription_count),
             is_stream=True,
         )
         self.register(self.writer)
@@ -101,27 +115,28 @@ class Publisher(Registered, _rclpy.Publisher):
     def publish(self, message: Any) -> None:
         """Publish and count."""
         REGISTRY.before_send(self.writer)
-        _Publisher.publish(self, message)
+        pass_on(_Publisher.publish, self, message)
         REGISTRY.after_send(self.writer)
 
     def publish_raw(self, message: bytes) -> None:
         """Publish serialized bytes and count."""
         REGISTRY.before_send(self.writer)
-        _Publisher.publish_raw(self, message)
+        pass_on(_Publisher.publish_raw, self, message)
         REGISTRY.after_send(self.writer)
 
 
 class Subscription(Registered, _rclpy.Subscription):
     """A subscription that takes from an reader."""
 
-    def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any) -> None:
-        _Subscription.__init__(self, node, msg_type, topic, deepened(c_qos))
-        count = weakly(self, _Subscription.get_publisher_count)
+    def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any, *more: Any) -> None:
+        if more and more[0] is not None:  # a content filter, since rclpy 7.1.8
+            self._refuse_filter()
+        pass_on(_Subscription.__init__, self, node, msg_type, topic, deepened(c_qos), *more)
         self.reader = Reader(
             f"topic {self.get_topic_name()}",
             ros_type(msg_type),
             profile(c_qos),
-            lambda number: count() == number,
+            matching(self, _Subscription.get_publisher_count),
             weakly(self, _take_message, msg_type),
         )
         REGISTRY.arrival_signal.attach("rcl_subscription_set_on_new_message_callback", self.pointer)
@@ -131,6 +146,15 @@ class Subscription(Registered, _rclpy.Subscription):
         """As in rclpy."""
         REGISTRY.before_question()
         return int(_Subscription.get_publisher_count(self))
+
+    def set_content_filter(self, *args: Any) -> None:
+        """As in rclpy, since 7.1.8."""
+        self._refuse_filter()
+        pass_on(_Subscription.set_content_filter, self, *args)
+
+    def _refuse_filter(self) -> None:
+        """Nobody would know how many messages are to come."""
+        REGISTRY.refuse("subscribes with a content filter")
 
     def take_message(self, _: type, raw: bool) -> Any:
         """The oldest message in the reader, or None."""
@@ -150,11 +174,11 @@ def _take_message(handle: Any, msg_type: type) -> Any:
 class Client(Registered, _rclpy.Client):
     """A service client that counts, and takes from an reader."""
 
-    def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any) -> None:
-        _Client.__init__(self, node, srv_type, name, deepened(c_qos))
-        found = weakly(self, _Client.service_server_is_available)
+    def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
+        pass_on(_Client.__init__, self, node, srv_type, name, deepened(c_qos), *more)
+        matches = matching(self, _Client.service_server_is_available)
         qos, kind, name = profile(c_qos), ros_type(srv_type), self.service_name
-        self.writer = Writer(f"request {name}", kind, qos, lambda number: found() == bool(number))
+        self.writer = Writer(f"request {name}", kind, qos, matches)
         take = weakly(self, some(_Client.take_response), srv_type.Response)
         channel = f"response {name}"
         self.reader = Reader(channel, kind, qos, None, take, REGISTRY.shared_arrivals(channel))
@@ -169,7 +193,7 @@ class Client(Registered, _rclpy.Client):
     def send_request(self, request: Any) -> int:
         """Send and count."""
         REGISTRY.before_send(self.writer)
-        number: int = _Client.send_request(self, request)
+        number: int = pass_on(_Client.send_request, self, request)
         REGISTRY.after_send(self.writer)
         return number
 
@@ -181,13 +205,13 @@ class Client(Registered, _rclpy.Client):
 class Service(Registered, _rclpy.Service):
     """A service that takes from an reader, and counts."""
 
-    def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any) -> None:
-        _Service.__init__(self, node, srv_type, name, deepened(c_qos))
+    def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
+        pass_on(_Service.__init__, self, node, srv_type, name, deepened(c_qos), *more)
         qos, kind, name = profile(c_qos), ros_type(srv_type), self.name
-        count = weakly(node, type(node).get_count_clients, name)
+        matches = matching(node, type(node).get_count_clients, name)
         take = weakly(self, some(_Service.service_take_request), srv_type.Request)
         channel = f"request {name}"
-        self.reader = Reader(channel, kind, qos, lambda number: count() == number, take)
+        self.reader = Reader(channel, kind, qos, matches, take)
         self.writer = Writer(f"response {name}", kind, qos, None)
         REGISTRY.arrival_signal.attach("rcl_service_set_on_new_request_callback", self.pointer)
         self.register(self.writer, self.reader)
@@ -199,7 +223,7 @@ class Service(Registered, _rclpy.Service):
     def service_send_response(self, response: Any, header: Any) -> None:
         """Send and count."""
         REGISTRY.before_send(self.writer)
-        _Service.service_send_response(self, response, header)
+        pass_on(_Service.service_send_response, self, response, header)
         REGISTRY.after_send(self.writer)
 
 

@@ -54,6 +54,7 @@ class Kind(IntEnum):
     WAITING = 2  # its threads wait for something that will not come, as a program may at its end
     UNSUPPORTED = 3  # it did what virtual time cannot follow: `text` says what
     WARNING = 4  # DDS did not deliver or match in time; `text` says what
+    FAILED = 5  # virtual time does not work here; `text` says why, as a clause
 
 
 Counts = list[tuple[int, int]]  # (id of a simulator's endpoint, number)

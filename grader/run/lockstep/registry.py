@@ -120,6 +120,8 @@ class EndpointRegistry:
         self.changed = False
         self._is_unpaired = False
         self.arrival_signal = ArrivalSignal()
+        #: called with what the program does that virtual time cannot follow: "the submission ..."
+        self.refuse: Callable[[str], None] = lambda what: None
         self._shared_arrivals: dict[str, Arrivals] = {}
 
     def shared_arrivals(self, channel: str) -> Arrivals:

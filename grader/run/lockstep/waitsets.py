@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
+from grader.run.lockstep.faults import pass_on
 from grader.run.lockstep.registry import Reader
 from grader.run.lockstep.times import NEVER
 
@@ -81,7 +82,7 @@ class Timer(_rclpy.Timer):
 
     def __init__(self, clock: Any, *args: Any) -> None:
         WAITER.tell_time(clock)  # first: from this time the period counts
-        _Timer.__init__(self, clock, *args)
+        pass_on(_Timer.__init__, self, clock, *args)
 
     def reset_timer(self) -> None:
         """As in rclpy."""
@@ -95,7 +96,7 @@ class Timer(_rclpy.Timer):
 
     def change_timer_period(self, period_ns: int) -> None:
         """As in rclpy."""
-        _Timer.change_timer_period(self, period_ns)
+        pass_on(_Timer.change_timer_period, self, period_ns)
         WAITER.poke(self)
 
 
@@ -106,7 +107,7 @@ class EventHandle(_rclpy.EventHandle):
     TIMES = 20
 
     def __init__(self, *args: Any) -> None:
-        _EventHandle.__init__(self, *args)
+        pass_on(_EventHandle.__init__, self, *args)
         self._epoch = -1
         self._left = 0
 

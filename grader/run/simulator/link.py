@@ -47,7 +47,7 @@ class Patience:
 
 
 class Refused(Exception):
-    """The submission cannot run in virtual time; the text completes "the submission ..."."""
+    """The run cannot be made in virtual time; the text completes "because ..."."""
 
 
 class StudentLink:
@@ -126,6 +126,8 @@ class StudentLink:
             case Kind.WAITING:
                 self.waits = self.waits or "for ever"
             case Kind.UNSUPPORTED:
+                raise Refused(f"the submission {text}")
+            case Kind.FAILED:
                 raise Refused(text)
             case Kind.WARNING:
                 self.flag(text)
@@ -151,7 +153,9 @@ class StudentLink:
             if now_used > last_used or not _sleeps(self._pid):
                 last_used, asleep_since = now_used, now
             if now - asleep_since > self._patience.asleep_s:
-                raise Refused("waits for something outside of Python's and ROS's own waiting")
+                raise Refused(
+                    "the submission waits for something outside of Python's and ROS's own waiting"
+                )
             if now > self._end:
                 self.silence = "slow"
                 return False

@@ -7,6 +7,8 @@ import os
 import random
 from typing import Any
 
+from grader.run.lockstep.faults import pass_on
+
 #: As many as students' machines have; executors and pools size themselves by it.
 PROCESSORS = 4
 
@@ -18,10 +20,11 @@ def install() -> None:
     real_seed = random.Random.seed
 
     def urandom(size: int, /) -> bytes:
-        return source.randbytes(size)
+        drawn: bytes = pass_on(source.randbytes, size)
+        return drawn
 
     def seed(self: random.Random, a: Any = None, version: int = 2) -> None:
-        real_seed(self, next(seeds) if a is None else a, version)
+        pass_on(real_seed, self, next(seeds) if a is None else a, version)
 
     os.urandom = urandom
     random._urandom = urandom  # type: ignore[attr-defined]
@@ -40,7 +43,7 @@ def order_nodes(node_class: Any) -> None:
 
     def init(self: Any, *args: Any, **kwargs: Any) -> None:
         self._serial_in_virtual_time = next(serials)
-        original(self, *args, **kwargs)
+        pass_on(original, self, *args, **kwargs)
 
     node_class.__init__ = init
     node_class.__hash__ = lambda self: self._serial_in_virtual_time

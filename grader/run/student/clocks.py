@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from grader.run.lockstep import real
+from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.times import BOOT_NS, EPOCH_NS
 from grader.run.student.scheduler import Scheduler
 
@@ -27,10 +28,10 @@ def install(scheduler: Scheduler) -> None:
     time.perf_counter, time.perf_counter_ns = time.monotonic, time.monotonic_ns
     time.clock_gettime_ns = _clock_gettime_ns
     time.clock_gettime = lambda clk_id: _clock_gettime_ns(clk_id) / 1e9
-    time.localtime = lambda seconds=None: real.localtime(_or_now(seconds))
-    time.gmtime = lambda seconds=None: real.gmtime(_or_now(seconds))
-    time.ctime = lambda seconds=None: real.ctime(_or_now(seconds))
-    time.strftime = lambda form, when=None: real.strftime(form, when or time.localtime())
+    time.localtime = lambda seconds=None: pass_on(real.localtime, _or_now(seconds))
+    time.gmtime = lambda seconds=None: pass_on(real.gmtime, _or_now(seconds))
+    time.ctime = lambda seconds=None: pass_on(real.ctime, _or_now(seconds))
+    time.strftime = lambda form, when=None: pass_on(real.strftime, form, when or time.localtime())
     # these have imported the names
     threading._time = queue.time = sched._time = time.monotonic  # type: ignore[attr-defined]
     _datetime.datetime = _VirtualDatetime  # type: ignore[misc]
@@ -38,9 +39,14 @@ def install(scheduler: Scheduler) -> None:
 
 
 def _sleep(seconds: Any) -> None:
+    try:
+        duration_ns = int(seconds * 1e9)
+    except (TypeError, ValueError, OverflowError):
+        pass_on(real.sleep, seconds)  # no number, no time: Python says so in its own words
+        raise
     if seconds < 0:
-        raise ValueError("sleep length must be non-negative")
-    SCHEDULER.sleep(int(seconds * 1e9))
+        as_python_does(ValueError("sleep length must be non-negative"))
+    SCHEDULER.sleep(duration_ns)
 
 
 def _seconds(offset_ns: int) -> Callable[[], float]:
@@ -64,11 +70,11 @@ def _clock_gettime_ns(clk_id: int) -> int:
         return time.time_ns()
     if clk_id in (time.CLOCK_MONOTONIC, time.CLOCK_MONOTONIC_RAW, time.CLOCK_BOOTTIME):
         return time.monotonic_ns()
-    return real.clock_gettime_ns(clk_id)  # processor time stays real
+    return int(pass_on(real.clock_gettime_ns, clk_id))  # processor time stays real
 
 
-def _or_now(seconds: Any) -> float:
-    return time.time() if seconds is None else float(seconds)
+def _or_now(seconds: Any) -> Any:
+    return time.time() if seconds is None else seconds
 
 
 class _LikeOriginal(type):
@@ -90,7 +96,8 @@ class _VirtualDatetime(_datetime.datetime, metaclass=_LikeOriginal):
     @classmethod
     def now(cls, tz: Any = None) -> _datetime.datetime:  # type: ignore[override]
         """The time now."""
-        return cls.fromtimestamp(time.time(), tz)
+        now: _datetime.datetime = pass_on(cls.fromtimestamp, time.time(), tz)
+        return now
 
     today = now  # type: ignore[assignment]
 

@@ -3,7 +3,8 @@
 `Executor._wait_for_ready_callbacks`, written anew in rclpy's order: tasks, waitables, and node by
 node timers, subscriptions, guard conditions, clients, services. Whoever may not run now because
 of its callback group is looked at as rclpy does it, with a wait set for this one look. Stands
-aside where rclpy's own function is not one of those that it was written after.
+aside where rclpy's own function is not one of those that it was written after: that one then
+runs, slower, over our wait sets.
 """
 
 from __future__ import annotations
@@ -26,21 +27,38 @@ from rclpy.executors import (
     timeout_sec_to_nsec,
 )
 
-from grader.run.lockstep import waitsets
+from grader.run.lockstep import contract, faults, waitsets
+from grader.run.lockstep.faults import as_python_does
 from grader.run.lockstep.times import NEVER
 
-#: SHA-256 of the source of rclpy's function in the releases that this was tested with: 7.1.6.
-KNOWN = {"f4ad71c9cd36740155e728956db585a6608e4df65f823cb1b2d6ce94992efb16"}
+#: SHA-256 of the source of rclpy's function in the releases that this was tested with, and in
+#: which order each goes through the tasks in progress.
+KNOWN: dict[str, Callable[[list[Any]], Iterable[Any]]] = {
+    # 7.1.4 to 7.1.8
+    "f4ad71c9cd36740155e728956db585a6608e4df65f823cb1b2d6ce94992efb16": reversed,
+    # 9.1.2
+    "752e9ecbb147dcfa2db666b8312a72cc026c82c4245a35283ca0b7ba230c1a98": iter,
+}
 #: A node's lists of entities, in rclpy's order within a wait set's kinds.
 LISTS = ("_timers", "_subscriptions", "_guards", "_clients", "_services", "_Node__waitables")
 
 
 def install() -> None:
-    """Replace rclpy's function, if it is known."""
-    original = rclpy.executors.Executor._wait_for_ready_callbacks
-    source = inspect.getsource(original)
-    if hashlib.sha256(source.encode()).hexdigest() in KNOWN:
+    """Replace rclpy's function, if it and what it uses are known."""
+    global _in_order
+    order = known()
+    if order is not None and not contract.broken(contract.EXECUTOR):
+        _in_order = order
         rclpy.executors.Executor._wait_for_ready_callbacks = _wait_for_ready_callbacks
+
+
+def known() -> Callable[[list[Any]], Iterable[Any]] | None:
+    """The order in which the installed rclpy goes through tasks, where that is known."""
+    source = inspect.getsource(rclpy.executors.Executor._wait_for_ready_callbacks)
+    return KNOWN.get(hashlib.sha256(source.encode()).hexdigest())
+
+
+_in_order: Callable[[list[Any]], Iterable[Any]]
 
 
 class Look:
@@ -142,31 +160,44 @@ def _wait_for_ready_callbacks(
     condition: Callable[[], bool] = lambda: False,
 ) -> Generator[tuple[Any, Any, Any], None, None]:
     """As rclpy's."""
+    try:
+        yield from _work(self, timeout_sec, nodes, condition)
+    except Exception as error:
+        faults.report(error)
+        raise
+
+
+def _work(
+    executor: Any,
+    timeout_sec: float | TimeoutObject | None,
+    nodes: list[Any] | None,
+    condition: Callable[[], bool],
+) -> Iterable[tuple[Any, Any, Any]]:
     timeout_ns = timeout_sec_to_nsec(
         timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
     )
     end_ns = waitsets.WAITER.deadline(timeout_ns) if timeout_ns > 0 else NEVER
     yielded_work = False
-    while not yielded_work and not self._is_shutdown and not condition():
-        used = self.get_nodes() if nodes is None else nodes
-        for work in _tasks(self, used):
+    while not yielded_work and not executor._is_shutdown and not condition():
+        used = executor.get_nodes() if nodes is None else nodes
+        for work in _tasks(executor, used):
             yielded_work = True
             yield work
-        look = _look(self, used)
-        is_out = _wait(self, look, timeout_ns, end_ns)
+        look = _look(executor, used)
+        is_out = _wait(executor, look, timeout_ns, end_ns)
         look.is_used = True
         try:
-            for work in _ready(self, look, used):
+            for work in _ready(executor, look, used):
                 yielded_work = True
                 yield work
         finally:
             look.is_used = False
         if timeout_ns == 0 or is_out:
-            raise TimeoutException()
-    if self._is_shutdown:
-        raise ShutdownException()
+            as_python_does(TimeoutException())
+    if executor._is_shutdown:
+        as_python_does(ShutdownException())
     if condition():
-        raise ConditionReachedException()
+        as_python_does(ConditionReachedException())
 
 
 def _tasks(executor: Any, nodes: list[Any]) -> Iterable[tuple[Any, Any, Any]]:
@@ -175,7 +206,7 @@ def _tasks(executor: Any, nodes: list[Any]) -> Iterable[tuple[Any, Any, Any]]:
         tasks = list(executor._tasks)
     if not tasks:
         return
-    for task, entity, node in reversed(tasks):
+    for task, entity, node in _in_order(tasks):
         if not task.executing() and not task.done() and (node is None or node in nodes):
             yield task, entity, node
     with executor._tasks_lock:
@@ -190,14 +221,16 @@ def _wait(executor: Any, look: Look, timeout_ns: int, end_ns: int) -> bool:
         if guard._executor_triggered:
             guard.trigger()
     wait_set.guards = [guard.handle for guard in look.guards]
-    wait_set.guards += [executor._guard.handle, executor._sigint_gc.handle]
+    # None after the executor's shutdown
+    own = (executor._guard, executor._sigint_gc)
+    wait_set.guards += [guard.handle for guard in own if guard is not None]
     wait_set.end_ns = end_ns
     with executor._context.handle:
         wait_set.wait(timeout_ns)
     if executor._is_shutdown:
-        raise ShutdownException()
+        as_python_does(ShutdownException())
     if not executor._context.ok():
-        raise ExternalShutdownException()
+        as_python_does(ExternalShutdownException())
     for guard in look.guards:
         if guard.handle in wait_set.ready_guards:
             guard._executor_triggered = True

@@ -6,6 +6,7 @@ import functools
 from typing import Any
 
 from grader.run.lockstep import real
+from grader.run.lockstep.faults import pass_on
 from grader.run.student.simulator_link import MATCH_PATIENCE_S, SimulatorLink
 
 QUESTIONS = (
@@ -43,7 +44,7 @@ def install(link: SimulatorLink, node_class: Any) -> None:
             if link.graph_epoch not in seen_epochs:
                 seen_epochs.add(link.graph_epoch)
                 _await_graph(link, self.handle)
-            return ask(self, *args, **kwargs)
+            return pass_on(ask, self, *args, **kwargs)
 
         setattr(node_class, name, asked)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import socket
 import sys
 from collections.abc import Callable
@@ -17,7 +18,7 @@ import rclpy.task
 import rclpy.timer
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
+from grader.run.lockstep import actions, endpoints, faults, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import Kind
 from grader.run.lockstep.times import EPOCH_NS
 from grader.run.student import chance, deadlock, executor, graph
@@ -30,19 +31,20 @@ def install(
     scheduler: Scheduler, connection: socket.socket, refuse: Callable[[str], None]
 ) -> SimulatorLink:
     """Replace what tells or waits for time in rclpy; returns the link to the simulator."""
-    link = SimulatorLink(scheduler, connection)
+    link = SimulatorLink(scheduler, connection, refuse)
 
     def now_ns() -> int:
         return scheduler.now_ns
 
     clocks = rclpy_clocks.install(_rclpy, now_ns, scheduler.charge)
     scheduler.clocks.append(clocks.set_now)
-    scheduler.time_source = _Guarded(link, refuse)
+    scheduler.time_source = _Guarded(link)
     _rclpy.ClockEvent = clock_event_class(scheduler)
     waiter = VirtualWaiter(scheduler, link, clocks)
     waitsets.install(waiter)
     endpoints.install(link, lambda: EPOCH_NS + scheduler.now_ns)
     actions.install()
+    _guard_entities()
     graph.install(link, rclpy.node.Node)
     chance.order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
@@ -57,26 +59,31 @@ def install(
 
 
 class _Guarded:
-    """A mistake of ours must not become the submission's: it is then graded in real time."""
+    """Moves time; whoever waits for that has to hear of no mistake of ours."""
 
-    def __init__(self, link: SimulatorLink, refuse: Callable[[str], None]) -> None:
-        self._link = link
-        self._refuse = refuse
+    def __init__(self, link: SimulatorLink) -> None:
+        self.advance = faults.guarded(link.advance)
 
-    def advance(self, deadline_ns: int) -> None:
-        try:
-            self._link.advance(deadline_ns)
-        except Exception as error:
-            self._refuse(f"broke our virtual time ({error!r})")
+
+def _guard_entities() -> None:
+    """A mistake of ours must not become the submission's, whatever it catches."""
+    for kind in (
+        *(endpoints.Publisher, endpoints.Subscription, endpoints.Client, endpoints.Service),
+        *(endpoints.Registered, actions.ActionClient, actions.ActionServer),
+        *(waitsets.Timer, waitsets.EventHandle),
+    ):
+        faults.guard_methods(kind)
+    waitsets.WaitSet.wait = faults.guarded(waitsets.WaitSet.wait)  # type: ignore[method-assign]
 
 
 def _charge_for(owner: Any, name: str, scheduler: Scheduler) -> None:
     """Loops that only ask this must not stop time."""
     ask = getattr(owner, name)
 
-    def asked(self: Any) -> Any:
+    @functools.wraps(ask)
+    def asked(self: Any, *args: Any) -> Any:
         scheduler.charge()
-        return ask(self)
+        return faults.pass_on(ask, self, *args)
 
     setattr(owner, name, asked)
 

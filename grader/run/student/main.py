@@ -139,8 +139,16 @@ def check_origin(module: types.ModuleType, root: str) -> None:
         )
 
 
-def call(root: str, target: str, function: str | None) -> int:
-    """Run what was handed in to its end; its exit code. Tracebacks go without our own lines."""
+def call(
+    root: str,
+    target: str,
+    function: str | None,
+    on_error: Callable[[BaseException], None] = lambda error: None,
+) -> int:
+    """Run what was handed in to its end; its exit code. Tracebacks go without our own lines.
+
+    `on_error`: told of an exception that nobody has caught, before its traceback is printed.
+    """
     try:
         code = run(root, target, function)
     except KeyboardInterrupt:
@@ -151,6 +159,7 @@ def call(root: str, target: str, function: str | None) -> int:
             print(code, file=sys.stderr)
             return 1
     except BaseException as error:
+        on_error(error)
         traceback.print_exception(_without_our_frames(error))
         return 1
     return code if isinstance(code, int) else 0

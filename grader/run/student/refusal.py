@@ -11,6 +11,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from grader.run.lockstep.faults import pass_on
+
 #: What makes another process: Python's own audit events.
 _OTHER_PROCESS = {
     "subprocess.Popen": "starts another program",
@@ -54,7 +56,7 @@ def watch(refuse: Callable[[str], None]) -> None:
         # multiprocessing's "spawn" comes this way, without an event
         if not harmless:
             refuse("starts another process (multiprocessing)")
-        return start(*args)
+        return int(pass_on(start, *args))
 
     _posixsubprocess.fork_exec = fork_exec
 

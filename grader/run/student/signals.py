@@ -9,6 +9,7 @@ from types import FrameType
 from typing import Any
 
 from grader.run.lockstep import real
+from grader.run.lockstep.faults import pass_on
 from grader.run.student.scheduler import Scheduler
 
 Handler = Callable[[int, FrameType | None], Any]
@@ -35,13 +36,13 @@ def install(scheduler: Scheduler, refuse: Callable[[str], None]) -> None:
 
     def replacement(signalnum: int, handler: Any) -> Any:
         before = handlers.get(signalnum, signal.getsignal(signalnum))
-        original(signalnum, deliver if callable(handler) else handler)
+        pass_on(original, signalnum, deliver if callable(handler) else handler)
         handlers[signalnum] = handler
         return before
 
     def sender(send: Callable[..., None], is_to_us: Callable[..., bool]) -> Callable[..., None]:
         def sent(*args: Any) -> None:
-            send(*args)
+            pass_on(send, *args)
             if is_to_us(*args) and callable(handlers.get(args[-1])):
                 _await(lambda: bool(waiting), scheduler)
 

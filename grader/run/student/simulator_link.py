@@ -25,6 +25,7 @@ from grader.run.lockstep.protocol import (
     Kind,
     Note,
     Packet,
+    ProtocolError,
     Reply,
     State,
     Table,
@@ -76,8 +77,11 @@ class RemoteEndpoint(Endpoint):
 class SimulatorLink(EndpointRegistry):
     """The student's side of the link, and all endpoints of its process."""
 
-    def __init__(self, scheduler: Scheduler, connection: socket.socket) -> None:
+    def __init__(
+        self, scheduler: Scheduler, connection: socket.socket, refuse: Callable[[str], None]
+    ) -> None:
         super().__init__()
+        self.refuse = refuse
         self.tick = 0
         #: counts how often the endpoints were connected anew
         self.graph_epoch = 0
@@ -145,7 +149,10 @@ class SimulatorLink(EndpointRegistry):
         """Really wait for what the simulator says that it has sent."""
         awaited: list[Reader] = []
         for number, total in reply.sent:
-            remote = self.remotes[number]
+            remote = self.remotes.get(number)
+            if remote is None:
+                self._break(ProtocolError(f"no endpoint has number {number}"))
+                continue
             news, remote.sent = total - remote.sent, total
             for arrivals in distinct_arrivals(remote.readers):
                 arrivals.expected += news
@@ -288,9 +295,17 @@ class SimulatorLink(EndpointRegistry):
             data = b""
         if not data:
             real.leave(1)
-        packet = decode(data)
-        assert isinstance(packet, kind), packet
+        try:
+            packet = decode(data)
+        except ProtocolError as error:
+            self._break(error)
+        if not isinstance(packet, kind):
+            self._break(ProtocolError(f"{packet!r} where {kind.__name__} was expected"))
         return packet
+
+    def _break(self, error: ProtocolError) -> None:
+        """Somebody else has read or written here, and only the submission can."""
+        self.refuse(f"broke our virtual time ({error!r})")
 
 
 def _remembers(writer: Endpoint, reader: Endpoint) -> bool:

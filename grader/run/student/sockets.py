@@ -7,6 +7,7 @@ import selectors
 from collections.abc import Callable
 from typing import Any
 
+from grader.run.lockstep.faults import guarded, pass_on
 from grader.run.lockstep.times import NEVER
 from grader.run.student.scheduler import Runner, Scheduler
 
@@ -45,18 +46,18 @@ def install(scheduler: Scheduler) -> None:
         rlist: Any, wlist: Any, xlist: Any, timeout: float | None = None
     ) -> tuple[list[Any], list[Any], list[Any]]:
         def ready() -> Any:
-            found = real_select(rlist, wlist, xlist, 0)
+            found = pass_on(real_select, rlist, wlist, xlist, 0)
             return found if any(found) else None
 
         return wait(ready, timeout) or ([], [], [])
 
-    select.select = virtual_select
+    select.select = guarded(virtual_select)
 
 
 def _replace_select(kind: Any, wait: Callable[..., Any]) -> None:
     real_select = kind.select
 
     def virtual_select(self: Any, timeout: float | None = None) -> Any:
-        return wait(lambda: real_select(self, 0), timeout)
+        return wait(lambda: pass_on(real_select, self, 0), timeout)
 
-    kind.select = virtual_select
+    kind.select = guarded(virtual_select)

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from grader.run.lockstep.faults import as_python_does, hide_our_frames, report
 from grader.run.lockstep.times import NEVER
 from grader.run.student.refusal import Unsupported
 from grader.run.student.scheduler import Runner, Scheduler
@@ -35,9 +36,9 @@ class Lock:
             self._locked = True
             return True
         if not blocking and timeout != -1:
-            raise ValueError("can't specify a timeout for a non-blocking call")
+            as_python_does(ValueError("can't specify a timeout for a non-blocking call"))
         if timeout < 0 and timeout != -1:
-            raise ValueError("timeout value must be a non-negative number")
+            as_python_does(ValueError("timeout value must be a non-negative number"))
         if self._locked and (not blocking or timeout == 0):
             SCHEDULER.charge()
             return False
@@ -62,7 +63,7 @@ class Lock:
     def release(self) -> None:
         """Give the lock back."""
         if not self._locked:
-            raise RuntimeError("release unlocked lock")
+            as_python_does(RuntimeError("release unlocked lock"))
         self._locked = False
         if self._waiting:
             SCHEDULER.wake(self._waiting.popleft())
@@ -134,6 +135,7 @@ def install(scheduler: Scheduler) -> None:
         _replace(threading, "_start_new_thread", _start_new_thread)
         _replace(threading, "_set_sentinel", _set_sentinel)
     _replace(queue, "SimpleQueue", _replaced(queue, "_PySimpleQueue"))
+    _replace(threading, "excepthook", _excepthook)
 
 
 def join_all() -> None:
@@ -154,6 +156,16 @@ def _replaced(module: Any, name: str) -> Any:
     if not hasattr(module, name):
         raise Unsupported(f"this Python has no {module.__name__}.{name}")
     return getattr(module, name)
+
+
+def _excepthook(args: threading.ExceptHookArgs) -> None:
+    """As Python's: a thread ends with a traceback, the others go on."""
+    if args.exc_value is not None:
+        report(args.exc_value)
+        hide_our_frames(args.exc_value)
+        traceback = args.exc_value.__traceback__
+        args = threading.ExceptHookArgs((args.exc_type, args.exc_value, traceback, args.thread))
+    threading.__excepthook__(args)
 
 
 def _start_new_thread(

@@ -16,7 +16,7 @@ sys.path[0] = str(Path(__file__).resolve().parents[3])
 import atexit  # noqa: E402
 import socket  # noqa: E402
 
-from grader.run.lockstep import real  # noqa: E402
+from grader.run.lockstep import contract, faults, real  # noqa: E402
 from grader.run.lockstep.protocol import Kind, Note, encode  # noqa: E402
 from grader.run.student import (  # noqa: E402
     chance,
@@ -39,10 +39,14 @@ def main() -> None:
     connection = socket.socket(fileno=int(fd))
     scheduler = Scheduler()
 
-    def refuse(what: str) -> None:
-        connection.send(encode(Note(Kind.UNSUPPORTED, what)))
+    def give_up(kind: Kind, what: str) -> None:
+        connection.send(encode(Note(kind, what)))
         real.leave(0)
 
+    def refuse(what: str) -> None:
+        give_up(Kind.UNSUPPORTED, what)
+
+    faults.on_fault = lambda what: give_up(Kind.FAILED, what)
     try:
         # before rclpy is imported, which uses all of it
         clocks.install(scheduler)
@@ -50,15 +54,24 @@ def main() -> None:
         chance.install()
         sockets.install(scheduler)
         signals.install(scheduler, refuse)
+        if broken := contract.broken(contract.ENTITIES, contract.PROGRAM):
+            give_up(Kind.FAILED, broken)
         from grader.run.student import install as inside_rclpy
 
         link = inside_rclpy.install(scheduler, connection, refuse)
         link.core = int(core)
-    except Exception as error:  # another Python or rclpy than those that this was made for
-        refuse(f"runs on a Python or rclpy that virtual time does not know ({error!r})")
+    except refusal.Unsupported as lack:
+        give_up(Kind.FAILED, f"virtual time does not work here: {lack}")
+    except Exception as error:
+        give_up(Kind.FAILED, faults.failed(faults.whose(error) or repr(error)))
+
+    def on_error(error: BaseException) -> None:
+        faults.report(error)
+        faults.hide_our_frames(error)
+
     refusal.watch(refuse)
     student_main.forget_ourselves(root, target)
-    code = student_main.call(root, target, more[0] if more else None)
+    code = student_main.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
     atexit._run_exitfuncs()
     link.synchronise()

@@ -22,6 +22,7 @@ SHORTER = {
     "busy_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
     "blocks_in_c": (Limits(0.5, 0.5, 5), Patience(asleep_s=1.0)),
     "starts_a_program": (Limits(3, 0.2, 10), Patience()),
+    "breaks_the_grader": (Limits(3, 0.2, 10), Patience()),
     "attacks_link": (Limits(1, 0.2, 10), Patience()),
     "floods": (Limits(3, 1, 5), Patience()),
     "floods_without_end": (Limits(3, 1, 5), Patience()),

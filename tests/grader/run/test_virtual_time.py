@@ -88,14 +88,21 @@ def test_a_run_may_start_elsewhere() -> None:
         ("calls_in_callback", "stalled", None),
         ("calls_without_spinning", "stalled", None),
         ("exits", "crashed", 3),
+        ("forgets_its_name", "crashed", 1),
         ("floods", "time_limit", None),
         ("floods_without_end", "time_limit", None),
         ("interrupts_itself", "finished", 0),
         ("kills_itself", "killed", -9),
         ("never_spins", "stalled", None),
         ("prints_a_million", "finished", None),
+        ("publishes_after_shutdown", "crashed", 1),
+        ("publishes_wrong_field", "crashed", 1),
+        ("publishes_wrong_type", "crashed", 1),
         ("raises_in_callback", "crashed", 1),
+        ("releases_twice", "finished", 0),
+        ("sleeps_backwards", "crashed", 1),
         ("sleeps_for_ever", "finished", None),
+        ("ticks_backwards", "crashed", 1),
         ("spins_in_callback", "stalled", None),
     ),
 )
@@ -124,11 +131,41 @@ def test_a_deadlock_is_shown_where_it_is(recorded: Recorded, name: str, line: st
     assert "grader/run" not in output
 
 
-@pytest.mark.records("misbehaving/raises_in_callback")
-def test_an_exception_shows_the_traceback_of_a_student_s_desk(recorded: Recorded) -> None:
-    output = recorded("misbehaving/raises_in_callback").output
-    assert re.search(r"AttributeError: 'Pose' object has no attribute 'z'\s*$", output)
+@pytest.mark.parametrize(
+    ("name", "last_words"),
+    each(
+        "misbehaving",
+        ("raises_in_callback", "AttributeError: 'Pose' object has no attribute 'z'"),
+        ("publishes_wrong_type", "TypeError: Expected <class 'geometry_msgs.msg._twist.Twist'>.*"),
+        ("publishes_wrong_field", "AttributeError: 'float' object has no attribute 'x'"),
+        ("publishes_after_shutdown", "RCLError: .* publisher's context is invalid.*"),
+        ("ticks_backwards", "RCLError: .* timer period must be non-negative.*"),
+        ("sleeps_backwards", "ValueError: sleep length must be non-negative"),
+        ("forgets_its_name", "TypeError: .* missing 1 required positional argument: 'node_name'"),
+        ("releases_twice", "RuntimeError: release unlocked lock"),
+    ),
+)
+def test_an_exception_shows_the_traceback_of_a_student_s_desk(
+    recorded: Recorded, name: str, last_words: str
+) -> None:
+    output = recorded(f"misbehaving/{name}").output
+    assert re.search(last_words + r"\s*$", output)
+    assert f"{name}.py" in output
     assert "grader/run" not in output
+
+
+@pytest.mark.records("misbehaving/breaks_the_grader")
+def test_a_mistake_of_ours_is_never_the_submission_s_even_where_that_catches_everything(
+    recorded: Recorded,
+) -> None:
+    recording = recorded("misbehaving/breaks_the_grader")
+    assert recording.run.time == "real"
+    assert re.fullmatch(
+        r"graded in real time, because virtual time itself failed "
+        r"\(TypeError in simulator_link\.py, line \d+\)",
+        recording.run.flags[-1],
+    )
+    assert (recording.run.outcome, len(recording.calls("cmd_vel"))) == ("finished", 2)
 
 
 @pytest.mark.parametrize(

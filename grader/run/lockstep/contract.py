@@ -1,0 +1,287 @@
+"""What virtual time takes for granted of rclpy's inside, and whether this rclpy grants it.
+
+None of this is rclpy's public interface, and any release may change it. So each assumption stands
+here by its name and is looked up before anything is replaced: an rclpy that breaks one is graded
+in real time, and the result says which. Looked up are attributes and the signatures that pybind11
+writes into docstrings; objects are made only where they need no DDS. That takes 4 ms of processor
+time; a node, without which there is no entity, takes ten times as much, and would say no more.
+
+| group | who relies on it |
+|---|---|
+| `ENTITIES` | both sides: `endpoints`, `actions`, `waitsets`, `rclpy_clocks` |
+| `PROGRAM` | the submission's side: `install`, `graph`, `waiting`, `chance`, `deadlock` |
+| `EXECUTOR` | `student.executor`, where it does not stand aside |
+"""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import re
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+#: Stands for rclpy's extension module, whatever it is called.
+CPP = "_rclpy"
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """Something that must hold.
+
+    Attributes:
+        name: what it is about, "Executor._tasks".
+        check: says what is wrong, "Executor has no _tasks", or '' where it holds. Where it fails
+            with an exception, that is what is wrong.
+    """
+
+    name: str
+    check: Callable[[], str]
+
+
+def broken(*groups: Iterable[Assumption]) -> str:
+    """What of these (of what both sides need) does not hold, in one line; '' where all does."""
+    for group in groups or (ENTITIES,):
+        for assumption in group:
+            try:
+                fault = assumption.check()
+            except Exception as error:
+                fault = f"{assumption.name}: {error!r}"
+            if fault:
+                return f"virtual time does not fit rclpy {version()}: {fault}"
+    return ""
+
+
+def version() -> str:
+    """The version of the installed rclpy, or "?"."""
+    with suppress(metadata.PackageNotFoundError):
+        return metadata.version("ros-rclpy")  # from PyPI; its package.xml may say less
+    try:
+        # prefix/lib/pythonX.Y/site-packages/rclpy/__init__.py
+        prefix = Path(str(importlib.import_module("rclpy").__file__)).parents[4]
+        text = (prefix / "share" / "rclpy" / "package.xml").read_text(encoding="utf-8")
+    except (OSError, IndexError):
+        return "?"
+    found = re.search(r"<version>([\w.+-]+)</version>", text)
+    return found[1] if found else "?"
+
+
+def _module(name: str) -> Any:
+    if name == CPP:
+        return importlib.import_module("rclpy.impl.implementation_singleton").rclpy_implementation
+    return importlib.import_module(name)
+
+
+# How assumptions are checked ------------------------------------------------------------------
+
+
+def _has(module: str, owner: str, *names: str) -> list[Assumption]:
+    """A class, or with '' a module, has attributes."""
+
+    def look(name: str) -> Callable[[], str]:
+        def check() -> str:
+            thing = _module(module)
+            if owner and not hasattr(thing, owner):
+                return f"there is no {module}.{owner}"
+            found = hasattr(getattr(thing, owner) if owner else thing, name)
+            return "" if found else f"{owner or module} has no {name}"
+
+        return check
+
+    return [Assumption(f"{owner}.{name}", look(name)) for name in names]
+
+
+def _sets(module: str, owner: str, *names: str) -> list[Assumption]:
+    """A class gives its instances attributes when they are made."""
+
+    def look(name: str) -> Callable[[], str]:
+        def check() -> str:
+            init = getattr(_module(module), owner).__init__
+            return "" if name in init.__code__.co_names else f"{owner} has no {name}"
+
+        return check
+
+    return [Assumption(f"{owner}.{name}", look(name)) for name in names]
+
+
+def _takes(owner: str, **counts: int) -> list[Assumption]:
+    """Methods of a C++ class take so many arguments; a constructor's further ones are handed on."""
+
+    def look(name: str, count: int) -> Callable[[], str]:
+        def check() -> str:
+            kind = getattr(_module(CPP), owner, None)
+            if kind is None:
+                return f"there is no {owner}"
+            method = getattr(kind, name, None)
+            if method is None:
+                return f"{owner} has no {name}"
+            most, least = _arguments(method.__doc__ or "")
+            if least <= count <= most or (name == "__init__" and count <= most):
+                return ""
+            shown = owner if name == "__init__" else f"{owner}.{name}"
+            return f"{shown}() takes {most} arguments instead of {count}"
+
+        return check
+
+    return [Assumption(f"{owner}.{name}", look(name, n)) for name, n in counts.items()]
+
+
+def _arguments(doc: str) -> tuple[int, int]:
+    """How many arguments, at most and at least, a function of pybind11 takes, without self."""
+    signature = re.match(r"\w+\((.*)\)(?: -> .*)?$", doc.strip().partition("\n")[0])
+    if signature is None:
+        raise ValueError("no signature that we can read")
+    depth, arguments = 0, [""]
+    for sign in signature[1]:
+        depth += (sign in "([{") - (sign in ")]}")
+        if sign == "," and not depth:
+            arguments.append("")
+        else:
+            arguments[-1] += sign
+    own = [text.strip() for text in arguments if text.strip() and not text.startswith("self:")]
+    return len(own), sum(" = " not in text for text in own)
+
+
+def _quality_of_service() -> str:
+    """A C profile goes into Python and back: readers are deepened so."""
+    from rclpy.qos import QoSProfile, qos_check_compatible
+
+    fields = QoSProfile(depth=3).get_c_qos_profile().to_dict()
+    if fields.get("depth") != 3:
+        return "a QoS profile has no depth"
+    profile = QoSProfile(**{**fields, "depth": 5})
+    qos_check_compatible(profile, profile)
+    return "" if profile.get_c_qos_profile().to_dict()["depth"] == 5 else "QoS profiles lose depth"
+
+
+def _overridden_clock() -> str:
+    """A ROS clock shows the time that it is told; all our clocks are such."""
+    cpp = _module(CPP)
+    ros_time = int(cpp.ClockType.ROS_TIME)
+    clock = cpp.Clock(ros_time)
+    clock.set_ros_time_override_is_enabled(True)
+    clock.set_ros_time_override(cpp.rcl_time_point_t(5, ros_time))
+    return "" if clock.get_now().nanoseconds == 5 else "a clock does not show the time it is told"
+
+
+def _arrival_callbacks(library: str, *functions: str) -> list[Assumption]:
+    """Functions of rcl with which DDS's threads tell of arrivals."""
+
+    def look(name: str) -> Callable[[], str]:
+        def check() -> str:
+            return "" if hasattr(ctypes.CDLL(library), name) else f"{library} has no {name}"
+
+        return check
+
+    return [Assumption(name, look(name)) for name in functions]
+
+
+# What is assumed ------------------------------------------------------------------------------
+
+#: Of entities, wait sets and clocks in C++; what of Python hands them on.
+ENTITIES: tuple[Assumption, ...] = (
+    # node, type, name, quality of service
+    *_takes("Publisher", __init__=4, publish=1, publish_raw=1, get_subscription_count=0),
+    *_takes("Publisher", get_topic_name=0, destroy_when_not_in_use=0),
+    *_takes("Subscription", __init__=4, take_message=2, get_publisher_count=0, get_topic_name=0),
+    *_takes("Subscription", destroy_when_not_in_use=0),
+    *_takes("Client", __init__=4, send_request=1, take_response=1, service_server_is_available=0),
+    *_takes("Client", destroy_when_not_in_use=0),
+    *_takes("Service", __init__=4, service_take_request=1, service_send_response=2),
+    *_takes("Service", destroy_when_not_in_use=0),
+    *_has(CPP, "Client", "service_name", "pointer"),
+    *_has(CPP, "Service", "name", "pointer"),
+    *_has(CPP, "Subscription", "pointer"),
+    *_takes("Node", get_count_clients=1, get_count_services=1),
+    *_takes("Node", get_count_publishers=1, get_count_subscribers=1),
+    Assumption("quality of service", _quality_of_service),
+    *_arrival_callbacks(
+        "librcl.so",
+        "rcl_subscription_set_on_new_message_callback",
+        "rcl_client_set_on_new_response_callback",
+        "rcl_service_set_on_new_request_callback",
+    ),
+    # node, type, name, quality of service of goal, result, cancel, feedback, status
+    *_takes("ActionClient", __init__=8, is_action_server_available=0, send_goal_request=1),
+    *_takes("ActionClient", send_cancel_request=1, send_result_request=1, take_goal_response=1),
+    *_takes("ActionClient", take_cancel_response=1, take_result_response=1, take_feedback=1),
+    *_takes("ActionClient", take_status=1, add_to_waitset=1, is_ready=1),
+    # node, clock, type, name, quality of service of the same five, time-out
+    *_takes("ActionServer", __init__=10, take_goal_request=1, take_cancel_request=1),
+    *_takes("ActionServer", take_result_request=1, send_goal_response=2, send_cancel_response=2),
+    *_takes("ActionServer", send_result_response=2, publish_feedback=1, publish_status=0),
+    *_takes("ActionServer", notify_goal_done=0, expire_goals=1, add_to_waitset=1, is_ready=1),
+    *_has(CPP, "ActionClient", "pointer"),
+    *_has(CPP, "ActionServer", "pointer"),
+    *_arrival_callbacks(
+        "librcl_action.so",
+        "rcl_action_client_set_goal_client_callback",
+        "rcl_action_client_set_cancel_client_callback",
+        "rcl_action_client_set_result_client_callback",
+        "rcl_action_client_set_feedback_subscription_callback",
+        "rcl_action_client_set_status_subscription_callback",
+        "rcl_action_server_set_goal_service_callback",
+        "rcl_action_server_set_cancel_service_callback",
+        "rcl_action_server_set_result_service_callback",
+    ),
+    *_takes("WaitSet", __init__=7, clear_entities=0, wait=1, get_ready_entities=1, is_ready=2),
+    *_takes("WaitSet", add_subscription=1, add_client=1, add_service=1, add_guard_condition=1),
+    *_takes("WaitSet", add_timer=1, add_event=1),
+    *_takes("GuardCondition", __init__=1, trigger_guard_condition=0),
+    *_has(CPP, "GuardCondition", "pointer"),
+    # clock, context, period, autostart
+    *_takes("Timer", __init__=4, reset_timer=0, cancel_timer=0, change_timer_period=1),
+    *_takes("Timer", is_timer_ready=0, time_until_next_call=0, destroy_when_not_in_use=0),
+    *_has(CPP, "Timer", "pointer"),
+    *_has(CPP, "EventHandle", "take_event"),
+    *_takes("Clock", __init__=1, get_now=0, get_ros_time_override_is_enabled=0),
+    *_takes("Clock", set_ros_time_override_is_enabled=1, set_ros_time_override=1),
+    *_takes("Clock", add_clock_callback=4, remove_clock_callback=1),
+    *_has(CPP, "ClockType", "ROS_TIME", "STEADY_TIME", "SYSTEM_TIME"),
+    Assumption("a clock's override", _overridden_clock),
+    *_has(CPP, "", "RCLError", "rclpy_resolve_name", "rclpy_get_publisher_names_and_types_by_node"),
+)
+
+#: Of rclpy's Python, as a program uses it.
+PROGRAM: tuple[Assumption, ...] = (
+    *_has("rclpy.executors", "Executor", "_wait_for_ready_callbacks"),
+    *_has("rclpy.executors", "", "SingleThreadedExecutor"),
+    *_has("rclpy.task", "Future", "done"),
+    *_has("rclpy.task", "Task", "__call__"),
+    *_has("rclpy.context", "Context", "ok"),
+    *_has("rclpy.client", "Client", "call"),
+    *_has("rclpy.timer", "Rate", "sleep"),
+    *_has("rclpy.action", "ActionClient", "send_goal", "_get_result", "_cancel_goal"),
+    *_has("rclpy.node", "Node", "__init__", "handle", "get_node_names_and_namespaces"),
+    *_has("rclpy.node", "Node", "count_publishers", "count_subscribers"),
+    # what `waiting` puts in its place
+    *_takes("ClockEvent", __init__=0, wait_until_steady=2, wait_until_system=2, wait_until_ros=2),
+    *_takes("ClockEvent", set=0, clear=0, is_set=0),
+)
+
+#: Of executors, nodes and callback groups.
+EXECUTOR: tuple[Assumption, ...] = (
+    *_sets("rclpy.executors", "Executor", "_tasks", "_tasks_lock", "_guard", "_sigint_gc"),
+    *_sets("rclpy.executors", "Executor", "_is_shutdown", "_context"),
+    *_has("rclpy.executors", "Executor", "can_execute", "get_nodes", "_make_handler"),
+    *_has("rclpy.executors", "Executor", "_take_timer", "_take_subscription", "_take_client"),
+    *_has("rclpy.executors", "Executor", "_take_service", "_take_guard_condition"),
+    *_has("rclpy.executors", "Executor", "_take_waitable"),
+    *_has("rclpy.executors", "", "TimeoutObject", "timeout_sec_to_nsec"),
+    *_sets("rclpy.node", "Node", "_timers", "_subscriptions", "_guards", "_clients", "_services"),
+    *_sets("rclpy.node", "Node", "_Node__waitables"),
+    *_has("rclpy.node", "Node", "timers", "subscriptions", "guards", "clients", "services"),
+    *_has("rclpy.node", "Node", "waitables"),
+    *_sets("rclpy.callback_groups", "MutuallyExclusiveCallbackGroup", "_active_entity"),
+    *_sets("rclpy.event_handler", "EventHandler", "_ready_to_take_data"),
+    *_sets("rclpy.guard_condition", "GuardCondition", "_executor_triggered"),
+)
+
+
+def names() -> list[str]:
+    """What all of this is about."""
+    return [assumption.name for group in (ENTITIES, PROGRAM, EXECUTOR) for assumption in group]

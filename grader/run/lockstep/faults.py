@@ -1,0 +1,121 @@
+"""Whose an exception is: the program's, which called something wrongly, or our own.
+
+The innermost frame of its traceback tells. A mistake of a program surfaces in its own code, in
+rclpy or in Python; one of ours in `grader/run`. Where a program's call goes through our code, the
+innermost frame would be ours all the same: rclpy's C++ has no frames, and what we have replaced in
+Python must raise what Python raises. Both go through functions of this module, and these are the
+only frames of ours that stand for the program: `pass_on` and `as_python_does`.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from types import CodeType, TracebackType
+from typing import Any, TypeVar
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+#: The folder of all our code that runs in a submission's process.
+OURS = str(Path(__file__).parents[1])
+#: What starts a submission, in real time too.
+_STARTER = str(Path(OURS) / "student" / "main.py")
+#: What depends on how much a program has used up, not on whose line is the last.
+_NOBODYS = (RecursionError, MemoryError)
+
+
+def _go_on(_: str) -> None: ...
+
+
+#: Called with what `whose` says of an exception of ours; in a submission's process it does not
+#: return. The simulator's process has one place that sees all exceptions, and needs no call.
+on_fault: Callable[[str], None] = _go_on
+
+
+def pass_on(function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    """Call what the program wanted to call, with what it gave; an exception is the program's."""
+    return function(*args, **kwargs)
+
+
+def as_python_does(error: Exception) -> None:
+    """Raise what the replaced function of Python or rclpy would raise; it is the program's."""
+    raise error
+
+
+_THE_PROGRAMS: frozenset[CodeType] = frozenset({pass_on.__code__, as_python_does.__code__})
+
+
+def whose(error: BaseException) -> str:
+    """'' for an exception of the program's; for one of ours "TypeError in graph.py, line 12"."""
+    trace = error.__traceback__
+    if trace is None or not isinstance(error, Exception) or isinstance(error, _NOBODYS):
+        return ""
+    while trace.tb_next is not None:
+        trace = trace.tb_next
+    code = trace.tb_frame.f_code
+    file = code.co_filename
+    if code in _THE_PROGRAMS or file == _STARTER or not is_ours(file):
+        return ""
+    return f"{type(error).__name__} in {Path(file).name}, line {trace.tb_lineno}"
+
+
+def failed(what: str) -> str:
+    """The sentence for a result's flags; `what` as from `whose`."""
+    return f"virtual time itself failed ({what})"
+
+
+def report(error: BaseException) -> None:
+    """Tell `on_fault`, if the exception is ours."""
+    if what := whose(error):
+        on_fault(failed(what))
+
+
+def guarded(function: _Function) -> _Function:
+    """The same function, that reports a fault of ours before the program can catch it."""
+
+    @functools.wraps(function)
+    def call(*args: Any, **kwargs: Any) -> Any:
+        try:
+            return function(*args, **kwargs)
+        except Exception as error:
+            report(error)
+            raise
+
+    return call  # type: ignore[return-value]
+
+
+def guard_methods(kind: type) -> None:
+    """Guard all methods that a class defines itself."""
+    for name, value in list(vars(kind).items()):
+        if callable(value) and not isinstance(value, type):
+            setattr(kind, name, guarded(value))
+
+
+def is_ours(filename: str) -> bool:
+    """Whether a file is part of our code that is in a submission's process."""
+    return filename.startswith(OURS)
+
+
+def hide_our_frames(error: BaseException) -> None:
+    """Give an exception, and those that led to it, the tracebacks of a student's desk."""
+    seen: list[BaseException] = []
+    chain: list[BaseException | None] = [error]
+    while chain:
+        link = chain.pop()
+        if link is not None and not any(link is other for other in seen):
+            seen.append(link)
+            link.__traceback__ = _without_our_frames(link.__traceback__)
+            chain += [link.__cause__, link.__context__]
+
+
+def _without_our_frames(trace: TracebackType | None) -> TracebackType | None:
+    frames = []
+    while trace is not None:
+        if not is_ours(trace.tb_frame.f_code.co_filename):
+            frames.append(trace)
+        trace = trace.tb_next
+    rest: TracebackType | None = None
+    for entry in reversed(frames):
+        rest = TracebackType(rest, entry.tb_frame, entry.tb_lasti, entry.tb_lineno)
+    return rest

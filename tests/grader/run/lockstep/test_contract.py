@@ -1,0 +1,125 @@
+"""What is taken for granted of rclpy's inside, and what happens where it does not hold."""
+
+import os
+import shlex
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rclpy.executors
+import rclpy.task
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+from grader.run.lockstep import contract
+
+GROUPS = (contract.ENTITIES, contract.PROGRAM)
+
+
+def test_the_installed_rclpy_keeps_the_contract() -> None:
+    assert contract.broken(*GROUPS) == ""
+
+
+def documented(doc: str) -> type:
+    def init(self: Any) -> None: ...
+
+    init.__doc__ = doc
+    return type("Changed", (), {"__init__": init})
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "value", "line"),
+    [
+        (rclpy.task.Future, "done", None, "Future has no done"),
+        (_rclpy, "Subscription", None, "there is no Subscription"),
+        (_rclpy.Subscription, "take_message", None, "Subscription has no take_message"),
+        (
+            _rclpy,
+            "Client",
+            documented("__init__(self: Client, arg0: Node, arg1: tuple[int, str]) -> None"),
+            "Client() takes 2 arguments instead of 4",
+        ),
+        (
+            _rclpy,
+            "Service",
+            documented("in another form"),
+            "Service.__init__: ValueError('no signature that we can read')",
+        ),
+    ],
+)
+def test_one_line_says_what_does_not_hold(
+    monkeypatch: pytest.MonkeyPatch, owner: Any, name: str, value: Any, line: str
+) -> None:
+    if value is None:
+        monkeypatch.delattr(owner, name)
+    else:
+        monkeypatch.setattr(owner, name, value)
+    found = contract.broken(*GROUPS)
+    assert found == f"virtual time does not fit rclpy {contract.version()}: {line}"
+
+
+def test_what_constructors_get_beyond_the_known_is_no_breach(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    more = "__init__(self: Node, node: N, type: object, topic: str, qos: object, filter: object)"
+    kind = documented(more + " -> None")
+    for name in ("take_message", "get_publisher_count", "get_topic_name", "pointer"):
+        setattr(kind, name, getattr(_rclpy.Subscription, name))
+    kind.destroy_when_not_in_use = _rclpy.Subscription.destroy_when_not_in_use  # type: ignore[attr-defined]
+    monkeypatch.setattr(_rclpy, "Subscription", kind)
+    assert contract.broken(*GROUPS) == ""
+
+
+def test_the_executor_s_inside_is_in_the_contract(monkeypatch: pytest.MonkeyPatch) -> None:
+    def init(self: Any) -> None:
+        self._pending_tasks = {}
+
+    monkeypatch.setattr(rclpy.executors.Executor, "__init__", init)
+    assert contract.broken(contract.EXECUTOR).endswith(": Executor has no _tasks")
+
+
+#: Run by every Python that a run starts, before anything else.
+CHANGED = """
+import sys
+if {marker!r} in " ".join(sys.orig_argv):
+    from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+    del _rclpy.{name}
+"""
+
+
+@pytest.fixture
+def changed_rclpy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
+    """Take something away from the rclpy of a run's processes whose command holds a text."""
+
+    def change(marker: str, name: str) -> None:
+        text = CHANGED.format(marker=marker, name=name)
+        (tmp_path / "sitecustomize.py").write_text(text, encoding="utf-8")
+        python = tmp_path / "python"
+        path = f"{tmp_path}{os.pathsep}${{PYTHONPATH:-}}"
+        python.write_text(
+            f'#!/bin/sh\nPYTHONPATH="{path}" exec {shlex.quote(sys.executable)} "$@"\n'
+        )
+        python.chmod(0o755)
+        monkeypatch.setattr(sys, "executable", str(python))
+
+    return change
+
+
+@pytest.mark.parametrize("side", ["simulator.virtual", "virtual_main.py"])
+def test_a_broken_contract_on_either_side_is_a_run_in_real_time_that_says_so(
+    changed_rclpy: Callable[[str, str], None], side: str
+) -> None:
+    from grader.exercise.loading import Limits
+    from grader.run import virtual_time
+    from grader.submission.opening import open_submission
+
+    submissions = Path(__file__).parents[3] / "submissions"
+    changed_rclpy(side, "ClockType.STEADY_TIME")
+    with open_submission(submissions / "misbehaving/exits.py") as submission:
+        recording = virtual_time.run(submission, Limits(1, 0.2, 5))
+    assert recording.run.time == "real"
+    assert recording.run.flags == (
+        f"graded in real time, because virtual time does not fit rclpy {contract.version()}: "
+        "ClockType has no STEADY_TIME",
+    )
