@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -93,21 +92,20 @@ def stops(recordings: Recordings, tolerances: Tolerances) -> Finding:
             "How does your node know that it is done, and what does it tell the turtle then?",
             (way.evidence(-1, "still moving"),),
         )
-    tick = stop_command(recording, int(way.ticks[way.last_motion]))
+    tick = stop_command(recording, int(way.ticks[way.rest]))
     if tick is None:
         return Finding(
             0.5,
             "turtle1 rests because no commands came any more: the simulator stops a turtle one "
             "second after its last command. None of speed 0 came while it was moving.",
             "Ceasing to publish is not stopping. What must the last command say?",
-            (way.evidence(way.last_motion, "it came to rest without a command"),),
+            (way.evidence(way.rest, "it came to rest without a command"),),
         )
-    rested_s = (way.ticks[-1] - way.ticks[way.last_motion]) * TICK_S
     return Finding(
         1,
         f"A command of speed 0 came at {tick * TICK_S:.2f} s; turtle1 then rested for "
-        f"{rested_s:.1f} s.",
-        evidence=(way.evidence(way.last_motion, "here it came to rest"),),
+        f"{way.rested_s:.1f} s.",
+        evidence=(way.evidence(way.rest, "here it came to rest"),),
     )
 
 
@@ -123,9 +121,9 @@ def anywhere(recordings: Recordings, tolerances: Tolerances) -> Finding:
     sentences: list[str] = []
     evidence: list[Evidence] = []
     for number, recording in enumerate(recordings.varied, start=1):
-        share, wrong, where = judge_square(Way(recording), tolerances)
+        share, wrong, where = judge_square(Way(recording, number), tolerances)
         shares.append(share)
-        evidence += [replace(item, run=number) for item in where[:2]]
+        evidence += where[:2]
         sentences.append(f"Run {number} ({start_of(recording)}): {wrong or 'a right square'}.")
     help = (
         "Does your node take for granted where the turtle starts, or which way it looks? Whatever "

@@ -98,7 +98,7 @@ def judge_returns(way: Way, tolerances: Tolerances) -> Finding:
             "The square is done when the turtle is back: how does your node notice?",
             (way.evidence(-1 if lap_end is None else lap_end, seen),),
         )
-    gap = way.gap_m(-1)
+    gap = float(way.gap_m[-1])
     here = way.evidence(-1, f"here it came to rest, {gap:.2f} m from its start")
     seen = (
         f"turtle1 started at {way.place(0)} and came to rest at {way.place(-1)}, {gap:.2f} m away"

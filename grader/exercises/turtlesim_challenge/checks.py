@@ -39,7 +39,7 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
             help_ = "Mend that error first; all that the node printed is in output.txt."
         return Finding(0, rationale + ending, help_)
     foreign = _foreign(path)
-    if not (path.moving & (path.speed > 0)).any():
+    if not (path.moving & (path.linear > 0)).any():
         return Finding(
             0,
             f"Your node published velocity commands ({len(commands)} in {seconds}), "

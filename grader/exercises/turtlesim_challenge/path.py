@@ -1,15 +1,13 @@
-"""The path of turtle1 as arrays, and the words of the challenge for it: quadrant, entry, rest."""
+"""The path of turtle1 in the words of the challenge: what it drove by itself, quadrant, entry."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-from grader.exercise.verdict import Evidence
+from grader.exercise.driven_path import DrivenPath
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.events import (
@@ -21,14 +19,11 @@ from turtlesim_py.world.events import (
     TeleportAbsolute,
     TeleportRelative,
 )
-from turtlesim_py.world.floats import float32
-from turtlesim_py.world.trajectory import Trajectory
-from turtlesim_py.world.turtle import SIZE_M, TICK_S
+from turtlesim_py.world.trajectory import Floats
+from turtlesim_py.world.turtle import SIZE_M
 
 CENTRE_M = SIZE_M / 2.0
 NAMES = {1: "I (top right)", 2: "II (top left)", 3: "III (bottom left)", 4: "IV (bottom right)"}
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -58,56 +53,25 @@ class Entry:
         return next((t for t in self.ticks if t >= self.tick + patience), self.last_tick)
 
 
-class Path:
+class Path(DrivenPath):
     """Where turtle1 was in the longest stretch of a run that it drove by itself.
 
     A teleport, or a turtle1 that is killed, spawned or reset, ends a stretch: what is drawn that
-    way is nobody's driving. Every array has one row a tick; `ticks` tells which.
+    way is nobody's driving.
 
     Attributes:
+        trace: all that was recorded.
         foreign: the calls that ended stretches, as they came.
         lost_tick: from here on the position is not a number, and the path ends; None: never.
-        number: of the run, for evidence.
     """
 
     def __init__(self, recording: Recording, number: int = 0) -> None:
         self.trace = TurtleTrace.of(recording.trace)
-        way = self.trace.trajectory()
-        nowhere = ~np.isfinite((way.x, way.y, way.theta)).all(axis=0)
-        self.lost_tick = int(way.ticks[np.argmax(nowhere)]) if nowhere.any() else None
-        way = way[: int(np.argmax(nowhere))] if nowhere.any() else way
-        self.recording = recording
-        self.number = number
         self.foreign = [event for event in self.trace.events if _is_foreign(event)]
-        way = _longest_stretch(way, [event.tick for event in self.foreign])
-        self.ticks = way.ticks
-        self.x, self.y = way.x, way.y
-        self.speed, self.turning = way.linear, way.angular
-
-    def __len__(self) -> int:
-        return len(self.ticks)
-
-    @cached_property
-    def moving(self) -> npt.NDArray[np.bool_]:
-        """Whether the position differs from the tick before."""
-        return _moving(self.x, self.y)
-
-    @property
-    def first(self) -> int:
-        """The row of the last position before the first motion, 0 without any."""
-        return int(np.argmax(self.moving)) - 1 if self.moving.any() else 0
-
-    @property
-    def last(self) -> int:
-        """The row of the last motion."""
-        return int(len(self) - 1 - np.argmax(self.moving[::-1])) if self.moving.any() else 0
-
-    @cached_property
-    def wall(self) -> int | None:
-        """The first row at which the turtle was clamped to a wall."""
-        end = float32(SIZE_M)
-        clamped = (self.x <= 0) | (self.y <= 0) | (self.x >= end) | (self.y >= end)
-        return int(np.argmax(clamped)) if clamped.any() else None
+        whole = DrivenPath(recording, self.trace.trajectory(), number)
+        self.lost_tick = None if whole.lost is None else int(whole.ticks[whole.lost])
+        driven = whole.until_lost().longest_stretch(event.tick for event in self.foreign)
+        super().__init__(recording, driven.way, number)
 
     @property
     def free(self) -> slice:
@@ -118,18 +82,7 @@ class Path:
     @cached_property
     def distance(self) -> Floats:
         """From the centre of the window [m]."""
-        return np.hypot(self.x - CENTRE_M, self.y - CENTRE_M)
-
-    @cached_property
-    def wall_distance(self) -> Floats:
-        """To the nearest wall [m]."""
-        sides = [self.x, self.y, SIZE_M - self.x, SIZE_M - self.y]
-        return np.asarray(np.minimum.reduce(sides))
-
-    @property
-    def stop_tick(self) -> int:
-        """The tick of the last motion."""
-        return int(self.ticks[self.last]) if len(self) else 0
+        return self.distance_from(CENTRE_M, CENTRE_M)
 
     def calls(self, kind: type[SomeEvent]) -> list[SomeEvent]:
         """The inputs of one kind to turtle1 within the stretch."""
@@ -156,20 +109,6 @@ class Path:
             for start, stay in zip(changes, stays, strict=True)
         ]
 
-    def at(self, tick: int, note: str) -> Evidence:
-        """Evidence at a tick."""
-        if not len(self):
-            return Evidence(tick, round(tick * TICK_S, 3), CENTRE_M, CENTRE_M, note, self.number)
-        row = int(np.clip(np.searchsorted(self.ticks, tick), 0, len(self) - 1))
-        return Evidence(
-            tick=int(self.ticks[row]),
-            time_s=round(float(self.ticks[row]) * TICK_S, 3),
-            x=round(float(self.x[row]), 3),
-            y=round(float(self.y[row]), 3),
-            note=note,
-            run=self.number,
-        )
-
 
 def _is_foreign(event: Event) -> bool:
     match event:
@@ -178,16 +117,3 @@ def _is_foreign(event: Event) -> bool:
         case Kill(name=name) | Spawn(name=name):
             return name == FIRST_TURTLE
     return isinstance(event, Reset)
-
-
-def _moving(x: Floats, y: Floats) -> npt.NDArray[np.bool_]:
-    moved = np.zeros(len(x), dtype=bool)
-    moved[1:] = (np.diff(x) != 0) | (np.diff(y) != 0)
-    return moved
-
-
-def _longest_stretch(way: Trajectory, breaks: list[int]) -> Trajectory:
-    """The part between two breaks in which the turtle moved in the most ticks."""
-    cuts = [0, *np.searchsorted(way.ticks, sorted(set(breaks))).tolist(), len(way)]
-    stretches = [way[first:last] for first, last in pairwise(cuts)]
-    return max(stretches, key=lambda part: int(_moving(part.x, part.y).sum()))

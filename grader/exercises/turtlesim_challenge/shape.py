@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from grader.exercises.turtlesim_challenge.path import Floats, Path
+from grader.exercises.turtlesim_challenge.path import Path
+from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S
 
 
 def turned(path: Path) -> Floats:
     """How far the turtle has turned in each tick of its free way [rad], positive to the left."""
-    return path.turning[path.free] * TICK_S
+    return path.angular[path.free] * TICK_S
 
 
 def turns(path: Path) -> tuple[float, float]:
