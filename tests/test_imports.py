@@ -64,6 +64,10 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader", "recording", "scenes", "run.lockstep", "run.processes")
     | below("grader.run", "plan", "handover"),
     "grader.exercise": GROUND | below("grader", "recording", "scenes"),
+    # columns with names, and nothing of turtles
+    "grader.exercise.driven_path": GROUND
+    | below("grader", "exercise", "recording", "scenes")
+    | {"turtlesim_py.world.trajectory"},
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes", "exercise")
     | {"turtlesim_py"},
