@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import sys
 import traceback
-from pathlib import Path
 from types import CodeType, FrameType
 
+from grader.run.lockstep import faults
 from grader.run.student.scheduler import Scheduler
-
-_OURS = str(Path(__file__).parents[1])
 
 MESSAGE = """
 Your node is stuck here, at {time_s:.2f} s: it waits for something that can no longer happen.
@@ -41,9 +39,25 @@ def find(scheduler: Scheduler, runs_callback: CodeType, waits: frozenset[CodeTyp
         if runs_callback in codes or not waits.isdisjoint(codes):
             advice = IN_CALLBACK if runs_callback in codes else OUTSIDE
             return MESSAGE.format(
-                time_s=scheduler.now_ns / 1e9, stack=_format(stack), advice=advice
+                time_s=scheduler.now_ns / 1e9, stack=_format(_lines(stack)), advice=advice
             )
     return ""
+
+
+def find_refused(error: BaseException, now_ns: int) -> str:
+    """Describe a spin within a spin that this rclpy has refused, where others would be stuck.
+
+    Returns: '' for another exception.
+    """
+    trace = list(traceback.walk_tb(error.__traceback__))
+    is_refused = (
+        isinstance(error, RuntimeError)
+        and str(error) == "Executor is already spinning"
+        and trace[-1][0].f_globals.get("__name__") == "rclpy.executors"
+    )
+    if not is_refused:
+        return ""
+    return MESSAGE.format(time_s=now_ns / 1e9, stack=_format(trace), advice=IN_CALLBACK)
 
 
 def _stack(frame: FrameType | None) -> list[FrameType]:
@@ -55,13 +69,19 @@ def _stack(frame: FrameType | None) -> list[FrameType]:
     return stack[::-1]
 
 
-def _format(stack: list[FrameType]) -> str:
+def _lines(stack: list[FrameType]) -> list[tuple[FrameType, int]]:
+    return [(frame, frame.f_lineno) for frame in stack]
+
+
+def _format(lines: list[tuple[FrameType, int]]) -> str:
     """As a traceback, without our own lines."""
-    shown = [(frame, frame.f_lineno) for frame in stack if not _is_ours(frame.f_code.co_filename)]
+    shown = [line for line in lines if not _is_ours(line[0].f_code.co_filename)]
     return "".join(traceback.StackSummary.extract(iter(shown)).format())
 
 
 def _is_ours(filename: str) -> bool:
-    return filename.startswith((_OURS, "<frozen runpy", "<frozen importlib")) or (
-        filename.endswith(("grader/run/student_main.py", "/runpy.py"))
+    return (
+        faults.is_ours(filename)
+        or filename.startswith(("<frozen runpy", "<frozen importlib"))
+        or filename.endswith("/runpy.py")
     )

@@ -52,6 +52,20 @@ def install() -> None:
         rclpy.executors.Executor._wait_for_ready_callbacks = _wait_for_ready_callbacks
 
 
+def allow_nested_spins() -> None:
+    """Have an executor that is told to spin within a spin do so, as rclpy's did until 7.1.8.
+
+    Since then it raises RuntimeError('Executor is already spinning'). The same submission is to get
+    the same verdict with each: see `deadlock` for what becomes of most.
+    """
+
+    def enter_spin(self: Any) -> None:
+        self._is_spinning = True
+
+    if hasattr(rclpy.executors.Executor, "_enter_spin"):
+        rclpy.executors.Executor._enter_spin = enter_spin
+
+
 def known() -> Callable[[list[Any]], Iterable[Any]] | None:
     """The order in which the installed rclpy goes through tasks, where that is known."""
     source = inspect.getsource(rclpy.executors.Executor._wait_for_ready_callbacks)

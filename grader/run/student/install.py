@@ -50,6 +50,7 @@ def install(
     _charge_for(rclpy.task.Future, "done", scheduler)
     _charge_for(rclpy.context.Context, "ok", scheduler)
     executor.install()
+    executor.allow_nested_spins()
     _replace_events_executor()
     scheduler.on_foreign_thread = lambda: refuse(
         "runs Python in a thread that a C extension has started"

@@ -21,6 +21,7 @@ from grader.run.lockstep.protocol import Kind, Note, encode  # noqa: E402
 from grader.run.student import (  # noqa: E402
     chance,
     clocks,
+    deadlock,
     refusal,
     signals,
     sockets,
@@ -66,7 +67,13 @@ def main() -> None:
         give_up(Kind.FAILED, faults.failed(faults.whose(error) or repr(error)))
 
     def on_error(error: BaseException) -> None:
+        """An exception has ended the main thread."""
         faults.report(error)
+        if stuck := deadlock.find_refused(error, scheduler.now_ns):
+            print(stuck, file=sys.stderr, flush=True)
+            link.note(Kind.STUCK)
+            while True:
+                scheduler.block()
         faults.hide_our_frames(error)
 
     refusal.watch(refuse)
