@@ -45,6 +45,7 @@ def install(
     endpoints.install(link, lambda: EPOCH_NS + scheduler.now_ns)
     actions.install()
     _guard_entities()
+    executor.install()  # before Node is changed, which it looks at
     graph.install(link, rclpy.node.Node)
     chance.order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
