@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -18,10 +19,12 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import jsonschema
 import pytest
 import yaml
 
 from grader.reports import FORMATS
+from grader.result import json_file
 
 ROOT = Path(__file__).resolve().parents[2]
 CI = ROOT / "examples" / "ci"
@@ -70,20 +73,37 @@ RESULT: dict[str, Any] = {
     "artifacts": {"canvas": "canvas.png"},
 }
 #: `grader run` for a submission that holds `does.sh`: a sentence of shell that leaves with the code
-#: that the grader would; it has $out for its results and $tries, a file that lasts.
+#: that the grader would; it has $out for its results, $errors for what --error-json would hold, and
+#: $tries, a file that lasts. The two descriptors of grade.sh it has not.
 STUB_RUN = """
 submission=$2
-while [ "$1" != --out ]; do shift; done
-export out=$2 tries=$HOME/tries
+while [ "$1" != --exercise ]; do shift; done
+case "$*" in "--exercise $2 --out $4 --json /dev/fd/3 --error-json /dev/fd/4") ;; *) exit 99 ;; esac
+export out=$4 tries=$HOME/tries errors=$HOME/errors
 mkdir -p "$out"
 echo once >>"$tries"
 printf '%s' '{result}' >"$out/result.json"
 cp {canvas} "$out/canvas.png"
-sh "$submission/does.sh"
+sh "$submission/does.sh" 3>&- 4>&-
 code=$?
-[ $code -gt 1 ] || echo "Score: 17.5 of 100"
+if [ $code -lt 2 ]; then
+    printf '%s' '{result}' >&3
+elif [ -f "$errors" ]; then
+    cat "$errors" >&4
+fi
 exit $code
 """
+
+
+def an_error(whose: str, message: str) -> str:
+    """A sentence of shell: an error, as the grader would tell of it."""
+    error = {
+        "schema": "turtlesim-grader/error/v1",
+        "whose": whose,
+        "message": message,
+        "max_score": 100.0,
+    }
+    return f"printf %s {shlex.quote(json.dumps(error))} >$errors; exit 2"
 
 
 class Machine:
@@ -98,7 +118,9 @@ class Machine:
         shutil.copy(ROOT / "docs" / "spiral.png", folder / "canvas.png")
         python = f'exec env PYTHONPATH={ROOT} {sys.executable} -P "$@"'
         run = STUB_RUN.format(result=json.dumps(RESULT), canvas=folder / "canvas.png")
-        stub = f'if [ "$1" = run ]; then\n{run}\nfi\n'
+        # what is not there, and an exercise of one's own, are left to the real one
+        is_stubbed = '[ "$1" = run ] && [ -e "$2" ] && [ "${*%exercise.yaml*}" = "$*" ]'
+        stub = f"if {is_stubbed}; then\n{run}\nfi\n"
         program(self.venv / "bin" / "python", python)
         program(
             self.venv / "bin" / "grader",
@@ -143,8 +165,11 @@ class Machine:
         return self.bash(CI / "grade.sh", submission, self.work, *options, **env).returncode
 
     @property
-    def message(self) -> str:
-        return (self.work / "message.txt").read_text()
+    def error(self) -> tuple[str, str]:
+        """Whose turn it is, and why."""
+        error = json.loads((self.work / "error.json").read_text())
+        jsonschema.validate(error, json_file.schema("error"))
+        return error["whose"], error["message"]
 
 
 def program(path: Path, script: str) -> None:
@@ -240,18 +265,22 @@ def test_every_format_that_is_asked_for_exists() -> None:
 def test_a_judgement_leaves_its_results(machine: Machine, code: int) -> None:
     assert machine.grade(f"exit {code}", "--fail-under", "60") == code
     assert json.loads((machine.work / "graded" / "result.json").read_text()) == RESULT
-    assert not (machine.work / "message.txt").exists()
+    assert not (machine.work / "error.json").exists()
 
 
 def test_an_unusable_submission_is_told_what_to_mend(machine: Machine) -> None:
-    assert machine.grade("echo 'grader run: no .py in it.\nHand in one.' >&2; exit 2") == 2
-    assert machine.message == "no .py in it.\nHand in one.\n"
+    assert machine.grade(an_error("submission", "no .py in it.\nHand in one.")) == 2
+    assert machine.error == ("submission", "no .py in it.\nHand in one.")
     assert not (machine.work / "graded").exists()
 
 
 def test_a_submission_that_is_not_there_is_unusable(machine: Machine) -> None:
-    assert machine.bash(CI / "grade.sh", "package", machine.work).returncode == 2
-    assert machine.message == "There is no package in what was handed in.\n"
+    grade = machine.bash(CI / "grade.sh", "package", machine.work, GRADER_USER="")
+    assert grade.returncode == 2
+    whose, message = machine.error
+    assert whose == "submission"
+    assert message.startswith("package does not exist.")
+    assert message in grade.stderr
 
 
 @pytest.mark.parametrize(
@@ -261,15 +290,43 @@ def test_a_submission_that_is_not_there_is_unusable(machine: Machine) -> None:
         "exit 127",
         "kill -KILL $PPID",
         "exit 2",  # says nothing
-        "echo 'usage: grader run\ngrader run: error: no such option' >&2; exit 2",
-        "rm $out/result.json",
-        "sed -i 's/17.5/100/' $out/result.json",
-        "rm $out/result.json; mkfifo $out/result.json",
+        "echo 'grader run: no .py in it.' >&2; exit 2",  # as text
+        *(an_error(whose, "It broke.") for whose in ("call", "exercise", "grader")),
     ],
 )
 def test_the_graders_failures_are_never_the_students(machine: Machine, does: str) -> None:
     assert machine.grade(does) == 3
-    assert "not your fault" in machine.message
+    whose, message = machine.error
+    assert whose != "submission"
+    assert message
+
+
+@pytest.mark.parametrize(
+    "does",
+    [
+        "rm $out/result.json",
+        "sed -i 's/17.5/100/' $out/result.json",
+        "rm $out/result.json; mkfifo $out/result.json $out/canvas.png",
+        "rm -r $out",
+        "rm -r $out; echo forged >$out",
+        f"{an_error('submission', 'Forged.').partition(';')[0]}",
+        "echo forged >&3",
+        "echo forged >/dev/fd/3",
+    ],
+)
+def test_what_a_submission_does_to_the_results_changes_no_judgement(
+    machine: Machine, does: str
+) -> None:
+    assert machine.grade(f"({does}) 2>/dev/null; exit 0") == 0
+    assert json.loads((machine.work / "graded" / "result.json").read_text()) == RESULT
+    assert not [path for path in machine.work.rglob("*") if path.is_fifo()]
+
+
+@pytest.mark.skipif(not AS_ROOT, reason="only root can start it as somebody else")
+def test_a_submission_cannot_open_what_its_grader_writes_into(machine: Machine) -> None:
+    does = "for file in /proc/*/fd/[34]; do (echo forged >>$file); done 2>/dev/null; exit 0"
+    assert machine.grade(does) == 0
+    assert json.loads((machine.work / "graded" / "result.json").read_text()) == RESULT
 
 
 def test_a_failure_of_the_grader_is_tried_again(machine: Machine) -> None:
@@ -279,14 +336,16 @@ def test_a_failure_of_the_grader_is_tried_again(machine: Machine) -> None:
 
 def test_what_never_ends_is_ended(machine: Machine) -> None:
     assert machine.grade("sleep 1000", GRADER_LIMIT_S="1") == 3
-    assert "not ready after 1 s" in (machine.work / "log.txt").read_text()
+    assert machine.error == ("grader", "killed, or not ready after 1 s")
 
 
 def test_a_mistake_in_the_exercise_is_the_staffs(machine: Machine) -> None:
     exercise = machine.folder / "exercise.yaml"
     exercise.write_text("points: [nonsense\n")
-    assert machine.grade("exit 0", EXERCISE=str(exercise)) == 3
-    assert "is not an exercise" in (machine.work / "log.txt").read_text()
+    assert machine.grade("exit 0", EXERCISE=str(exercise), GRADER_USER="") == 3
+    whose, message = machine.error
+    assert whose == "exercise"
+    assert "is not an exercise" in message
 
 
 def test_an_old_result_does_not_outlive_a_failure(machine: Machine) -> None:
@@ -376,7 +435,7 @@ def test_a_folder_with_something_else_in_it_is_left_alone(machine: Machine) -> N
 # 0 points or more, None where there is no judgement; and what the student can read.
 
 Outcome = tuple[float | None, str]
-UNUSABLE = "echo 'grader run: hand in <one> \"file\".' >&2; exit 2"
+UNUSABLE = an_error("submission", 'hand in <one> "file".')
 
 
 def on_github(machine: Machine, student: Path, settings: dict[str, str]) -> Outcome:
@@ -585,7 +644,7 @@ def test_an_unusable_submission_has_no_points_and_says_why(
 ) -> None:
     points, said = system(machine, machine.submission(UNUSABLE), {})
     assert points == 0
-    assert 'hand in <one> "file".' in said
+    assert 'hand in <one> "file".' in said.replace("\\", "")
 
 
 @each_system

@@ -10,13 +10,11 @@ anything else tells Classroom 50 that the grader failed.
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
-from datetime import UTC, datetime
 from pathlib import Path
 
 # EDIT: the grader, as pip installs it: a git URL with a tag
@@ -38,40 +36,10 @@ def as_root(script: str, *words: str) -> int:
     return subprocess.run([*sudo, *settings, "bash", str(BUNDLE / script), *words]).returncode
 
 
-def report(work: Path, name: str, file: Path) -> None:
-    """Write the result in a format of `grader report`."""
-    command = [f"{VENV}/bin/grader", "report", str(work / "graded" / "result.json")]
+def report(work: Path, name: str, file: Path, of: str = "graded/result.json") -> None:
+    """Write the result, or the error, in a format of `grader report`."""
+    command = [f"{VENV}/bin/grader", "report", str(work / of)]
     subprocess.run([*command, "--format", name, "--out", str(file)], check=True)
-
-
-def write_unusable(message: str) -> None:
-    """0 points, and what the student has to mend."""
-    env = os.environ
-    code = (
-        "import sys; from grader import exercise as e; print(*e.load(sys.argv[1]).points.values())"
-    )
-    printed = subprocess.check_output([f"{VENV}/bin/python", "-P", "-c", code, EXERCISE], text=True)
-    most = round(sum(map(float, printed.split())))
-    test = {"test-name": "submission", "passed": False, "score": 0, "max-score": most}
-    result = {
-        "schema": "classroom50/result/v1",
-        "classroom": env["CLASSROOM"],
-        "assignment": env["ASSIGNMENT"],
-        "assignment_type": env.get("ASSIGNMENT_TYPE") or "individual",
-        "owner": env.get("OWNER") or env["USERNAME"],
-        "submission": env["SUBMISSION_TAG"],
-        "commit": env["COMMIT_URL"],
-        "release": env["RELEASE_URL"],
-        "review": env.get("REVIEW_URL") or env["COMMIT_URL"],
-        "datetime": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "score": 0,
-        "max-score": most,
-        "tests": [{**test, "message": message}],
-    }
-    Path("result.json").write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
-    quoted = "".join(f"    {line}\n" for line in message.splitlines())
-    body = f"## 0 of {most} points: this cannot be graded\n\n{quoted}\nMend that, and push again.\n"
-    Path("release-body.md").write_text(body, encoding="utf-8")
 
 
 def main() -> int:
@@ -84,7 +52,8 @@ def main() -> int:
         work = Path(folder)
         code = as_root("grade.sh", SUBMISSION, folder)
         if code == 2:
-            write_unusable((work / "message.txt").read_text(encoding="utf-8"))
+            report(work, "classroom50", Path("result.json"), of="error.json")
+            report(work, "markdown", Path("release-body.md"), of="error.json")
             return 0
         if code not in (0, 1):
             return code
@@ -97,7 +66,8 @@ def main() -> int:
         kept.mkdir(exist_ok=True)
         for file in (work / "graded" / "canvas.png", work / "report.html"):
             (kept / file.name).unlink(missing_ok=True)
-            shutil.copyfile(file, kept / file.name)
+            if file.exists():  # the submission could remove the picture
+                shutil.copyfile(file, kept / file.name)
     return 0
 
 

@@ -23,12 +23,8 @@ case $code in
         --out "$results/results.json" || exit 3
     ;;
 2)
-    "$venv/bin/python" -P - "$work/message.txt" "$results/results.json" <<'EOF' || exit 3
-import json, pathlib, sys
-said, file = map(pathlib.Path, sys.argv[1:])
-result = {"gradable": False, "score": 0, "format_errors": said.read_text("utf-8").strip()}
-file.write_text(json.dumps(result))
-EOF
+    "$venv/bin/grader" report "$work/error.json" --format prairielearn \
+        --out "$results/results.json" || exit 3
     ;;
 *) exit 3 ;;
 esac

@@ -11,15 +11,10 @@ code=0
 bash "$scripts/grade.sh" . "$work" 2>/dev/null || code=$?
 case $code in
 0 | 1) "$venv/bin/grader" report "$work/graded/result.json" --format moodle-vpl ;;
-2)
-    echo "<|--"
-    echo "-This cannot be graded, so it has no points"
-    sed 's/^/> /; s/:=>>/: =>>/g; s/--|>/-- |>/g' "$work/message.txt"
-    echo "--|>"
-    echo "Grade :=>> 0"
-    ;;
+2) "$venv/bin/grader" report "$work/error.json" --format moodle-vpl ;;
 *)
-    echo "Comment :=>> The grader failed. This is not your fault. Please tell the course staff."
+    "$venv/bin/grader" report "$work/error.json" --format moodle-vpl ||
+        echo "Comment :=>> The grader failed. This is not your fault. Please tell the course staff."
     exit 3
     ;;
 esac
