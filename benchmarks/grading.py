@@ -22,8 +22,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # this checkout, whatever is installed
 
-from grader.exercise.loading import Limits  # noqa: E402
 from grader.run import real_time, virtual_time  # noqa: E402
+from grader.run.plan import Plan  # noqa: E402
+from grader.scenes.scene import Limits  # noqa: E402
 from grader.submission.opening import open_submission  # noqa: E402
 
 STYLES = {
@@ -34,7 +35,7 @@ STYLES = {
     "multi_threaded": "MultiThreadedExecutor, awaits",
 }
 REFERENCE = ROOT / "turtlesim_challenge" / "turtle_controller.py"
-LIMITS = Limits(first_motion_s=5, rest_s=3, total_s=120)
+PLAN = Plan(Limits(first_motion_s=5, rest_s=3, total_s=120))
 AT_ONCE = (1, 2, 4)
 
 
@@ -60,7 +61,7 @@ def virtual(path: Path) -> Timing:
     marks: dict[str, float] = {}
     with open_submission(path) as submission:
         begun = time.monotonic()
-        recording = virtual_time.run(submission, LIMITS, marks=marks)
+        recording = virtual_time.run(submission, PLAN, marks=marks)
         ended = time.monotonic()
     if recording.run.time != "virtual":
         raise SystemExit(f"{path.stem}: {recording.run.flags}")
@@ -73,7 +74,7 @@ def real(path: Path) -> float:
     """Grade once in real time; the wall time [s]."""
     with open_submission(path) as submission:
         begun = time.monotonic()
-        real_time.run(submission, LIMITS)
+        real_time.run(submission, PLAN)
         return time.monotonic() - begun
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.grading import grade
+from grader.grading import run_all
 from grader.run import virtual_time
 from grader.submission.opening import open_submission
 from tests.submissions.mutants import MUTANTS, REFERENCE
@@ -50,7 +50,7 @@ def graded(tmp_path_factory):
 
     def grade_one(name):
         with open_submission(paths[name]) as submission:
-            recordings = grade(submission, exercise, virtual_time.run)
+            recordings = run_all(submission, exercise, virtual_time.run)
         verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
         hashes = [recording.run.trace_sha256 for recording in recordings]
         assert all(recording.run.time == "virtual" for recording in recordings)

@@ -29,7 +29,8 @@ def test_the_picture_is_in_it(tmp_path):
 
 def test_a_picture_of_noise_and_a_flood_of_output_still_fit(tmp_path):
     noise = np.random.default_rng(1).integers(0, 256, (500, 500, 3), dtype=np.uint8)
-    recording = replace(drive(Spiral(), ticks=200), window=noise)
+    drawn = drive(Spiral(), ticks=200)
+    recording = replace(drawn, trace=replace(drawn.trace, window=noise))
     path = samples.graded(tmp_path, recording, output="x" * 3_000_000)
     content = prairielearn.render(Report.read(path))
     readers.prairielearn(content)

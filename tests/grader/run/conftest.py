@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise.loading import Limits
 from grader.recording.recording import Recording
 from grader.run import virtual_time
+from grader.run.plan import Plan
 from grader.run.simulator.link import Patience
+from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
@@ -33,7 +34,7 @@ Run = Callable[..., Recording]
 def _run(name: str) -> Recording:
     limits, patience = SHORTER.get(Path(name).stem, (LIMITS, Patience()))
     with open_submission(SUBMISSIONS / f"{name}.py") as submission:
-        return virtual_time.run(submission, limits, patience=patience)
+        return virtual_time.run(submission, Plan(limits), patience=patience)
 
 
 def pytest_configure(config: pytest.Config) -> None:

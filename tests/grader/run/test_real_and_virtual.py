@@ -11,7 +11,7 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.grading import Runner, grade
+from grader.grading import Runner, run_all
 from grader.run import real_time, virtual_time
 from grader.submission.opening import open_submission
 
@@ -29,7 +29,7 @@ def verdicts(name: str, run: Runner) -> dict[str, tuple[str, float]]:
     exercise = load_exercise("turtlesim_challenge")
     exercise = replace(exercise, varied=replace(exercise.varied, count=0))
     with open_submission(SUBMISSIONS / f"{name}.py") as submission:
-        recordings = grade(submission, exercise, run)
+        recordings = run_all(submission, exercise, run)
     found = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     return {verdict.check: (verdict.status, verdict.score) for verdict in found}
 

@@ -5,12 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise.loading import Limits
 from grader.recording.recording import Recording
 from grader.run import real_time
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits
 from grader.submission.opening import EntryPoint, Submission, open_submission
+from turtlesim_py.world.events import CmdVel, SetPen
 
-LIMITS = Limits(first_motion_s=3, rest_s=0.3, total_s=20)
+PLAN = Plan(Limits(first_motion_s=3, rest_s=0.3, total_s=20))
 HEAD = """
 import time
 import rclpy
@@ -61,7 +63,7 @@ print(time.monotonic() - started < 5, flush=True)
 
 def run(path: Path) -> Recording:
     with open_submission(path) as submission:
-        return real_time.run(submission, LIMITS)
+        return real_time.run(submission, PLAN)
 
 
 @pytest.fixture(scope="module")
@@ -79,11 +81,11 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Recording]
 @pytest.mark.parametrize("name", ["commands_at_once", "starts_late"])
 def test_the_first_command_arrives(recordings: dict[str, Recording], name: str) -> None:
     recording = recordings[name]
-    assert (recording.run.outcome, len(recording.calls("cmd_vel"))) == ("finished", 1)
+    assert (recording.run.outcome, len(recording.trace.of_kind(CmdVel))) == ("finished", 1)
 
 
 def test_the_first_call_of_a_service_arrives(recordings: dict[str, Recording]) -> None:
-    assert len(recordings["calls_at_once"].calls("set_pen")) == 1
+    assert len(recordings["calls_at_once"].trace.of_kind(SetPen)) == 1
 
 
 def test_a_wrong_name_costs_little_time(recordings: dict[str, Recording]) -> None:
@@ -99,12 +101,12 @@ def test_without_a_node_the_clock_of_the_run_starts_as_well(
 
 def test_a_traceback_shows_none_of_our_lines(recordings: dict[str, Recording]) -> None:
     assert "ValueError: mine" in recordings["raises"].output
-    assert "student_main" not in recordings["raises"].output
+    assert "grader/run" not in recordings["raises"].output
 
 
 def started(root: Path, module: str, function: str) -> Recording:
     submission = Submission("handed in", root, EntryPoint(module, function), "")
-    return real_time.run(submission, LIMITS)
+    return real_time.run(submission, PLAN)
 
 
 def test_an_entry_point_may_be_a_method(tmp_path: Path) -> None:

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise.loading import Limits
 from grader.run import environment, real_time, virtual_time
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
+from turtlesim_py.world.events import CmdVel
 
 ROOT = Path(__file__).parents[3]
 
@@ -68,11 +70,13 @@ def test_files_in_the_user_s_folder_do_not_replace_the_simulator(tmp_path: Path,
 import sys
 sys.path.insert(0, {str(ROOT)!r})
 from pathlib import Path
-from grader.exercise.loading import Limits
 from grader.run import {time}_time
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
 with open_submission(Path({str(handed_in / "weg_zurück.py")!r})) as submission:
-    recording = {time}_time.run(submission, Limits(first_motion_s=1, rest_s=1, total_s=2))
+    plan = Plan(Limits(first_motion_s=1, rest_s=1, total_s=2))
+    recording = {time}_time.run(submission, plan)
 print(recording.run.outcome, recording.output)
 """
     done = subprocess.run(
@@ -116,6 +120,7 @@ def test_the_recording_is_out_of_the_submission_s_reach(tmp_path: Path, clock) -
     script = tmp_path / "looks.py"
     script.write_text(LOOKS_FOR_THE_RECORDING)
     with open_submission(script) as submission:
-        recording = clock.run(submission, Limits(first_motion_s=2, rest_s=0.3, total_s=9))
-    assert recording.calls("cmd_vel")
+        plan = Plan(Limits(first_motion_s=2, rest_s=0.3, total_s=9))
+        recording = clock.run(submission, plan)
+    assert recording.trace.of_kind(CmdVel)
     assert recording.output == ""

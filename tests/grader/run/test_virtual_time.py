@@ -7,10 +7,12 @@ from typing import Any
 
 import pytest
 
-from grader.exercise.loading import Limits
-from grader.recording.recording import Recording, Start
+from grader.recording.recording import Recording
 from grader.run import virtual_time
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits, Start
 from grader.submission.opening import open_submission
+from turtlesim_py.world.events import CmdVel
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 STYLES = sorted(p.stem for p in (SUBMISSIONS / "styles").glob("*.py") if p.stem != "spiral")
@@ -33,7 +35,7 @@ def test_every_style_of_waiting_gives_the_same_run_twice(recorded: Recorded, sty
     first, second = recorded(f"styles/{style}"), recorded(f"styles/{style}", 2)
     assert (first.run.time, first.run.outcome, first.run.flags) == ("virtual", "finished", ())
     assert first.run.trace_sha256 == second.run.trace_sha256
-    assert len(first.calls("cmd_vel")) > 10
+    assert len(first.trace.of_kind(CmdVel)) > 10
     assert first.topics == second.topics
 
 
@@ -51,7 +53,7 @@ def test_what_services_actions_and_the_graph_tell_is_the_same_every_time(
     first, second = recorded(f"services/{name}"), recorded(f"services/{name}", 2)
     assert (first.run.exit_code, first.run.flags) == (0, ())
     assert first.output == second.output
-    assert first.events == second.events
+    assert first.trace.events == second.trace.events
 
 
 def test_rotation_goals_end_as_in_the_original(recorded: Recorded) -> None:
@@ -66,17 +68,18 @@ def test_rotation_goals_end_as_in_the_original(recorded: Recorded) -> None:
 def test_a_burst_of_commands_is_consumed_one_a_tick_and_only_the_last_seven(
     recorded: Recorded,
 ) -> None:
-    commands = recorded("services/burst").calls("cmd_vel")
-    assert [(e["tick"], e["linear"][0]) for e in commands] == [
+    commands = recorded("services/burst").trace.of_kind(CmdVel)
+    assert [(command.tick, command.linear[0]) for command in commands] == [
         (tick, tick + 13.0) for tick in range(1, 8)
     ]
 
 
 def test_a_run_may_start_elsewhere() -> None:
+    plan = Plan(Limits(3, 1, 60), Start(2.0, 3.0, 1.0))
     with open_submission(SUBMISSIONS / "misbehaving/exits.py") as submission:
-        recording = virtual_time.run(submission, Limits(3, 1, 60), Start(2.0, 3.0, 1.0))
-    _, x, y, theta, *_ = recording.published["turtle1"][0]
-    assert (x, y, theta) == pytest.approx((2.0, 3.0, 1.0), abs=0.02)
+        recording = virtual_time.run(submission, plan)
+    way = recording.trace.trajectory()
+    assert (way.x[0], way.y[0], way.theta[0]) == pytest.approx((2.0, 3.0, 1.0), abs=0.02)
     assert recording.start == Start(2.0, 3.0, 1.0)
 
 

@@ -1,0 +1,97 @@
+"""Messages and traces mean the same; what other people's bags hold is no trace."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from rosbags.typesys.stores import ros2_jazzy as ros
+
+from grader.scenes.scene import Message
+from grader.scenes.turtlesim import messages
+from grader.scenes.turtlesim.scene import SCENE
+from grader.scenes.turtlesim.trace import TurtleTrace
+from tests.grader.driving import Spiral, drive
+from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_traces
+
+DEFINITIONS = Path(__file__).parents[4] / "interfaces" / "packages" / "turtlesim" / "msg"
+STRING = "std_msgs/msg/String"
+
+
+@pytest.fixture(scope="module")
+def trace() -> TurtleTrace:
+    return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
+
+
+def said(text: str) -> Message:
+    return Message(1, "/turtlesim/events", STRING, ros.std_msgs__msg__String(text))
+
+
+def test_the_definitions_of_turtlesim_are_those_of_our_interfaces():
+    for msgtype, text in messages.DEFINITIONS.items():
+        name = msgtype.rpartition("/")[2]
+        ours = (DEFINITIONS / f"{name}.msg").read_text()
+        assert text.split() == ours.split()
+
+
+@given(odd=odd_traces())
+@settings(deadline=None)
+def test_a_trace_comes_back_from_its_messages_bit_for_bit(odd):
+    topics = dict(SCENE.bag_topics(odd))
+    back = messages.from_messages(messages.to_messages(odd), topics, odd.ticks)
+    assert_same_trace(back, odd)
+
+
+def test_a_turtle_that_published_nothing_has_topics_all_the_same(trace):
+    made = replace(trace, trajectories={"a/b": trace.trajectory("nobody")})
+    assert dict(SCENE.bag_topics(made)) == {
+        "/a/b/pose": "turtlesim/msg/Pose",
+        "/a/b/color_sensor": "turtlesim/msg/Color",
+    }
+
+
+def test_the_messages_stand_by_tick(trace):
+    ticks = [message.tick for message in messages.to_messages(trace)]
+    assert ticks == sorted(ticks)
+
+
+@pytest.mark.parametrize(
+    "strange",
+    [
+        said("hello"),
+        said("[]"),
+        said("3"),
+        said("{}"),
+        said('{"tick": "1", "op": "clear"}'),
+        said('{"tick": 1, "op": "kill"}'),
+        Message(1, "/chatter", "std_msgs/msg/Int8", ros.std_msgs__msg__Int8(1)),
+    ],
+)
+def test_what_no_trace_says_is_refused(trace, strange):
+    found = [strange, *messages.to_messages(trace)]
+    with pytest.raises(ValueError):
+        messages.from_messages(found, dict(SCENE.bag_topics(trace)), trace.ticks)
+
+
+def test_a_pose_without_its_colour_is_refused(trace):
+    topics = dict(SCENE.bag_topics(trace))
+    found = messages.to_messages(trace)
+    last = max(n for n, message in enumerate(found) if message.msgtype == messages.COLOR)
+    with pytest.raises(ValueError, match="100 poses and 99 colours do not belong together"):
+        messages.from_messages(found[:last] + found[last + 1 :], topics, trace.ticks)
+
+
+@pytest.mark.parametrize("topic", ["/turtlesim/path", "/turtlesim/window"])
+def test_a_missing_picture_is_refused(trace, topic):
+    found = [message for message in messages.to_messages(trace) if message.topic != topic]
+    with pytest.raises(KeyError, match=topic):
+        messages.from_messages(found, {}, trace.ticks)
+
+
+def test_a_picture_of_another_encoding_is_refused(trace):
+    found = messages.to_messages(trace)
+    found[-1].message.encoding = "mono8"
+    with pytest.raises(ValueError, match="'mono8', expected 'rgb8'"):
+        messages.from_messages(found, {}, trace.ticks)

@@ -1,0 +1,64 @@
+"""A reader of any result is told what was done to the arena other than by driving."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from grader.scenes.turtlesim.remarks import remarks
+from grader.scenes.turtlesim.trace import TurtleTrace
+from tests.grader.driving import Spiral, drive
+from turtlesim_py.world.events import Clear, Kill, Reset, Spawn, TeleportAbsolute, TeleportRelative
+
+
+@pytest.fixture(scope="module")
+def trace() -> TurtleTrace:
+    """Driving and pens only."""
+    return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
+
+
+def test_there_is_nothing_to_say_about_driving_and_pens(trace):
+    assert remarks(trace, ["/turtle1/cmd_vel", "/somewhere/else"]) == []
+
+
+@pytest.mark.parametrize(
+    ("event", "sentence"),
+    [
+        (
+            TeleportAbsolute(tick=100, x=1.0, y=2.0, theta=0.0),
+            "The node called teleport_absolute once, first at 1.60 s: "
+            "it moves a turtle without driving.",
+        ),
+        (
+            TeleportRelative(tick=100, turtle="another", linear=1.0, angular=0.0),
+            "The node called teleport_relative once, first at 1.60 s: "
+            "it moves a turtle without driving.",
+        ),
+        (
+            Spawn(tick=1, x=1.0, y=2.0, theta=0.0, name=""),
+            "The node called spawn once, first at 0.02 s: it adds a turtle.",
+        ),
+        (
+            Kill(tick=50, name="nobody"),
+            "The node called kill once, first at 0.80 s: it removes a turtle.",
+        ),
+        (Reset(tick=50), "The node called reset once, first at 0.80 s: it starts the arena anew."),
+        (Clear(tick=50), "The node called clear once, first at 0.80 s: it wipes the drawing."),
+    ],
+)
+def test_an_intervention_is_told_with_its_time_and_effect(trace, event, sentence):
+    assert remarks(replace(trace, events=(*trace.events, event)), []) == [sentence]
+
+
+def test_many_are_one_sentence_with_their_number_and_the_first_time(trace):
+    many = tuple(Clear(tick=tick) for tick in (25, 50, 75))
+    assert remarks(replace(trace, events=many), []) == [
+        "The node called clear 3 times, first at 0.40 s: it wipes the drawing."
+    ]
+
+
+def test_a_node_that_publishes_the_pose_itself_is_told_what_was_judged(trace):
+    (said,) = remarks(trace, ["/turtle1/pose"])
+    assert said.startswith("The node published on /turtle1/pose itself.")
+    assert "where the turtle really was" in said

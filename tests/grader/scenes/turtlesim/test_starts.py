@@ -1,0 +1,51 @@
+"""Where varied runs start: a matter of the seed, at the distance that was asked for."""
+
+from __future__ import annotations
+
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.scenes.scene import Start
+from grader.scenes.turtlesim.starts import starts
+from turtlesim_py.world.turtle import SIZE_M
+
+#: As every release so far has placed them.
+FIRST_OF_2026 = [
+    Start(6.223, 5.555, 0.074),
+    Start(4.114, 4.468, -1.739),
+]
+
+
+def test_the_same_seed_gives_the_same_places():
+    assert starts(5, 2026, 0.5, 2.0) == starts(5, 2026, 0.5, 2.0)
+
+
+def test_another_seed_gives_other_places():
+    assert not set(starts(5, 1, 0.5, 2.0)) & set(starts(5, 2, 0.5, 2.0))
+
+
+def test_more_places_begin_with_the_same_ones():
+    assert starts(5, 2026, 0.5, 2.0)[:2] == starts(2, 2026, 0.5, 2.0)
+
+
+def test_a_seed_means_the_same_places_in_every_release():
+    assert starts(2, 2026, 0.5, 2.0) == FIRST_OF_2026
+
+
+def test_no_varied_runs_start_nowhere():
+    assert starts(0, 2026, 0.5, 2.0) == []
+
+
+@given(seed=st.integers(), nearest=st.floats(0, 2), more=st.floats(0, 2))
+def test_every_place_is_as_far_from_the_centre_as_was_asked_for(seed, nearest, more):
+    for start in starts(4, seed, nearest, nearest + more):
+        distance = math.dist((start.x, start.y), (SIZE_M / 2, SIZE_M / 2))
+        assert nearest - 0.001 <= distance <= nearest + more + 0.001
+        assert -math.pi - 0.001 <= start.theta <= math.pi + 0.001
+
+
+def test_places_have_whole_millimetres_so_that_a_person_can_type_them():
+    for start in starts(20, 7, 0.5, 2.0):
+        assert all(value == round(value, 3) for value in (start.x, start.y, start.theta))
