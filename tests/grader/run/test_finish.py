@@ -1,0 +1,88 @@
+"""How a run ended, and the recording that is made of it, once."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import get_args
+
+import pytest
+
+from grader.recording.recording import Outcome, PublishedTopic, Run
+from grader.run.finish import Ending, outcome, record
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits, Reason, Start
+from tests.grader.driving import Spiral, drive
+
+REASONS = get_args(Reason)
+#: (why the simulator stopped, exit code of the submission's process or None) -> outcome
+EXPECTED = {
+    ("rest", None): "finished",
+    ("no_motion", None): "time_limit",
+    ("time_limit", None): "time_limit",
+    ("gone", None): "time_limit",
+    ("", None): "time_limit",
+    ("rest", 0): "finished",
+    ("no_motion", 0): "exited",
+    ("time_limit", 0): "exited",
+    ("gone", 0): "exited",
+    ("", 0): "exited",
+    **{(reason, 1): "crashed" for reason in REASONS},
+    **{(reason, 255): "crashed" for reason in REASONS},
+    **{(reason, -9): "killed" for reason in REASONS},
+    **{(reason, -11): "killed" for reason in REASONS},
+}
+ENDING = Ending("virtual", "crashed", -11, 1.23456, "ROS domain 77", "printed\n", ("a", "b"))
+PLAN = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, ("c",))
+TOPICS = (PublishedTopic("/a", "b/msg/C"),)
+
+
+@pytest.mark.parametrize(("reason", "exit_code"), EXPECTED)
+def test_the_outcome_follows_from_the_reason_and_the_exit_code(reason, exit_code):
+    assert outcome(reason, exit_code) == EXPECTED[reason, exit_code]
+
+
+def test_every_reason_is_covered_and_all_but_stalled_comes_of_them():
+    assert {reason for reason, _ in EXPECTED} == set(REASONS)
+    assert set(EXPECTED.values()) == set(get_args(Outcome)) - {"stalled"}
+
+
+@pytest.fixture(scope="module")
+def trace():
+    return drive(Spiral(), ticks=100).trace
+
+
+def test_a_recording_has_everything_about_its_run(trace):
+    made = record(PLAN, trace, TOPICS, ENDING)
+    assert made.trace is trace
+    assert made.run == Run(
+        time="virtual",
+        outcome="crashed",
+        exit_code=-11,
+        ticks=100,
+        simulated_s=1.6,
+        wall_s=1.235,
+        trace_sha256=trace.sha256(),
+        isolation="ROS domain 77",
+        flags=("a", "b", "c"),
+        seed=42,
+    )
+    assert (made.topics, made.output) == (TOPICS, "printed\n")
+    assert (made.start, made.scene) == (Start(1.0, 2.0, 3.0), "turtlesim")
+    assert all(getattr(made.run, f.name) != getattr(Run(), f.name) for f in fields(Run))
+
+
+def test_what_the_run_itself_says_stands_before_what_was_known_before(trace):
+    repeated = replace(PLAN, flags=("graded in real time", "repeated"))
+    made = record(repeated, trace, TOPICS, replace(ENDING, flags=("late",)))
+    assert made.run.flags == ("late", "graded in real time", "repeated")
+
+
+def test_from_the_usual_place_there_is_no_start_and_no_seed(trace):
+    made = record(Plan(PLAN.limits), trace, (), ENDING)
+    assert (made.start, made.run.seed, made.topics) == (None, None, ())
+
+
+def test_the_hash_is_the_trace_s_whatever_else_differs(trace):
+    other = Ending("real", "finished", None, 9.0, "private network", "")
+    made = record(Plan(Limits(9, 9, 9)), trace, (), other)
+    assert made.run.trace_sha256 == record(PLAN, trace, TOPICS, ENDING).run.trace_sha256

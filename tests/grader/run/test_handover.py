@@ -1,0 +1,141 @@
+"""What the simulator's process leaves is fetched whole; anything else is the grader's failure."""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+from collections.abc import Iterator
+from pathlib import Path
+from struct import pack
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from grader.errors import GraderFailure
+from grader.recording.recording import PublishedTopic
+from grader.run.handover import fetch, leave
+from grader.scenes import load_scene
+from grader.scenes.scene import Scene
+from grader.scenes.turtlesim.trace import TurtleTrace
+from tests.grader.driving import Spiral, drive
+from tests.grader.scenes.turtlesim.traces import assert_same_trace
+
+TOPICS = (PublishedTopic("/turtle1/cmd_vel", "geometry_msgs/msg/Twist"), PublishedTopic("/ü", ""))
+
+
+@pytest.fixture(scope="module")
+def trace() -> TurtleTrace:
+    return TurtleTrace.of(drive(Spiral(), ticks=50).trace)
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return load_scene("turtlesim")
+
+
+@pytest.fixture
+def file() -> Iterator[int]:
+    """A file without a name, as a run has one."""
+    file = os.memfd_create("recording")
+    yield file
+    os.close(file)
+
+
+@pytest.fixture
+def left(file, scene, trace) -> bytes:
+    """What lies in the file when it was left."""
+    leave(Path(f"/proc/self/fd/{file}"), scene, trace, TOPICS)
+    return contents(file)
+
+
+def contents(file: int) -> bytes:
+    return os.pread(file, 100_000_000, 0)
+
+
+def put(file: int, data: bytes) -> None:
+    os.ftruncate(file, 0)
+    os.pwrite(file, data, 0)
+
+
+def failure(file: int, scene: Scene) -> str:
+    with pytest.raises(GraderFailure, match="the simulator left no recording") as error:
+        fetch(file, scene)
+    return str(error.value)
+
+
+def test_what_was_left_is_fetched(file, left, scene, trace):
+    found, topics = fetch(file, scene)
+    assert_same_trace(TurtleTrace.of(found), trace)
+    assert topics == TOPICS
+
+
+def test_it_can_be_fetched_again_and_the_file_stays_open(file, left, scene):
+    os.lseek(file, 7, os.SEEK_SET)
+    first, second = fetch(file, scene), fetch(file, scene)
+    assert first[0].sha256() == second[0].sha256()
+    assert os.fstat(file).st_size == len(left)
+
+
+def test_a_submission_that_published_nothing_has_no_topics(file, scene, trace):
+    leave(Path(f"/proc/self/fd/{file}"), scene, trace, ())
+    assert fetch(file, scene)[1] == ()
+
+
+def test_an_empty_file_is_a_failure(file, scene):
+    failure(file, scene)
+
+
+@given(data=st.binary(max_size=200))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_garbage_is_a_failure_and_nothing_else(file, scene, data):
+    put(file, data)
+    failure(file, scene)
+
+
+def test_a_pickle_is_not_unpickled(file, scene, trace):
+    class Trap:
+        def __reduce__(self):
+            return os._exit, (1,)
+
+    data = pickle.dumps(Trap())
+    for found in (data, pack("<Q", 2) + b"[]" + data, pack("<Q", len(data)) + data):
+        put(file, found)
+        failure(file, scene)
+
+
+@pytest.mark.parametrize("part", [0.0, 0.00001, 0.01, 0.5, 0.99, 0.99999])
+def test_a_file_that_is_cut_off_is_a_failure(file, left, scene, part):
+    put(file, left[: int(len(left) * part)])
+    failure(file, scene)
+
+
+@pytest.mark.parametrize(
+    "topics",
+    [
+        b"",
+        b"{",
+        b"3",
+        b"\xff\xfe",
+        b"[" * 100_000,
+        b"[3]",
+        b'[{"topic": "/a"}]',
+        b'[{"topic": "/a", "type": "b", "more": 1}]',
+    ],
+)
+def test_topics_that_are_none_are_a_failure(file, left, scene, trace, topics):
+    put(file, pack("<Q", len(topics)) + topics + scene.encode(trace))
+    failure(file, scene)
+
+
+@pytest.mark.parametrize("length", [1, 2**40, 2**64 - 1])
+def test_a_wrong_length_is_a_failure(file, left, scene, length):
+    put(file, pack("<Q", length) + left[8:])
+    failure(file, scene)
+
+
+def test_the_failure_does_not_repeat_the_file(file, scene):
+    text = json.dumps(["x" * 100_000]).encode()
+    put(file, pack("<Q", len(text)) + text)
+    assert len(failure(file, scene)) < 300

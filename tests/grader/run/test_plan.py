@@ -1,0 +1,66 @@
+"""What is to be run comes to the simulator's process as it was meant."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits, Start
+
+numbers = st.floats(allow_nan=False)
+plans = st.builds(
+    Plan,
+    limits=st.builds(Limits, numbers, numbers, numbers),
+    start=st.none() | st.builds(Start, numbers, numbers, numbers),
+    scene=st.text(),
+    seed=st.none() | st.integers(),
+    flags=st.lists(st.text(), max_size=3).map(tuple),
+)
+
+
+@given(plan=plans)
+def test_a_plan_survives_the_way_to_another_process(plan):
+    assert Plan.from_json(plan.to_json()) == plan
+
+
+def test_every_field_and_its_type_survive():
+    plan = Plan(Limits(1.0, 2.0, 3.0), Start(-0.1, 1 / 3, 5e-324), "moon", 42, ("odd", "ü\n"))
+    usual = Plan(Limits(0.0, 0.0, 0.0))
+    assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))
+    back = Plan.from_json(plan.to_json())
+    assert back == plan
+    assert (type(back.limits), type(back.start), type(back.flags)) == (Limits, Start, tuple)
+
+
+def test_a_start_in_the_origin_is_a_start():
+    plan = Plan(Limits(1.0, 2.0, 3.0), Start(0.0, 0.0, 0.0))
+    assert Plan.from_json(plan.to_json()).start == Start(0.0, 0.0, 0.0)
+
+
+@given(plan=plans)
+def test_it_is_one_line_of_ascii_as_an_argument_must_be(plan):
+    text = plan.to_json()
+    assert text.isascii()
+    assert text.isprintable()
+
+
+def test_what_is_only_there_if_it_is_needed_has_its_usual_value():
+    plan = Plan(Limits(1.0, 2.0, 3.0))
+    assert (plan.start, plan.scene, plan.seed, plan.flags) == (None, "turtlesim", None, ())
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", '{"limits": {}, "start": null, "flags": []}'])
+def test_what_is_no_plan_is_no_plan(text):
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        Plan.from_json(text)
+
+
+def test_a_field_that_is_not_known_is_an_error():
+    words = json.loads(Plan(Limits(1.0, 2.0, 3.0)).to_json()) | {"colour": "blue"}
+    with pytest.raises(TypeError, match="colour"):
+        Plan.from_json(json.dumps(words))
