@@ -23,6 +23,7 @@ from grader.run.simulator.link import Patience
 from grader.run.simulator_process import SIMULATOR_PATIENCE_S, Message, Simulator, start_simulator
 from grader.run.student import __path__ as student_folder
 from grader.scenes import load_scene
+from grader.scenes.scene import Introduction
 from grader.submission.opening import Submission
 
 WAITS_FOR_EVER = "every thread of the node waits for something that will not come"
@@ -71,7 +72,7 @@ def _try(
         theirs,
     ):
         student = place.student(
-            command(submission, ours.fileno(), core_id),
+            command(submission, scene.introduction, ours.fileno(), core_id),
             submission,
             pass_fds=(ours.fileno(),),
             more_env={"PYTHONHASHSEED": "0"},
@@ -102,10 +103,14 @@ def _try(
     return record(plan, trace, topics, ending), ""
 
 
-def command(submission: Submission, link_fd: int, core_id: int) -> list[str]:
+def command(
+    submission: Submission, introduction: Introduction, link_fd: int, core_id: int
+) -> list[str]:
     """How the submission's process is started."""
     main = str(Path(student_folder[0]) / "virtual_main.py")
-    return [sys.executable, main, str(link_fd), str(core_id), *stage.target(submission)]
+    nodes = json.dumps(introduction.nodes)
+    words = [str(link_fd), str(core_id), nodes, *stage.target(submission)]
+    return [sys.executable, main, *words]
 
 
 def _watch(simulator: Simulator, run_s: float) -> Message:

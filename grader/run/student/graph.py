@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from typing import Any
 
 from grader.run.lockstep import real
@@ -27,12 +28,16 @@ QUESTIONS = (
     "get_subscriptions_info_by_topic",
     "get_topic_names_and_types",
 )
-#: The simulator's node.
-SIMULATOR = ("turtlesim", "/")
+#: A node's name and namespace.
+Name = tuple[str, str]
 
 
-def install(link: SimulatorLink, node_class: Any) -> None:
-    """Have a node's questions wait, in no virtual time, for the whole simulator to be found."""
+def install(link: SimulatorLink, node_class: Any, nodes: Sequence[Name]) -> None:
+    """Have a node's questions wait, in no virtual time, for the whole simulator to be found.
+
+    Args:
+        nodes: the simulator's.
+    """
     seen_epochs: set[int] = set()
 
     def replace(name: str) -> None:
@@ -43,7 +48,7 @@ def install(link: SimulatorLink, node_class: Any) -> None:
             link.before_question()
             if link.graph_epoch not in seen_epochs:
                 seen_epochs.add(link.graph_epoch)
-                _await_graph(link, self.handle)
+                _await_graph(link, self.handle, nodes)
             return pass_on(ask, self, *args, **kwargs)
 
         setattr(node_class, name, asked)
@@ -53,16 +58,16 @@ def install(link: SimulatorLink, node_class: Any) -> None:
             replace(question)
 
 
-def _await_graph(link: SimulatorLink, node: Any) -> None:
+def _await_graph(link: SimulatorLink, node: Any, nodes: Sequence[Name]) -> None:
     deadline = real.monotonic() + MATCH_PATIENCE_S
-    while not _is_complete(link, node) and real.monotonic() < deadline:
+    while not _is_complete(link, node, nodes) and real.monotonic() < deadline:
         real.sleep(0.001)
 
 
-def _is_complete(link: SimulatorLink, node: Any) -> bool:
+def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[Name]) -> bool:
     from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-    if SIMULATOR not in node.get_node_names_and_namespaces():
+    if not set(nodes) <= set(node.get_node_names_and_namespaces()):
         return False
     for remote in link.remotes.values():
         if remote.channel.startswith("topic"):
@@ -74,5 +79,5 @@ def _is_complete(link: SimulatorLink, node: Any) -> bool:
         if count(remote.name) == 0:
             return False
     topics = {r.name for r in link.remotes.values() if r.writes and r.channel.startswith("topic")}
-    owned = _rclpy.rclpy_get_publisher_names_and_types_by_node(node, False, *SIMULATOR)
-    return topics <= {topic for topic, _ in owned}
+    ask = _rclpy.rclpy_get_publisher_names_and_types_by_node
+    return topics <= {topic for name in nodes for topic, _ in ask(node, False, *name)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import socket
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
@@ -28,9 +28,17 @@ from grader.run.student.waiting import VirtualWaiter, clock_event_class
 
 
 def install(
-    scheduler: Scheduler, connection: socket.socket, refuse: Callable[[str], None]
+    scheduler: Scheduler,
+    connection: socket.socket,
+    nodes: Sequence[graph.Name],
+    refuse: Callable[[str], None],
 ) -> SimulatorLink:
-    """Replace what tells or waits for time in rclpy; returns the link to the simulator."""
+    """Replace what tells or waits for time in rclpy; returns the link to the simulator.
+
+    Args:
+        nodes: the simulator's.
+        refuse: told what virtual time cannot follow; does not return.
+    """
     link = SimulatorLink(scheduler, connection, refuse)
 
     def now_ns() -> int:
@@ -46,7 +54,7 @@ def install(
     actions.install()
     _guard_entities()
     executor.install()  # before Node is changed, which it looks at
-    graph.install(link, rclpy.node.Node)
+    graph.install(link, rclpy.node.Node, nodes)
     chance.order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
     _charge_for(rclpy.context.Context, "ok", scheduler)

@@ -1,11 +1,12 @@
 """The submission's process in virtual time: replace what tells time, run what was handed in.
 
-    python main.py FD CORE ROOT module:function
-    python main.py FD CORE ROOT path/to/script.py [function]
+    python virtual_main.py FD CORE NODES ROOT module:function
+    python virtual_main.py FD CORE NODES ROOT path/to/script.py [function]
 
-FD is the link to the simulator, CORE the processor core to share with it (-1: any). Started by
-path, like `grader.run.student.main`, whose rules for what a submission may import are the same.
-Everything of ours is imported before the submission is, and then forgotten by the import system.
+FD is the link to the simulator, CORE the processor core to share with it (-1: any), NODES a JSON
+list of the names and namespaces of the simulator's nodes. Started by path, like
+`grader.run.student.main`, whose rules for what a submission may import are the same. Everything of
+ours is imported before the submission is, and then forgotten by the import system.
 """
 
 import sys
@@ -14,6 +15,7 @@ from pathlib import Path
 sys.path[0] = str(Path(__file__).resolve().parents[3])
 
 import atexit  # noqa: E402
+import json  # noqa: E402
 import socket  # noqa: E402
 
 from grader.run.lockstep import contract, faults, real  # noqa: E402
@@ -35,7 +37,7 @@ from grader.run.student.scheduler import Scheduler  # noqa: E402
 
 def main() -> None:
     """Run one submission; does not return."""
-    _, fd, core, root, target, *more = sys.argv
+    _, fd, core, nodes, root, target, *more = sys.argv
     student_main.die_with_parent()
     connection = socket.socket(fileno=int(fd))
     scheduler = Scheduler()
@@ -59,7 +61,8 @@ def main() -> None:
             give_up(Kind.FAILED, broken)
         from grader.run.student import install as inside_rclpy
 
-        link = inside_rclpy.install(scheduler, connection, refuse)
+        known = [(name, namespace) for name, namespace in json.loads(nodes)]
+        link = inside_rclpy.install(scheduler, connection, known, refuse)
         link.core = int(core)
     except refusal.Unsupported as lack:
         give_up(Kind.FAILED, f"virtual time does not work here: {lack}")

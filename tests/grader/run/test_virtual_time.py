@@ -168,7 +168,7 @@ def test_a_mistake_of_ours_is_never_the_submission_s_even_where_that_catches_eve
         r"\(TypeError in simulator_link\.py, line \d+\)",
         recording.run.flags[-1],
     )
-    assert (recording.run.outcome, len(recording.calls("cmd_vel"))) == ("finished", 2)
+    assert (recording.run.outcome, len(recording.trace.of_kind(CmdVel))) == ("finished", 2)
 
 
 @pytest.mark.parametrize(

@@ -55,10 +55,10 @@ def test_every_column_has_its_name_and_type(way):
 
 
 def test_the_order_of_the_columns_is_that_of_the_original_s_recordings():
-    assert COLUMNS == (
+    assert (
         *("tick", "x", "y", "theta", "linear_velocity", "angular_velocity"),
         *("r", "g", "b"),
-    )
+    ) == COLUMNS
 
 
 @given(rows=rows())
@@ -74,9 +74,7 @@ def test_readings_are_rows_with_their_ticks():
         (9, Reading(Pose(-0.0, math.inf, 0.5, 0.0, -1.0), (255, 0, 255))),
     ]
     way = Trajectory.of_readings(readings)
-    expected = np.array(
-        [[3, 1, 2, 3, 4, 5, 6, 7, 8], [9, -0.0, math.inf, 0.5, 0, -1, 255, 0, 255]]
-    )
+    expected = np.array([[3, 1, 2, 3, 4, 5, 6, 7, 8], [9, -0.0, math.inf, 0.5, 0, -1, 255, 0, 255]])
     assert way.rows().tobytes() == expected.tobytes()
 
 

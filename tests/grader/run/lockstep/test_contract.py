@@ -110,14 +110,15 @@ def changed_rclpy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[
 def test_a_broken_contract_on_either_side_is_a_run_in_real_time_that_says_so(
     changed_rclpy: Callable[[str, str], None], side: str
 ) -> None:
-    from grader.exercise.loading import Limits
     from grader.run import virtual_time
+    from grader.run.plan import Plan
+    from grader.scenes.scene import Limits
     from grader.submission.opening import open_submission
 
     submissions = Path(__file__).parents[3] / "submissions"
     changed_rclpy(side, "ClockType.STEADY_TIME")
     with open_submission(submissions / "misbehaving/exits.py") as submission:
-        recording = virtual_time.run(submission, Limits(1, 0.2, 5))
+        recording = virtual_time.run(submission, Plan(Limits(1, 0.2, 5)))
     assert recording.run.time == "real"
     assert recording.run.flags == (
         f"graded in real time, because virtual time does not fit rclpy {contract.version()}: "
