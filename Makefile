@@ -1,7 +1,11 @@
 # `make` alone lists what there is. PYTHON=python3.12 make ... chooses the Python of .venv.
 
 SHELL := /bin/bash
-BIN := .venv/bin
+# the ROS release from PyPI, where none is sourced; each but Jazzy has an environment of its own
+ROS := $(or $(ROS),jazzy)
+VENV := .venv$(filter-out -jazzy,-$(ROS))
+BIN := $(VENV)/bin
+export ROS VENV
 # options for pytest: make test ARGS="-k canvas"
 ARGS ?=
 
@@ -15,7 +19,7 @@ endif
 NOT_AT_LOWEST := tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
 
-.PHONY: help install test test-lowest lint demo bench clean
+.PHONY: help install test test-lowest test-kilted lint demo bench clean
 .DEFAULT_GOAL := help
 
 help:
@@ -23,6 +27,7 @@ help:
 	@echo "make demo      grade the reference controller: pictures and result in demo/"
 	@echo "make test      run all tests                   (ARGS=\"-k name\" for some)"
 	@echo "make test-lowest   run them with our dependencies at their lower bounds"
+	@echo "make test-kilted   run them with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
 	@echo "make lint      ruff and mypy"
 	@echo "make bench     what the simulator and a grading cost: tables (minutes)"
 	@echo "make clean     remove everything that was made here"
@@ -40,6 +45,9 @@ test-lowest:
 	@VENV=.venv-lowest BOUNDS=lowest scripts/install.sh
 	@echo "== running the tests at the lower bounds"
 	@.venv-lowest/bin/python -m pytest $(NOT_AT_LOWEST:%=--ignore-glob="$(CURDIR)/%") $(ARGS)
+
+test-kilted:
+	@$(MAKE) --no-print-directory ROS=kilted test
 
 lint: install
 	@echo "== ruff"

@@ -21,6 +21,8 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = PYPROJECT["project"]
 REQUIREMENTS = PYPROJECT["tool"]["turtlesim-py"]
 ROS_IS_SOURCED = bool(os.environ.get("ROS_DISTRO"))
+# where it is not: which ROS release from PyPI
+ROS = REQUIREMENTS["ros"][os.environ.get("ROS") or "jazzy"]
 
 # Each is a ROS package of its own, with the files that it launches. turtlesim_py stands last:
 # of several destinations of one file, colcon sees the last.
@@ -66,8 +68,8 @@ def ros_dependent() -> dict[str, Any]:
     from interfaces.build import BuildInterfaces, extensions
 
     return {
-        "install_requires": REQUIREMENTS["dependencies"] + REQUIREMENTS["ros"],
-        "setup_requires": REQUIREMENTS["ros-build"],
+        "install_requires": REQUIREMENTS["dependencies"] + ROS["run"],
+        "setup_requires": ROS["build"],
         "ext_modules": extensions(),
         "cmdclass": {"build_py": BuildPy, "build_ext": BuildInterfaces},
     }

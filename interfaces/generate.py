@@ -2,7 +2,7 @@
 
 This calls the Python API of the rosidl generators, as ROS's own CMake functions do. Their
 command `rosidl generate` cannot be used: the wheels on PyPI register its plug-ins twice, which
-it refuses. Needs the packages listed under `ros-build` in pyproject.toml.
+it refuses. Needs the packages listed under `build` in pyproject.toml.
 """
 
 import json

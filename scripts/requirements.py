@@ -4,6 +4,7 @@ BOUNDS=lowest asks for our dependencies at their lower bounds.
 """
 
 import os
+import sys
 import tomllib
 from pathlib import Path
 
@@ -26,5 +27,8 @@ if os.environ.get("BOUNDS") == "lowest":
     tests = [name for name in tests if not name.startswith(NOT_AT_LOWEST)]
 requirements = [*build, *dependencies, *tests]
 if not os.environ.get("ROS_DISTRO"):  # the same rule as in setup.py
-    requirements += [*ours["ros"], *ours["ros-build"]]
+    release = os.environ.get("ROS") or "jazzy"
+    if release not in ours["ros"]:
+        sys.exit(f"ROS={release}: pyproject.toml has {' and '.join(ours['ros'])}")
+    requirements += [*ours["ros"][release]["run"], *ours["ros"][release]["build"]]
 print("\n".join(requirements))

@@ -9,5 +9,7 @@ Each of the two processes has these put into its rclpy; neither side is imported
 | `endpoints`, `actions` | rclpy's publishers, subscriptions, clients, services, actions: counted |
 | `waitsets` | rclpy's wait sets, timers and guard conditions: they wait in virtual time |
 | `rclpy_clocks` | rclpy's clocks |
+| `contract` | what is assumed of rclpy's inside, and whether it holds |
+| `faults` | whose an exception is: the program's or ours |
 | `times`, `real` | where virtual time begins; the real clock, kept before it is replaced |
 """

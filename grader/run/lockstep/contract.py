@@ -21,7 +21,6 @@ import re
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +57,8 @@ def broken(*groups: Iterable[Assumption]) -> str:
 
 def version() -> str:
     """The version of the installed rclpy, or "?"."""
+    from importlib import metadata  # costs 15 ms, and is not needed where all is well
+
     with suppress(metadata.PackageNotFoundError):
         return metadata.version("ros-rclpy")  # from PyPI; its package.xml may say less
     try:

@@ -1,6 +1,6 @@
 """The simulator's process in a run in virtual time: it ticks when the submission's process asks.
 
-    python -m grader.run.simulator.virtual_time FD FILE PLAN LINK PID CORE PATIENCE
+    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PID CORE PATIENCE
 
 The first three as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
 process PID, CORE the processor core to share with it (-1: any), PATIENCE a

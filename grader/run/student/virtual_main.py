@@ -17,6 +17,7 @@ sys.path[0] = str(Path(__file__).resolve().parents[3])
 import atexit  # noqa: E402
 import json  # noqa: E402
 import socket  # noqa: E402
+from contextlib import suppress  # noqa: E402
 
 from grader.run.lockstep import contract, faults, real  # noqa: E402
 from grader.run.lockstep.protocol import Kind, Note, encode  # noqa: E402
@@ -43,7 +44,8 @@ def main() -> None:
     scheduler = Scheduler()
 
     def give_up(kind: Kind, what: str) -> None:
-        connection.send(encode(Note(kind, what)))
+        with suppress(OSError):  # the simulator is gone
+            connection.send(encode(Note(kind, what)))
         real.leave(0)
 
     def refuse(what: str) -> None:
@@ -84,7 +86,7 @@ def main() -> None:
     code = student_main.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
     atexit._run_exitfuncs()
-    link.synchronise()
+    faults.guarded(link.synchronise)()
     link.note(Kind.LEAVING)
     real.leave(code)
 

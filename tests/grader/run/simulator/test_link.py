@@ -53,7 +53,15 @@ def test_a_million_warnings_are_few_flags(ends: tuple[socket.socket, socket.sock
 
 def test_what_is_not_supported_is_refused(ends: tuple[socket.socket, socket.socket]) -> None:
     ends[1].send(encode(Note(Kind.UNSUPPORTED, "forks")))
-    with pytest.raises(Refused, match="forks"):
+    with pytest.raises(Refused, match=r"^the submission forks$"):
+        StudentLink(ends[0], os.getpid(), Patience()).receive()
+
+
+def test_where_virtual_time_fails_the_submission_is_not_named(
+    ends: tuple[socket.socket, socket.socket],
+) -> None:
+    ends[1].send(encode(Note(Kind.FAILED, "virtual time itself failed")))
+    with pytest.raises(Refused, match=r"^virtual time itself failed$"):
         StudentLink(ends[0], os.getpid(), Patience()).receive()
 
 
