@@ -1,1 +1,85 @@
-"""Run a submission, record what its turtle really did, judge it, explain the verdict."""
+"""Run a submission, record what really happened, judge it, explain the verdict.
+
+The names of `__all__` are public, and so is `grader.testing`; all else may change. They are loaded
+when they are first asked for: the processes of a run import parts of this package, and must not
+wait for what only the grader's own process needs.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from grader.errors import (
+        ExerciseError,
+        GraderError,
+        GraderFailure,
+        RecordingError,
+        SubmissionError,
+        UsageError,
+    )
+    from grader.exercise.check import Checks, Tolerances
+    from grader.exercise.driven_path import DrivenPath
+    from grader.exercise.loading import Exercise, load_exercise
+    from grader.exercise.verdict import Evidence, Finding, Verdict
+    from grader.grading import grade, judge, load_recordings, record, save_recordings
+    from grader.recording.recording import Recording, Recordings
+    from grader.result.result import Result
+    from grader.submission.opening import open_submission
+
+#: module -> its public names
+_PUBLIC = {
+    "grader.grading": ("grade", "judge", "load_recordings", "record", "save_recordings"),
+    "grader.submission.opening": ("open_submission",),
+    "grader.exercise.loading": ("Exercise", "load_exercise"),
+    "grader.exercise.check": ("Checks", "Tolerances"),
+    "grader.exercise.driven_path": ("DrivenPath",),
+    "grader.exercise.verdict": ("Evidence", "Finding", "Verdict"),
+    "grader.recording.recording": ("Recording", "Recordings"),
+    "grader.result.result": ("Result",),
+    "grader.errors": (
+        *("GraderError", "UsageError", "SubmissionError"),
+        *("ExerciseError", "RecordingError", "GraderFailure"),
+    ),
+}
+_MODULES = {name: module for module, names in _PUBLIC.items() for name in names}
+
+__all__ = [
+    "Checks",
+    "DrivenPath",
+    "Evidence",
+    "Exercise",
+    "ExerciseError",
+    "Finding",
+    "GraderError",
+    "GraderFailure",
+    "Recording",
+    "RecordingError",
+    "Recordings",
+    "Result",
+    "SubmissionError",
+    "Tolerances",
+    "UsageError",
+    "Verdict",
+    "grade",
+    "judge",
+    "load_exercise",
+    "load_recordings",
+    "open_submission",
+    "record",
+    "save_recordings",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, when it is first asked for."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(_MODULES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

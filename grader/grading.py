@@ -1,20 +1,32 @@
-"""Grade a submission: the nominal run and the varied ones, each repeated once if we spoiled it."""
+"""Grade a submission: run it, judge what was recorded, put the result together.
+
+`grade` does all of it, `record` and `judge` one half each. They change nothing of the process that
+calls them (no signal handler, no current folder, no environment variable), and may be called from
+any thread, several at once.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import Protocol
 
-from grader.errors import GraderFailure
-from grader.exercise.loading import Exercise
-from grader.recording.recording import Recording, Recordings
+from grader.errors import GraderFailure, UsageError
+from grader.exercise import check
+from grader.exercise.loading import DEFAULT, Exercise, load_exercise
+from grader.recording import folder as recording_folder
+from grader.recording.recording import Clock, Recording, Recordings
+from grader.result.result import Result, build
+from grader.run import real_time, virtual_time
 from grader.run.plan import Plan
-from grader.submission.opening import Submission
+from grader.submission.opening import Submission, open_submission
 
 Progress = Callable[[float], None]
+AnyPath = str | os.PathLike[str]
 REPEATED = "repeated, because the first try failed in the grader"
 
 
@@ -25,6 +37,89 @@ class Runner(Protocol):
         self, submission: Submission, plan: Plan, progress: Progress | None = None
     ) -> Recording:
         """Return what happened."""
+
+
+RUNNERS: Mapping[Clock, Runner] = {"real": real_time.run, "virtual": virtual_time.run}
+
+
+def grade(
+    submission: AnyPath | Submission,
+    exercise: AnyPath | Exercise = DEFAULT,
+    *,
+    time: Clock = "virtual",
+    seed: int | None = None,
+    executable: str | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Run a submission and judge it. Nothing is written, and no process is left behind.
+
+    Args:
+        submission: the path of a .py file, a folder, a package or a zip; or what
+            `open_submission` has made of one.
+        exercise: the name of an installed exercise, the path of one, or one that is loaded.
+        time: the clock that the submission lives by: "virtual" takes seconds, "real" minutes.
+        seed: chooses where the varied runs start; None takes the exercise's own.
+        executable: which console script or file to start, where there are several.
+        progress: called now and then with the simulated time of the nominal run [s], from
+            another thread.
+
+    Raises:
+        SubmissionError: there is nothing to start, or no way to tell what.
+        ExerciseError: there is no such exercise, or it cannot be used.
+        GraderFailure: the grader itself failed, twice; never the submission's fault.
+    """
+    asked = _loaded(exercise)
+    with _opened(submission, executable) as opened:
+        recordings = _record(opened, asked, time, seed, progress)
+        return judge(recordings, asked, submission=opened.name)
+
+
+def record(
+    submission: AnyPath | Submission,
+    exercise: AnyPath | Exercise = DEFAULT,
+    *,
+    time: Clock = "virtual",
+    seed: int | None = None,
+    executable: str | None = None,
+    progress: Progress | None = None,
+) -> Recordings:
+    """Run a submission, and do not judge it; see `grade`."""
+    with _opened(submission, executable) as opened:
+        return _record(opened, _loaded(exercise), time, seed, progress)
+
+
+def judge(
+    recordings: Recordings, exercise: AnyPath | Exercise = DEFAULT, *, submission: str = ""
+) -> Result:
+    """Judge what was recorded, as often as one likes.
+
+    Args:
+        submission: its name, for the result.
+
+    Raises:
+        ExerciseError: there is no such exercise, or it cannot be used.
+    """
+    asked = _loaded(exercise)
+    verdicts = check.judge(recordings, asked.checks, asked.points, asked.tolerances)
+    return build(submission, asked, recordings, verdicts, {})
+
+
+def load_recordings(folder: AnyPath) -> Recordings:
+    """The recordings in the folder `recording` of a graded run.
+
+    Raises:
+        RecordingError: there are none that can be judged.
+    """
+    return recording_folder.load_all(Path(folder))
+
+
+def save_recordings(recordings: Recordings, folder: AnyPath) -> None:
+    """Write recordings into a folder, as `grader run` does.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    recording_folder.save_all(recordings, Path(folder))
 
 
 def run_all(
@@ -59,3 +154,28 @@ def run_all(
     with ThreadPoolExecutor(max_workers=min(len(plans), max(2, os.cpu_count() or 1))) as pool:
         nominal, *varied = pool.map(run_twice_at_most, plans)
     return Recordings(nominal, tuple(varied))
+
+
+def _record(
+    submission: Submission,
+    exercise: Exercise,
+    time: Clock,
+    seed: int | None,
+    progress: Progress | None,
+) -> Recordings:
+    if time not in RUNNERS:
+        raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
+    return run_all(submission, exercise, RUNNERS[time], seed=seed, progress=progress)
+
+
+def _loaded(exercise: AnyPath | Exercise) -> Exercise:
+    return exercise if isinstance(exercise, Exercise) else load_exercise(exercise)
+
+
+@contextmanager
+def _opened(submission: AnyPath | Submission, executable: str | None) -> Iterator[Submission]:
+    if isinstance(submission, Submission):
+        yield submission
+        return
+    with open_submission(Path(submission), executable) as opened:
+        yield opened

@@ -1,24 +1,38 @@
-"""An exercise: a folder with exercise.yaml (points, limits, tolerances) and checks.py."""
+"""An exercise: its exercise.yaml read, merged with an edited copy, checked, and its checks beside.
+
+Where it is read from, and its checks.py, is told by `grader.exercise.places`.
+"""
 
 from __future__ import annotations
 
-import importlib
 import math
+import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from grader.errors import ExerciseError
+from grader.exercise import places
 from grader.exercise.check import Checks
+from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Limits, Start
 
 DEFAULT = "turtlesim_challenge"
+SUFFIXES = (".yaml", ".yml")
+KEYS = (
+    *("exercise", "title", "scene", "limits", "varied_runs", "points", "tolerances", "starter"),
+)
+LIMITS = ("first_motion_s", "rest_s", "total_s")
+VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
+_NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
+
+__all__ = ["DEFAULT", "Exercise", "Limits", "VariedRuns", "load_exercise", "names"]
 
 
 @dataclass(frozen=True)
@@ -36,7 +50,7 @@ class Exercise:
     """What is asked and how it is weighed.
 
     Attributes:
-        name: the folder's name, as `--exercise` takes it.
+        name: as `--exercise` takes it, and as a result names it.
         title: what a student reads.
         limits: when a run ends.
         varied: further runs that start elsewhere.
@@ -44,6 +58,8 @@ class Exercise:
         tolerances: what the checks may read; their names are the checks' own business.
         checks: the exercise's check functions.
         scene: the name of what runs beside the submission.
+        folder: where its files are.
+        starter: the folder that `grader new` copies; None where there is none.
     """
 
     name: str
@@ -54,6 +70,8 @@ class Exercise:
     tolerances: Mapping[str, Any]
     checks: Checks
     scene: str = "turtlesim"
+    folder: Path = Path()
+    starter: Path | None = None
 
     @property
     def max_score(self) -> float:
@@ -68,46 +86,93 @@ class Exercise:
         return scene.starts(varied.count, used, varied.nearest_m, varied.farthest_m)
 
 
-def names() -> list[str]:
-    """The exercises that are installed."""
-    folder = files("grader") / "exercises"
-    return sorted(p.name for p in folder.iterdir() if (p / "exercise.yaml").is_file())
+def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
+    """Load an exercise.
 
-
-def load_exercise(name_or_file: str) -> Exercise:
-    """Load an installed exercise by name, or an edited copy of its exercise.yaml by path.
-
-    What an edited copy leaves out of `limits` and `tolerances` stays as it is in the original.
+    Args:
+        name_or_path: the name of an installed one; else a folder with exercise.yaml and checks.py;
+            or a file *.yaml: an edited copy of the exercise.yaml that it names, which is the one
+            of its own folder or an installed one. What an edited copy leaves out of `limits` and
+            `tolerances` stays as it is in the original.
 
     Raises:
-        ExerciseError: there is no such exercise, or the file does not describe one.
+        ExerciseError: there is no such exercise, or something in it is wrong; with file and line.
     """
-    path = Path(name_or_file)
-    if path.suffix in (".yaml", ".yml"):
-        try:
-            edited = _read(path.read_text(encoding="utf-8"))
-            return _build(_merged(_installed(edited.get("exercise")), edited))
-        except OSError as error:
-            raise ExerciseError(f"cannot read the exercise {path}: {error.strerror}") from None
-        except (ExerciseError, ValueError) as error:
-            raise ExerciseError(f"{path} is not an exercise: {error}") from None
-    if name_or_file in names():
-        return _build(_installed(name_or_file))
+    path = Path(name_or_path)
+    if path.suffix in SUFFIXES:
+        return _from_file(path)
+    if isinstance(name_or_path, str) and name_or_path in names():
+        return _from_place(places.installed(name_or_path))
+    if path.is_dir():
+        return _from_place(places.in_folder(path))
     raise ExerciseError(
-        f"there is no exercise {name_or_file!r}; there are: {', '.join(names())}. "
-        "An edited copy is given as the path of its exercise.yaml."
+        f"there is no exercise {str(name_or_path)!r}; there are: {', '.join(names())}. "
+        f"Another one is given as the path of its folder, with {DESCRIPTION} and {CHECKS}; an "
+        f"edited copy as the path of its {DESCRIPTION}."
     )
 
 
-def _installed(name: object) -> dict[str, Any]:
-    if name not in names():
-        raise ExerciseError(f"exercise: expected one of {', '.join(names())}, found {name!r}")
-    return _read((files("grader") / "exercises" / str(name) / "exercise.yaml").read_text())
-
-
-def _read(text: str) -> dict[str, Any]:
+def _from_place(place: Place) -> Exercise:
     try:
-        data = yaml.safe_load(text)
+        return _build(_described(place), place)
+    except OSError as error:
+        raise ExerciseError(f"cannot read {place.description}: {error.strerror}") from None
+    except (ExerciseError, ValueError) as error:
+        raise ExerciseError(f"{place.folder} is not an exercise: {error}") from error
+
+
+def _from_file(path: Path) -> Exercise:
+    if path.name == DESCRIPTION and (path.parent / CHECKS).is_file() and path.is_file():
+        return _from_place(places.in_folder(path.parent))
+    try:
+        edited = _read(path)
+        place, original = _original(edited.get("exercise"), path.parent)
+        return _build(_merged(original, edited), place)
+    except OSError as error:
+        raise ExerciseError(f"cannot read the exercise {path}: {error.strerror}") from None
+    except (ExerciseError, ValueError) as error:
+        raise ExerciseError(f"{path} is not an exercise: {error}") from error
+
+
+def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
+    """What an edited copy in a folder is a copy of."""
+    if all((folder / file).is_file() for file in (DESCRIPTION, CHECKS)):
+        beside = places.in_folder(folder)
+        described = _described(beside)
+        if described["exercise"] == name:
+            return beside, described
+    if not isinstance(name, str) or name not in names():
+        raise ExerciseError(f"exercise: expected one of {', '.join(names())}, found {name!r}")
+    place = places.installed(name)
+    return place, _described(place)
+
+
+def _described(place: Place) -> dict[str, Any]:
+    """The exercise.yaml of an exercise, which must be whole."""
+    data = _read(place.description)
+    for key in ("exercise", "title", "limits", "points"):
+        if key not in data:
+            raise ExerciseError(f"{DESCRIPTION} has no {key!r}")
+    for key in data:
+        if key not in KEYS:
+            raise ExerciseError(f"{DESCRIPTION}: unknown {key!r}; there are {', '.join(KEYS)}")
+    name = data["exercise"]
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise ExerciseError(f"exercise: expected a name such as my_exercise, found {name!r}")
+    if place.name and name != place.name:
+        raise ExerciseError(
+            f"exercise: it is installed as {place.name!r}, and calls itself {name!r}"
+        )
+    if not place.name and name in names():
+        raise ExerciseError(
+            f"exercise: {name!r} is the name of an installed exercise; give yours another"
+        )
+    return data
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else "?"
         raise ExerciseError(f"line {line}: {error.problem}") from None
@@ -122,7 +187,7 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
     """The original with what was edited; every key must exist there, with a like value."""
     merged = {**original, **edited}
     for part in ("limits", "tolerances", "varied_runs"):
-        known, given = original.get(part, {}), edited.get(part, {})
+        known, given = original.get(part) or {}, edited.get(part, {})
         if not isinstance(given, dict):
             raise ExerciseError(f"{part}: expected names with numbers, found {given!r}")
         for key, value in given.items():
@@ -148,10 +213,48 @@ def _is_amount(value: object) -> bool:
     return number and math.isfinite(value) and value >= 0  # type: ignore[arg-type, operator]
 
 
-def _build(data: dict[str, Any]) -> Exercise:
-    name = data["exercise"]
-    checks = importlib.import_module(f"grader.exercises.{name}.checks").checks
-    points = data["points"]
+def _build(data: dict[str, Any], place: Place) -> Exercise:
+    scene = data.get("scene", "turtlesim")
+    if scene not in SCENES:
+        raise ExerciseError(f"scene: expected one of {', '.join(SCENES)}, found {scene!r}")
+    limits = _numbers(data, "limits", dict.fromkeys(LIMITS, 1.0))
+    missing = [key for key in LIMITS if key not in limits]
+    if missing:
+        raise ExerciseError(f"limits: {missing[0]} is missing; there must be {', '.join(LIMITS)}")
+    varied = _numbers(data, "varied_runs", VARIED)
+    tolerances = data.get("tolerances") or {}
+    if not isinstance(tolerances, dict):
+        raise ExerciseError(f"tolerances: expected names with values, found {tolerances!r}")
+    checks = places.import_checks(place)
+    return Exercise(
+        name=data["exercise"],
+        title=str(data["title"]),
+        limits=Limits(**{key: float(value) for key, value in limits.items()}),
+        varied=VariedRuns(**varied),
+        points=_points(data["points"], checks),
+        tolerances=tolerances,
+        checks=checks,
+        scene=scene,
+        folder=place.folder,
+        starter=places.locate(place.folder, str(data["starter"])) if "starter" in data else None,
+    )
+
+
+def _numbers(data: Mapping[str, Any], part: str, examples: Mapping[str, float]) -> dict[str, Any]:
+    """A part of an exercise.yaml that holds numbers; whole ones where the example is whole."""
+    given = data.get(part) or {}
+    if not isinstance(given, dict):
+        raise ExerciseError(f"{part}: expected names with numbers, found {given!r}")
+    for key, value in given.items():
+        if key not in examples:
+            raise ExerciseError(f"{part}: unknown {key!r}; there are {', '.join(examples)}")
+        if not _is_amount(value) or (isinstance(examples[key], int) and value != int(value)):
+            what = "a whole number" if isinstance(examples[key], int) else "a number"
+            raise ExerciseError(f"{part}: {key}: expected {what} from 0, found {value!r}")
+    return {k: int(v) if isinstance(examples[k], int) else v for k, v in given.items()}
+
+
+def _points(points: object, checks: Checks) -> dict[str, float]:
     if not isinstance(points, dict) or not points:
         raise ExerciseError("points: expected check names with points")
     known = [check.name for check in checks]
@@ -162,16 +265,4 @@ def _build(data: dict[str, Any]) -> Exercise:
             )
         if not _is_amount(value):
             raise ExerciseError(f"points: {check}: expected a number from 0, found {value!r}")
-    scene = data.get("scene", "turtlesim")
-    if scene not in SCENES:
-        raise ExerciseError(f"scene: expected one of {', '.join(SCENES)}, found {scene!r}")
-    return Exercise(
-        name=name,
-        title=str(data["title"]),
-        limits=Limits(**{key: float(value) for key, value in data["limits"].items()}),
-        varied=VariedRuns(**data.get("varied_runs", {})),
-        points={check: float(value) for check, value in points.items()},
-        tolerances=data.get("tolerances", {}),
-        checks=checks,
-        scene=scene,
-    )
+    return {check: float(value) for check, value in points.items()}

@@ -1,0 +1,244 @@
+"""Where exercises lie, and how the files in one are found and read.
+
+An exercise is a folder with exercise.yaml and checks.py. It lies in `grader/exercises/`, in a
+package that somebody has installed (entry-point group `grader.exercises`, whose values name a
+package or a module in the exercise's folder), or anywhere: then it is given as a path.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.machinery
+import importlib.util
+import sys
+import threading
+import traceback
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint, entry_points
+from importlib.resources import files
+from itertools import count
+from pathlib import Path
+from types import ModuleType
+
+from grader.errors import ExerciseError
+from grader.exercise.check import Checks
+
+GROUP = "grader.exercises"
+DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
+
+_numbers = count(1)
+_importing = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where an exercise lies.
+
+    Attributes:
+        folder: its files.
+        package: by which the folder is imported; "" for a folder that is in no package.
+        name: what it is installed as; "" for a folder.
+    """
+
+    folder: Path
+    package: str = ""
+    name: str = ""
+
+    @property
+    def description(self) -> Path:
+        """Its exercise.yaml."""
+        return self.folder / DESCRIPTION
+
+
+def names() -> list[str]:
+    """The exercises that are installed."""
+    return sorted({*_ours(), *_entry_points()})
+
+
+def installed(name: str) -> Place:
+    """The installed exercise of this name.
+
+    Raises:
+        ExerciseError: there is none, or there are two.
+    """
+    ours, others = _ours(), _entry_points().get(name, [])
+    found = [*([f"{GROUP}.{name} of this package"] if name in ours else []), *map(_told, others)]
+    if len(found) > 1:
+        raise ExerciseError(
+            f"several exercises are installed as {name!r}: {', '.join(found)}. "
+            "Remove one, or give the path of its folder."
+        )
+    if name in ours:
+        return Place(ours[name], f"{GROUP}.{name}", name)
+    if others:
+        return _of_entry_point(others[0])
+    raise ExerciseError(f"there is no exercise {name!r}; there are: {', '.join(names())}")
+
+
+def in_folder(folder: Path) -> Place:
+    """The exercise in a folder.
+
+    Raises:
+        ExerciseError: one of its two files is missing.
+    """
+    for name in (DESCRIPTION, CHECKS):
+        if not (folder / name).is_file():
+            raise ExerciseError(f"{folder} is no exercise: it has no {name}")
+    folder = folder.resolve()
+    for name, ours in _ours().items():
+        if ours.resolve() == folder:
+            return installed(name)
+    return Place(folder)
+
+
+def import_checks(place: Place) -> Checks:
+    """The checks of an exercise; those of a folder are read anew every time.
+
+    The files of a folder see each other as those of a package do: `from . import shape`.
+
+    Raises:
+        ExerciseError: there are none, or importing them fails; with file and line.
+    """
+    if place.package:
+        module = _imported(f"{place.package}.checks", place)
+    else:
+        package = f"_grader_exercise_{next(_numbers)}"
+        with _importing, _without_bytecode():
+            importlib.invalidate_caches()
+            try:
+                _make_package(package, place.folder)
+                module = _imported(f"{package}.checks", place)
+            except ExerciseError:
+                for name in [name for name in sys.modules if f"{name}.".startswith(f"{package}.")]:
+                    del sys.modules[name]
+                raise
+    checks = getattr(module, "checks", None)
+    if not isinstance(checks, Checks):
+        found = "nothing of that name" if checks is None else f"a {type(checks).__name__}"
+        raise ExerciseError(
+            f"{CHECKS}: expected `checks = Checks()`, of `from grader import Checks`; found {found}"
+        )
+    return checks
+
+
+def locate(folder: Path, where: str) -> Path:
+    """A file that an exercise names: below a folder, or as PACKAGE/PATH in an installed package.
+
+    Raises:
+        ExerciseError: there is nothing.
+    """
+    if (folder / where).exists():
+        return folder / where
+    package, _, rest = where.partition("/")
+    if package.isidentifier() and importlib.util.find_spec(package) is not None:
+        path = Path(str(files(package))) / rest
+        if path.exists():
+            return path
+    raise ExerciseError(f"there is no {where!r}, neither in {folder} nor in an installed package")
+
+
+# Installed ones -------------------------------------------------------------------------------
+
+
+def _ours() -> Mapping[str, Path]:
+    folder = Path(str(files("grader"))) / "exercises"
+    return {path.parent.name: path.parent for path in folder.glob(f"*/{DESCRIPTION}")}
+
+
+def _entry_points() -> Mapping[str, list[EntryPoint]]:
+    """By name; a distribution that is found twice on the path counts once."""
+    found: dict[str, dict[str, EntryPoint]] = {}
+    for point in entry_points(group=GROUP):
+        found.setdefault(point.name, {}).setdefault(_told(point), point)
+    return {name: list(points.values()) for name, points in found.items()}
+
+
+def _told(point: EntryPoint) -> str:
+    return f"{point.value} of {point.dist.name if point.dist else 'an unknown package'}"
+
+
+def _of_entry_point(point: EntryPoint) -> Place:
+    try:
+        spec = importlib.util.find_spec(point.value)
+    except Exception as error:  # importing what is above it can do anything
+        raise ExerciseError(f"{_told(point)} cannot be imported: {error}") from None
+    if spec is None:
+        raise ExerciseError(f"{_told(point)} is not there, though its package is installed")
+    folders = list(spec.submodule_search_locations or [])
+    folder = Path(folders[0]) if folders else Path(spec.origin or "").parent
+    package = spec.parent or ""
+    for name in (DESCRIPTION, CHECKS):
+        if not (folder / name).is_file():
+            raise ExerciseError(f"{_told(point)} is no exercise: {folder} has no {name}")
+    return Place(folder, package, point.name)
+
+
+# Importing ------------------------------------------------------------------------------------
+
+
+def _make_package(name: str, folder: Path) -> None:
+    """A package of its own for a folder, whether it has an __init__.py or not."""
+    init = folder / "__init__.py"
+    spec: importlib.machinery.ModuleSpec | None
+    if init.is_file():
+        spec = importlib.util.spec_from_file_location(
+            name, init, submodule_search_locations=[str(folder)]
+        )
+        assert spec is not None
+    else:
+        spec = importlib.machinery.ModuleSpec(name, None, is_package=True)
+        spec.submodule_search_locations = [str(folder)]
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    if init.is_file():
+        assert spec.loader is not None
+        with _told_as_the_author_s(folder):
+            spec.loader.exec_module(module)
+
+
+def _imported(name: str, place: Place) -> ModuleType:
+    with _told_as_the_author_s(place.folder):
+        return importlib.import_module(name)
+
+
+@contextmanager
+def _told_as_the_author_s(folder: Path) -> Iterator[None]:
+    """What goes wrong in the files of a folder, with file and line, as an ExerciseError."""
+    try:
+        yield
+    except (Exception, SystemExit) as error:
+        raise ExerciseError(describe(error, folder)) from error
+
+
+def describe(error: BaseException, folder: Path) -> str:
+    """An exception in the files of a folder: 'checks.py, line 3: NameError: ...'."""
+    name = type(error).__name__
+    if isinstance(error, SyntaxError) and error.filename:
+        return f"{_shown(error.filename, folder)}, line {error.lineno}: {name}: {error.msg}"
+    text = f"{name}: {error}" if str(error) else name
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
+    missing = getattr(error, "name", None) if isinstance(error, ModuleNotFoundError) else None
+    if missing and (folder / f"{missing}.py").is_file():
+        text += f". A file beside {CHECKS} is imported by `from . import {missing}`"
+    if not own:
+        return text
+    return f"{_shown(own[-1].filename, folder)}, line {own[-1].lineno}: {text}"
+
+
+def _shown(file: str, folder: Path) -> str:
+    path = Path(file)
+    return str(path.relative_to(folder)) if path.is_relative_to(folder) else file
+
+
+@contextmanager
+def _without_bytecode() -> Iterator[None]:
+    """Leave no __pycache__ in somebody's folder."""
+    before = sys.dont_write_bytecode
+    sys.dont_write_bytecode = True
+    try:
+        yield
+    finally:
+        sys.dont_write_bytecode = before

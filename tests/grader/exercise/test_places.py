@@ -1,0 +1,192 @@
+"""Exercises outside the package: in a folder, in an installed package, and bad ones."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from grader.errors import ExerciseError
+from grader.exercise import places
+from grader.exercise.check import judge
+from grader.exercise.loading import load_exercise
+from grader.recording.recording import Recordings
+from grader.testing import drive
+
+DESCRIPTION = {
+    "exercise": "corner",
+    "title": "Drive to the corner",
+    "limits": {"first_motion_s": 2, "rest_s": 1, "total_s": 5},
+    "points": {"moves": 10},
+    "tolerances": {"corner_m": 1.0},
+}
+CHECKS = """from grader import Checks, Finding, Recordings, Tolerances
+from .shape import WORDS
+
+checks = Checks()
+
+
+@checks()
+def moves(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    '''It moves.'''
+    return Finding(1, WORDS)
+"""
+
+
+def write(folder, description=DESCRIPTION, checks=CHECKS, shape="WORDS = 'it moved'\n"):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "exercise.yaml").write_text(yaml.safe_dump(description))
+    (folder / "checks.py").write_text(checks)
+    (folder / "shape.py").write_text(shape)
+    return folder
+
+
+def rationale(exercise):
+    recordings = Recordings(drive(lambda *_: None, ticks=2))
+    return judge(recordings, exercise.checks, exercise.points, exercise.tolerances)[0].rationale
+
+
+def test_a_folder_is_an_exercise_whose_files_import_each_other(tmp_path):
+    exercise = load_exercise(write(tmp_path / "corner"))
+    assert (exercise.name, exercise.points) == ("corner", {"moves": 10})
+    assert rationale(exercise) == "it moved"
+
+
+def test_its_path_may_be_that_of_its_exercise_yaml_or_a_string(tmp_path, monkeypatch):
+    write(tmp_path / "corner")
+    monkeypatch.chdir(tmp_path)
+    assert load_exercise("corner").name == "corner"
+    assert load_exercise("corner/exercise.yaml").name == "corner"
+
+
+def test_a_folder_may_be_a_package(tmp_path):
+    folder = write(tmp_path, checks=CHECKS.replace(".shape", "."))
+    (folder / "__init__.py").write_text("from .shape import WORDS\n")
+    assert rationale(load_exercise(folder)) == "it moved"
+
+
+def test_an_edited_copy_beside_an_exercise_is_one_of_it(tmp_path):
+    folder = write(tmp_path)
+    (folder / "hard.yaml").write_text("exercise: corner\ntolerances: {corner_m: 0.1}\n")
+    hard = load_exercise(folder / "hard.yaml")
+    assert (hard.tolerances, hard.points) == ({"corner_m": 0.1}, {"moves": 10})
+
+
+def test_an_edited_copy_of_an_installed_exercise_may_lie_there_too(tmp_path):
+    folder = write(tmp_path)
+    (folder / "hard.yaml").write_text("exercise: square\npoints: {drives: 1}\n")
+    assert load_exercise(folder / "hard.yaml").points == {"drives": 1}
+
+
+def test_two_folders_and_two_versions_of_one_do_not_meet(tmp_path):
+    first = load_exercise(write(tmp_path / "a", shape="WORDS = 'first'\n"))
+    second = load_exercise(write(tmp_path / "b", shape="WORDS = 'second one'\n"))
+    edited = load_exercise(write(tmp_path / "a", shape="WORDS = 'edited'\n"))
+    assert [rationale(each) for each in (first, second, edited)] == [
+        *("first", "second one", "edited")
+    ]
+
+
+def test_nothing_is_left_in_the_folder(tmp_path):
+    load_exercise(write(tmp_path))
+    assert not list(tmp_path.rglob("*.pyc"))
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        ({"checks": "x = 1\n\ndef f(:\n"}, "checks.py, line 3: SyntaxError"),
+        ({"checks": "x = 1\n"}, "checks.py: expected `checks = Checks()`"),
+        ({"checks": "checks = []\n"}, "found a list"),
+        ({"checks": "\nprint(nobody)\n"}, "checks.py, line 2: NameError: name 'nobody'"),
+        ({"checks": "import shape\n"}, "line 1: ModuleNotFoundError: No module named 'shape'"),
+        ({"checks": "import shape\n"}, "by `from . import shape`"),
+        ({"checks": "raise SystemExit\n"}, "checks.py, line 1: SystemExit"),
+        ({"shape": "\n\n1 / 0\n"}, "shape.py, line 3: ZeroDivisionError"),
+        ({"checks": CHECKS.replace("@checks()", "@checks(after=('be',))")}, "line 7: ValueError"),
+    ],
+)
+def test_a_mistake_in_its_code_is_told_with_file_and_line(tmp_path, files, words):
+    with pytest.raises(ExerciseError) as error:
+        load_exercise(write(tmp_path, **files))
+    assert words in str(error.value)
+    assert str(tmp_path) in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"exercise": "square"}, "'square' is the name of an installed exercise"),
+        ({"exercise": ["a"]}, "exercise: expected a name such as my_exercise, found ['a']"),
+        ({"tolerance": {}}, "exercise.yaml: unknown 'tolerance'"),
+        ({"limits": {"rest_s": 1}}, "limits: first_motion_s is missing"),
+        ({"limits": {"rest": 1}}, "limits: unknown 'rest'"),
+        ({"limits": {"rest_s": "x"}}, "limits: rest_s: expected a number from 0, found 'x'"),
+        ({"varied_runs": {"count": 1.5}}, "varied_runs: count: expected a whole number from 0"),
+        ({"varied_runs": [1]}, "varied_runs: expected names with numbers"),
+        ({"tolerances": [1]}, "tolerances: expected names with values"),
+        ({"points": {"fly": 1}}, "points: no check is named 'fly'; there are moves"),
+        ({"scene": "moon"}, "scene: expected one of turtlesim, found 'moon'"),
+        ({"starter": "begin"}, "there is no 'begin'"),
+    ],
+)
+def test_a_mistake_in_its_description_is_named(tmp_path, changes, words):
+    with pytest.raises(ExerciseError) as error:
+        load_exercise(write(tmp_path, {**DESCRIPTION, **changes}))
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize("missing", ["exercise.yaml", "checks.py"])
+def test_a_folder_that_lacks_a_file_is_told_which(tmp_path, missing):
+    (write(tmp_path) / missing).unlink()
+    with pytest.raises(ExerciseError, match=f"it has no {missing}"):
+        load_exercise(tmp_path)
+
+
+def test_a_key_that_is_missing_is_named(tmp_path):
+    with pytest.raises(ExerciseError, match="has no 'points'"):
+        load_exercise(write(tmp_path, {k: v for k, v in DESCRIPTION.items() if k != "points"}))
+
+
+def install(monkeypatch, site, name, value, dist="other"):
+    """What pip leaves of a package with an entry point."""
+    info = site / f"{dist}-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {dist}\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[grader.exercises]\n{name} = {value}\n")
+    monkeypatch.syspath_prepend(site)
+
+
+@pytest.mark.parametrize("value", ["others_{}.corner", "others_{}.corner.checks"])
+def test_an_installed_package_brings_an_exercise(tmp_path, monkeypatch, value):
+    package = f"others_{len(value)}"
+    folder = write(tmp_path / package / "corner")
+    (folder.parent / "__init__.py").touch()
+    install(monkeypatch, tmp_path, "corner", value.format(len(value)))
+    assert "corner" in places.names()
+    exercise = load_exercise("corner")
+    assert (exercise.folder, rationale(exercise)) == (folder, "it moved")
+    copy = tmp_path / "copy.yaml"
+    copy.write_text("exercise: corner\ntolerances: {corner_m: 3}\n")
+    assert load_exercise(copy).tolerances == {"corner_m": 3}
+
+
+def test_an_installed_exercise_replaces_none_of_the_same_name(tmp_path, monkeypatch):
+    write(tmp_path / "others_square", {**DESCRIPTION, "exercise": "square"})
+    install(monkeypatch, tmp_path, "square", "others_square")
+    with pytest.raises(ExerciseError, match="others_square of other"):
+        load_exercise("square")
+    assert load_exercise("turtlesim_challenge").points
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ("not_there_at_all", "is not there"),
+        ("not_there.at_all", "cannot be imported"),
+        ("json", "is no exercise"),
+    ],
+)
+def test_an_entry_point_that_leads_nowhere_is_told(tmp_path, monkeypatch, value, words):
+    install(monkeypatch, tmp_path, "corner", value)
+    with pytest.raises(ExerciseError, match=words):
+        load_exercise("corner")
