@@ -31,6 +31,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except error_file.Misuse as error:
         print(f"{error.usage}{error.prog}: error: {error}", file=sys.stderr)
         return _ended(error, error_file.look_for(words))
+    watched.adopt_orphans()
     watched.end_on_signals()
     say = Console(stderr=True, soft_wrap=True, highlight=False).print
     try:

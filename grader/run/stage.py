@@ -11,7 +11,7 @@ from pathlib import Path
 from grader import scratch
 from grader.run.environment import environment
 from grader.run.processes import isolation
-from grader.run.processes.watched import Student, adopt_orphans
+from grader.run.processes.watched import Student
 from grader.submission.opening import EntryPoint, Submission
 
 
@@ -63,7 +63,6 @@ def open_stage() -> Iterator[Stage]:
     Raises:
         GraderFailure: it cannot be isolated from other runs.
     """
-    adopt_orphans()
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
         env = environment(folder, isolated.env)
         recording = os.memfd_create("recording")
