@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import os
 import random
@@ -41,6 +42,7 @@ def order_nodes(node_class: Any) -> None:
     serials = itertools.count()
     original = node_class.__init__
 
+    @functools.wraps(original)
     def init(self: Any, *args: Any, **kwargs: Any) -> None:
         self._serial_in_virtual_time = next(serials)
         pass_on(original, self, *args, **kwargs)

@@ -39,6 +39,9 @@ def install(
         nodes: the simulator's.
         refuse: told what virtual time cannot follow; does not return.
     """
+    # first: it looks at what is replaced below
+    executor.install()
+    executor.allow_nested_spins()
     link = SimulatorLink(scheduler, connection, refuse)
 
     def now_ns() -> int:
@@ -53,13 +56,10 @@ def install(
     endpoints.install(link, lambda: EPOCH_NS + scheduler.now_ns)
     actions.install()
     _guard_entities()
-    executor.install()  # before Node is changed, which it looks at
     graph.install(link, rclpy.node.Node, nodes)
     chance.order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
     _charge_for(rclpy.context.Context, "ok", scheduler)
-    executor.install()
-    executor.allow_nested_spins()
     _replace_events_executor()
     scheduler.on_foreign_thread = lambda: refuse(
         "runs Python in a thread that a C extension has started"

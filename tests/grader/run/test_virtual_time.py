@@ -10,6 +10,7 @@ import pytest
 from grader.recording.recording import Recording
 from grader.run import virtual_time
 from grader.run.plan import Plan
+from grader.run.student import executor
 from grader.scenes.scene import Limits, Start
 from grader.submission.opening import open_submission
 from turtlesim_py.world.events import CmdVel
@@ -132,6 +133,14 @@ def test_a_deadlock_is_shown_where_it_is(recorded: Recorded, name: str, line: st
     assert output.count("Your node is stuck here") == 1
     assert line in output
     assert "grader/run" not in output
+
+
+@pytest.mark.skipif(executor.known() is None, reason="stands aside with this rclpy")
+@pytest.mark.records("misbehaving/spins_in_callback")
+def test_a_known_executor_waits_in_our_code(recorded: Recorded) -> None:
+    output = recorded("misbehaving/spins_in_callback").output
+    assert "in wait_for_ready_callbacks" in output
+    assert "in _wait_for_ready_callbacks" not in output
 
 
 @pytest.mark.parametrize(
