@@ -109,7 +109,7 @@ class Subscriber:
 @contextmanager
 def simulator() -> Iterator[psutil.Process]:
     """A turtlesim_node of this checkout."""
-    command = [sys.executable, "-m", "turtlesim_py.node"]
+    command = [sys.executable, "-m", "turtlesim_py.ros.node"]
     with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL) as process:
         try:
             yield psutil.Process(process.pid)

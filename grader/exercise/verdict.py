@@ -17,7 +17,7 @@ class Evidence:
     Attributes:
         tick: the simulator's tick, 1 for the first of the recording.
         time_s: the same moment in simulated seconds.
-        x, y: where the turtle was [m].
+        x, y: where it happened [m].
         note: what happened there.
         run: 0 for the nominal run, 1, 2, ... for the varied ones.
     """

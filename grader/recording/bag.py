@@ -1,6 +1,6 @@
 """A recording as a rosbag2: real ROS messages in an MCAP file, and back. No ROS is needed.
 
-Which topics hold what is told by the scene: `grader.scenes.turtlesim.messages`.
+Which topics hold what is told by the scene, in its module `messages`.
 
 A message's time is its tick times the tick's length, counted from the start of the run: the scene's
 own time. A date would be the only thing in the bag that differs between equal runs. Messages of one

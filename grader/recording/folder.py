@@ -145,7 +145,7 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     pictures = scene.pictures(recording.trace)
     for name, pixels in {"window": pictures.window, **pictures.others}.items():
         Image.fromarray(pixels).save(folder / f"{name}.png")
-    if recording.start is None:  # a scenario cannot put the turtle elsewhere without a stroke
+    if recording.start is None:  # a scenario begins in the usual place
         scenario = {"name": NAME, "description": "a graded run", **scene.scenario(recording.trace)}
         _write_json(folder / SCENARIO, scenario, indent=None)
 

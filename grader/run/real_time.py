@@ -1,4 +1,4 @@
-"""A graded run in real time: the wall clock moves the turtle while the submission drives it."""
+"""A graded run in real time: the wall clock moves the scene while the submission drives it."""
 
 from __future__ import annotations
 

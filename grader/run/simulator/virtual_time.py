@@ -100,7 +100,7 @@ class Lockstep:
         self._marks.setdefault(stage, time.monotonic())
 
     def _note_rest(self) -> None:
-        """Whether the turtle had done its work is asked once: when the submission stopped."""
+        """Whether the work was done is asked once: when the submission stopped."""
         if self._was_at_rest is None:
             self._was_at_rest = self._simulation.is_at_rest
 
@@ -162,7 +162,7 @@ class Lockstep:
         self._request = self._next_request()
 
     def _finish_alone(self) -> None:
-        """The submission says nothing more; the turtles go on."""
+        """The submission says nothing more; the scene goes on."""
         if self._reason:
             return
         self._request = None
