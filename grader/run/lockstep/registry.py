@@ -5,7 +5,7 @@ the one that the program asked for, and rclpy is served from there. Each side of
 much it has sent, the other waits until it has received as much: then what a program sees depends
 on virtual time alone. Used by both sides.
 
-A channel is what in DDS is a topic: "topic /turtle1/pose", "request /clear", "response /clear".
+A channel is what in DDS is a topic: "topic /chatter", "request /clear", "response /clear".
 """
 
 from __future__ import annotations
