@@ -15,11 +15,14 @@ from typing import Any
 from rich.console import Console
 from rich.markup import escape
 
-from grader.cli import check, error_file, new, report, run
+from grader.cli import check, check_exercise, error_file, new, report, run
 from grader.errors import GraderError, GraderFailure, UsageError
 from grader.run.processes import watched
 
-VERBS: dict[str, Any] = {"run": run, "check": check, "report": report, "new": new}
+VERBS: dict[str, Any] = {
+    **{"run": run, "check": check, "report": report, "new": new},
+    "check-exercise": check_exercise,
+}
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 

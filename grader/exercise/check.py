@@ -8,7 +8,7 @@ that depends on a failed check is not judged, and says for which it waited.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from grader.exercise.verdict import Finding, Verdict
@@ -36,6 +36,12 @@ class Checks:
 
     def __iter__(self) -> Iterator[Check]:
         return iter(self._checks)
+
+    def wrapped(self, wrap: Callable[[Check], CheckFunction]) -> Checks:
+        """The same checks with other functions, e.g. to look at what they return."""
+        other = Checks()
+        other._checks = [replace(check, function=wrap(check)) for check in self]
+        return other
 
     def __call__(self, *, after: tuple[str, ...] = ()) -> Callable[[CheckFunction], CheckFunction]:
         """Register the decorated function; `after` names the checks it depends on.

@@ -236,7 +236,7 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         checks=checks,
         scene=scene,
         folder=place.folder,
-        starter=places.locate(place.folder, str(data["starter"])) if "starter" in data else None,
+        starter=_starter(data.get("starter"), place),
     )
 
 
@@ -252,6 +252,15 @@ def _numbers(data: Mapping[str, Any], part: str, examples: Mapping[str, float]) 
             what = "a whole number" if isinstance(examples[key], int) else "a number"
             raise ExerciseError(f"{part}: {key}: expected {what} from 0, found {value!r}")
     return {k: int(v) if isinstance(examples[k], int) else v for k, v in given.items()}
+
+
+def _starter(where: object, place: Place) -> Path | None:
+    if where is None:
+        return None
+    folder = places.locate(place.folder, str(where))
+    if not folder.is_dir():
+        raise ExerciseError(f"starter: expected a folder, found {folder}")
+    return folder
 
 
 def _points(points: object, checks: Checks) -> dict[str, float]:

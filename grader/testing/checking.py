@@ -1,0 +1,154 @@
+"""Tries an exercise on its right solutions and mutants, as `grader check-exercise` does."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from pathlib import Path
+
+from grader.exercise.loading import Exercise, load_exercise
+from grader.grading import AnyPath, run_all
+from grader.recording.recording import Recordings
+from grader.run import virtual_time
+from grader.scratch import make_folder
+from grader.submission.opening import open_submission
+from grader.testing.examination import Examination, Problem, Trial
+from grader.testing.oddities import odd_recordings
+from grader.testing.sanity import Fault, examine
+from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
+
+#: Told how many runs are through, how many there are, and whose run that was.
+Progress = Callable[[int, int, str], None]
+AGAIN = "again"
+
+
+def check_exercise(
+    exercise: AnyPath | Exercise,
+    *,
+    mutants: AnyPath | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> Examination:
+    """Try an exercise: its right solutions must get every point, each mutant must lose some.
+
+    Every solution is run in virtual time, the first right one twice; every check is asked twice
+    about each recording, and about runs in which a node does odd things.
+
+    Args:
+        exercise: its name, its path, or itself.
+        mutants: the file that lists the solutions; None for mutants.yaml in its folder.
+        jobs: how many solutions are run at once; None for as many as there are cores.
+
+    Raises:
+        ExerciseError: the exercise or its list of solutions cannot be used.
+        SubmissionError: one of the solutions cannot be started.
+        GraderFailure: the grader itself failed.
+    """
+    asked = exercise if isinstance(exercise, Exercise) else load_exercise(exercise)
+    solutions = read_solutions(asked, None if mutants is None else Path(mutants))
+    recorded = _run(asked, solutions, jobs or os.cpu_count() or 1, progress)
+    faults: dict[Fault, list[str]] = {}
+    trials = []
+    for solution in solutions:
+        recordings = recorded[solution.name]
+        verdicts, wrong = examine(asked, recordings)
+        trial = Trial(solution, tuple(verdicts), _remarks(recordings))
+        wrong += _unexpected(trial)
+        if solution is solutions[0]:
+            wrong += _twice(asked, trial, recordings, recorded[AGAIN])
+        trials.append(trial)
+        for fault in wrong:
+            faults.setdefault(fault, []).append(solution.name)
+    for what, recordings in odd_recordings(asked).items():
+        for fault in examine(asked, recordings)[1]:
+            faults.setdefault(fault, []).append(what)
+    problems = [Problem(fault, tuple(on)) for fault, on in faults.items()]
+    examination = Examination(asked.name, tuple(asked.points), tuple(trials), ())
+    problems += [Problem(fault) for fault in _never_failing(examination)]
+    return Examination(asked.name, tuple(asked.points), tuple(trials), tuple(problems))
+
+
+def _run(
+    exercise: Exercise, solutions: Sequence[Solution], jobs: int, progress: Progress | None
+) -> Mapping[str, Recordings]:
+    """Run all of them, and the first once more."""
+    with make_folder() as folder, ThreadPoolExecutor(jobs) as pool:
+
+        def run(solution: Solution) -> Recordings:
+            with open_submission(paths[solution.name]) as submission:
+                return run_all(submission, exercise, virtual_time.run)
+
+        paths = {solution.name: solution.lay_out(folder) for solution in solutions}
+        tasks: dict[Future[Recordings], str] = {}
+        try:
+            for name, solution in [(AGAIN, solutions[0]), *((s.name, s) for s in solutions)]:
+                tasks[pool.submit(run, solution)] = name
+            for count, task in enumerate(as_completed(tasks), start=1):
+                task.result()
+                if progress:
+                    shown = solutions[0].name if tasks[task] == AGAIN else tasks[task]
+                    progress(count, len(tasks), shown)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+        return {name: task.result() for task, name in tasks.items()}
+
+
+def _unexpected(trial: Trial) -> Iterator[Fault]:
+    """Where a solution is not judged as it should be."""
+    solution = trial.solution
+    if solution.is_right:
+        for verdict in trial.verdicts:
+            if verdict.status != "passed":
+                yield Fault(verdict.check, f"a right solution loses points: {verdict.rationale}")
+        return
+    if not trial.caught_by:
+        yield Fault("", "nobody catches a mutant")
+    if solution.leaves is None:
+        return
+    for verdict in trial.verdicts:
+        expected = solution.leaves.get(verdict.check, 1.0)
+        if not _fits(verdict.score, verdict.max_score, expected):
+            text = (
+                f"leaves {verdict.score:g} of {verdict.max_score:g} points; "
+                f"{FILE_NAME} says {_said(expected)}"
+            )
+            yield Fault(verdict.check, text)
+
+
+def _fits(score: float, max_score: float, expected: Left) -> bool:
+    if expected == "some":
+        return 0 < score < max_score
+    return score == round(max_score * expected, 2)
+
+
+def _said(expected: Left) -> str:
+    return "some" if expected == "some" else f"{expected:g} of them"
+
+
+def _twice(
+    exercise: Exercise, trial: Trial, first: Recordings, second: Recordings
+) -> Iterator[Fault]:
+    """What differs between two runs of the same solution."""
+    hashes = [[run.run.trace_sha256 for run in recordings] for recordings in (first, second)]
+    if hashes[0] != hashes[1]:
+        yield Fault("", "two runs of a right solution are not the same run")
+        return
+    for once, again in zip(trial.verdicts, examine(exercise, second)[0], strict=True):
+        if once != again:
+            yield Fault(once.check, "two equal runs get different findings")
+
+
+def _never_failing(examination: Examination) -> Iterator[Fault]:
+    if not examination.mutants:
+        yield Fault("", f"there are no mutants in {FILE_NAME}")
+        return
+    for check, caught in examination.catches.items():
+        if not caught:
+            yield Fault(check, "never fails on any mutant")
+
+
+def _remarks(recordings: Recordings) -> tuple[str, ...]:
+    found = [flag for recording in recordings for flag in recording.run.flags]
+    return tuple(dict.fromkeys(found))

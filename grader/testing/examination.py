@@ -1,0 +1,133 @@
+"""What came out when an exercise was tried: which mutants each check catches, and what to mend."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from grader.exercise.verdict import Verdict
+from grader.testing.sanity import Fault
+from grader.testing.solutions import Solution
+
+SCHEMA = "turtlesim-grader/examination/v1"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A solution, and what the exercise says of it.
+
+    Attributes:
+        remarks: on the run, for the author.
+    """
+
+    solution: Solution
+    verdicts: tuple[Verdict, ...]
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def caught_by(self) -> tuple[str, ...]:
+        """The checks that failed; those that only waited for them are none."""
+        return tuple(v.check for v in self.verdicts if v.status == "failed")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something to mend: of a check or of the whole exercise (""), and on which solutions."""
+
+    fault: Fault
+    on: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        check = f"{self.fault.check}: " if self.fault.check else ""
+        seen = ", ".join(self.on[:3]) + (f" and {len(self.on) - 3} more" if self.on[3:] else "")
+        return f"{check}{self.fault.text}" + (f" (on {seen})" if seen else "")
+
+
+@dataclass(frozen=True)
+class Examination:
+    """An exercise that was tried on its solutions.
+
+    Attributes:
+        exercise: its name.
+        checks: those that are worth points, in the exercise's order.
+        trials: the right solutions, then the mutants.
+        problems: what is to be mended; empty where all is fine.
+    """
+
+    exercise: str
+    checks: tuple[str, ...]
+    trials: tuple[Trial, ...]
+    problems: tuple[Problem, ...]
+
+    @property
+    def is_fine(self) -> bool:
+        """Whether there is nothing to mend."""
+        return not self.problems
+
+    @property
+    def mutants(self) -> tuple[Trial, ...]:
+        """The trials of mutants."""
+        return tuple(trial for trial in self.trials if not trial.solution.is_right)
+
+    @property
+    def catches(self) -> Mapping[str, tuple[str, ...]]:
+        """Check -> the mutants that it catches."""
+        return {
+            check: tuple(t.solution.name for t in self.mutants if check in t.caught_by)
+            for check in self.checks
+        }
+
+    @property
+    def uncaught(self) -> tuple[str, ...]:
+        """The mutants that no check catches."""
+        return tuple(t.solution.name for t in self.mutants if not t.caught_by)
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as data."""
+        return {
+            "schema": SCHEMA,
+            "exercise": self.exercise,
+            "fine": self.is_fine,
+            "problems": [
+                {"check": p.fault.check, "text": p.fault.text, "on": list(p.on)}
+                for p in self.problems
+            ],
+            "catches": {check: list(names) for check, names in self.catches.items()},
+            "uncaught": list(self.uncaught),
+            "solutions": [
+                {
+                    "name": trial.solution.name,
+                    "right": trial.solution.is_right,
+                    "remarks": list(trial.remarks),
+                    "checks": {
+                        v.check: {"status": v.status, "score": v.score, "max_score": v.max_score}
+                        for v in trial.verdicts
+                    },
+                }
+                for trial in self.trials
+            ],
+        }
+
+    def to_markdown(self) -> str:
+        """A table for people: a row a solution, a column a check."""
+        head = ["", *(f"`{check}`" for check in self.checks), "caught by"]
+        rows = [head, ["---", *("---" for _ in self.checks), "---:"]]
+        for trial in self.trials:
+            cells = [_cell(verdict) for verdict in trial.verdicts]
+            number = "right" if trial.solution.is_right else str(len(trial.caught_by))
+            rows.append([f"`{trial.solution.name}`", *cells, number])
+        caught = [str(len(names)) for names in self.catches.values()]
+        count = len(self.mutants)
+        rows.append(["catches", *caught, f"{count - len(self.uncaught)} of {count}"])
+        return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def _cell(verdict: Verdict) -> str:
+    """What is left of a check's points; nothing where all is."""
+    if verdict.status == "passed":
+        return ""
+    if verdict.status == "not_judged":
+        return "–"
+    share = verdict.score / verdict.max_score if verdict.max_score else 0.0
+    return f"**{100 * share:.0f} %**"

@@ -1,0 +1,87 @@
+"""`grader check-exercise`, with real runs: an exercise in order, one to mend, one of no use."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import yaml
+
+from grader.exercise.loading import load_exercise
+from grader.testing.solutions import read_solutions
+from tests.grader.testing import exercises
+
+ROOT = Path(__file__).parents[3]
+
+
+def check(folder, *more):
+    return subprocess.run(
+        [sys.executable, "-m", "grader", "check-exercise", folder.name, *map(str, more)],
+        cwd=folder.parent,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"},
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_an_exercise_in_order_gets_a_table_and_exit_code_0(tmp_path):
+    folder = exercises.write(tmp_path / "ahead")
+    done = check(folder, "--json", tmp_path / "it.json", "--markdown", tmp_path / "it.md")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.endswith("All is fine: 2 checks, 2 mutants, each caught.\n")
+    assert sorted(line.split()[0] for line in done.stderr.splitlines()) == [
+        *("1/4", "2/4", "3/4", "4/4")
+    ]
+    assert json.loads((tmp_path / "it.json").read_text())["catches"]["far"] == ["slow"]
+    assert "| `slow` |" in (tmp_path / "it.md").read_text()
+    assert not list(folder.rglob("*.pyc"))
+
+
+def test_what_is_to_mend_is_named_with_exit_code_1(tmp_path):
+    mutants = {"right": {"solution": "silent.py"}, "mutants": {"right": {"file": "solution.py"}}}
+    done = check(exercises.write(tmp_path / "ahead", mutants=mutants))
+    assert done.returncode == 1
+    for words in (
+        "To mend: commands: a right solution loses points: 0 commands came. (on solution)",
+        "To mend: nobody catches a mutant (on right)",
+        "To mend: far: never fails on any mutant",
+    ):
+        assert words in done.stdout
+
+
+def test_what_cannot_be_used_ends_with_exit_code_2(tmp_path):
+    folder = exercises.write(tmp_path / "ahead", checks="def f(:\n")
+    done = check(folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "checks.py, line 1: SyntaxError" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_the_tables_in_the_docs_are_of_the_solutions_that_there_are():
+    page = (ROOT / "docs" / "check-exercise.md").read_text(encoding="utf-8")
+    square = ROOT / "tests" / "submissions" / "square_mutants.yaml"
+    for name, path in (("turtlesim_challenge", None), ("square", square)):
+        exercise = load_exercise(name)
+        head = "| " + "".join(f" | `{check}`" for check in exercise.points) + " | caught by |\n"
+        assert head in page
+        table = page.partition(head)[2].partition("\n\n")[0].splitlines()[1:-1]
+        cells = {row.split("|")[1].strip(" `"): row for row in table}
+        solutions = read_solutions(exercise, path)
+        assert list(cells) == [solution.name for solution in solutions]
+        for solution in solutions:
+            for check, cell in zip(
+                exercise.points, cells[solution.name].split("|")[2:], strict=False
+            ):
+                left = (solution.leaves or {}).get(check, 1.0)
+                if solution.is_right or (solution.leaves is not None and left == 1.0):
+                    assert cell.strip() == "", (solution.name, check)
+                elif solution.leaves is not None and left != "some":
+                    assert cell.strip() in (f"**{100 * left:.0f} %**", "–")
+
+
+def test_every_mutant_of_the_square_is_a_change_of_its_solution():
+    text = (ROOT / "tests" / "submissions" / "square_mutants.yaml").read_text(encoding="utf-8")
+    assert all("replace" in mutant for mutant in yaml.safe_load(text)["mutants"].values())
