@@ -94,8 +94,13 @@ def test_no_file_outside_of_them_is_called_so():
 
 
 @pytest.mark.parametrize(
-    ("file", "pattern"), [(file, pattern) for file in ALLOWED for pattern in ALLOWED[file]]
+    ("file", "pattern"),
+    [
+        (file, pattern)
+        for file, patterns in [*ALLOWED.items(), *STILL_THERE.items()]
+        for pattern in patterns
+    ],
 )
 def test_an_exception_that_nothing_needs_is_no_exception(file, pattern):
     text = (ROOT / file).read_text(encoding="utf-8")
-    assert re.search(pattern, text, re.IGNORECASE)
+    assert re.search(pattern, text, re.IGNORECASE | re.MULTILINE)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.scenes.scene import PenChange
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import PLANE, view
+from grader.scenes.view import PenChange
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
