@@ -39,7 +39,6 @@ ALLOWED = {
     # the challenge, and the name that it asks a program to have
     "grader/package.xml": [r"for the turtlesim challenge"],
     "grader/cli/__init__.py": [r"Grade the turtlesim challenge"],
-    "grader/cli/new.py": [r"/turtle_controller\.py"],
     "grader/cli/run.py": [r"alice/turtle_controller\.py"],
     "grader/submission/opening.py": [r"turtle_controller"],
     "grader/submission/entry_points.py": [r"turtle_controller"],
