@@ -17,7 +17,6 @@ import gc
 import json
 import signal
 import socket
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -218,7 +217,3 @@ def main(argv: list[str]) -> int:
         message = {"say": "refused", "reason": str(refusal)}
     control.sendall(json.dumps(message).encode() + b"\n")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
