@@ -1,0 +1,63 @@
+"""The examples in the docs run as they stand there, one after the other, in an empty folder."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+import grader
+from grader.testing import check_exercise
+
+ROOT = Path(__file__).parents[2]
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"# (\S+/\S+)\n")
+
+
+def run_examples(page, folder):
+    """Write what names a file, run the rest; what the code has left behind."""
+    left = {}
+    blocks = BLOCK.findall((ROOT / "docs" / page).read_text(encoding="utf-8"))
+    for _, text in blocks:
+        if named := FILE.match(text):
+            path = folder / named[1]
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+    for language, text in blocks:
+        if language == "python" and not FILE.match(text):
+            exec(compile(text, page, "exec"), left)
+    return left
+
+
+@pytest.mark.timeout(300)
+def test_an_exercise_can_be_written_as_the_page_says(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run_examples("write-an-exercise.md", tmp_path)["result"].exercise == "corner"
+    shown = capsys.readouterr().out.strip()
+    assert f"# {shown}\n" in (ROOT / "docs" / "write-an-exercise.md").read_text(encoding="utf-8")
+    found = check_exercise("./corner")
+    assert [str(problem) for problem in found.problems] == []
+    assert found.catches == {"moves": ("says_nothing",), "arrives": ("stops_too_early",)}
+    assert not list(tmp_path.rglob("*.pyc"))
+
+
+@pytest.mark.timeout(300)
+def test_the_api_can_be_used_as_the_page_says(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    quick = ROOT / "tests" / "submissions" / "quick_spiral.py"
+    shutil.copy(quick, tmp_path / "turtle_controller.py")
+    left = run_examples("python-api.md", tmp_path)
+    assert left["result"].score == left["again"].score == 100
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0] == "turtle_controller.py: 100 of 100 points"
+    assert shown[1].startswith("passed: The node starts and moves turtle1. ")
+    assert shown[-1].startswith("{'turtle_controller.py': 100.0, 'no_such_file.py': ")
+
+
+def test_every_function_that_the_page_lists_is_public():
+    page = (ROOT / "docs" / "python-api.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^\| `(\w+)\(", page, re.MULTILINE)
+    assert len(listed) > 5
+    assert set(listed) <= set(grader.__all__)
