@@ -19,7 +19,12 @@ from grader.result.result import build
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.add_argument("recording", type=Path, help="the folder `recording` of a graded run")
-    parser.add_argument("--exercise", default=DEFAULT, metavar="NAME")
+    parser.add_argument(
+        "--exercise",
+        default=DEFAULT,
+        metavar="NAME|FOLDER|FILE",
+        help="an installed one, the folder of another, or an edited exercise.yaml",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here")
     parser.add_argument(
         "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"

@@ -14,7 +14,9 @@ from grader.exercise.loading import DEFAULT, load_exercise
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
-    parser.add_argument("--exercise", default=DEFAULT, metavar="NAME", help="whose starter")
+    parser.add_argument(
+        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help="whose starter (the challenge's)"
+    )
 
 
 def main(args: argparse.Namespace) -> int:

@@ -31,7 +31,12 @@ RUNNERS: dict[str, Runner] = {"real": real_time.run, "virtual": virtual_time.run
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.add_argument("submission", type=Path, help="a .py file, a folder, a package or a zip")
-    parser.add_argument("--exercise", default=DEFAULT, metavar="NAME")
+    parser.add_argument(
+        "--exercise",
+        default=DEFAULT,
+        metavar="NAME|FOLDER|FILE",
+        help="an installed one, the folder of another, or an edited exercise.yaml",
+    )
     parser.add_argument(
         "--time",
         choices=sorted(RUNNERS),
