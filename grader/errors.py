@@ -5,6 +5,7 @@
 | `UsageError`, `RecordingError` | call | 2 |
 | `SubmissionError` | submission | 2 |
 | `ExerciseError` | exercise | 2 |
+| `CheckFailed` | exercise | 3 |
 | `GraderFailure` | grader | 3 |
 """
 
@@ -57,6 +58,12 @@ class ExerciseError(GraderError):
 
     whose = "exercise"
     exit_code = 2
+
+
+class CheckFailed(ExerciseError):
+    """A check raised an exception; the submission can be judged when that is mended."""
+
+    exit_code = 3
 
 
 class RecordingError(GraderError):

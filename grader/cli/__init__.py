@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from grader.cli import check, check_exercise, error_file, new, report, run
-from grader.errors import GraderError, GraderFailure, UsageError
+from grader.errors import CheckFailed, GraderError, GraderFailure, UsageError
 from grader.run.processes import watched
 
 VERBS: dict[str, Any] = {
@@ -47,10 +47,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         say(f"grader {args.verb}: interrupted")
         return _ended(UsageError("interrupted"), args, INTERRUPTED)
-    except GraderFailure as error:
+    except (GraderFailure, CheckFailed) as error:
+        who = "exercise" if isinstance(error, CheckFailed) else "grader"
         say(
-            "[red]The grader failed; this is not the submission's fault:[/] "
-            f"{escape(error.message)}"
+            f"[red]The {who} failed; this is not the submission's fault:[/] {escape(error.message)}"
         )
         return _ended(error, args)
     except GraderError as error:

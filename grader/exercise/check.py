@@ -7,10 +7,13 @@ that depends on a failed check is not judged, and says for which it waited.
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
+from grader.errors import CheckFailed
 from grader.exercise.verdict import Finding, Verdict
 from grader.recording.recording import Recordings
 
@@ -106,7 +109,10 @@ def _judge_one(
             (),
             check.depends_on,
         )
-    finding = check.function(recordings, tolerances)
+    try:
+        finding = check.function(recordings, tolerances)
+    except Exception as error:
+        raise CheckFailed(_told(check, error)) from error
     share = min(max(finding.share, 0.0), 1.0)
     passed = share >= 1.0
     return Verdict(
@@ -120,3 +126,13 @@ def _judge_one(
         finding.evidence,
         check.depends_on,
     )
+
+
+def _told(check: Check, error: Exception) -> str:
+    """An exception in a check, with the last line of the file that the check stands in."""
+    file = check.function.__code__.co_filename
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if frame.filename == file]
+    where = f"{Path(file).name}, line {lines[-1]}: " if lines else ""
+    text = f"{where}{type(error).__name__}: {error}".rstrip(": ")
+    return f"the check {check.name!r} failed itself, so nothing was judged: {text}"

@@ -65,7 +65,7 @@ def test_a_mistake_in_the_exercise_is_its_authors(tmp_path, error):
         (["run", "x.py", "--time", "mine"], "invalid choice: 'mine'", None),
         (["check", "missing"], "missing does not exist", 100),
         (["report", "missing.json"], "cannot read the result missing.json", None),
-        (["new", "/dev/null"], "is a file", None),
+        (["new", "/dev/null"], "is a file", 100),
         ([], "argument VERB", None),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from grader.errors import CheckFailed
 from grader.exercise.check import Checks, judge
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recordings
@@ -67,3 +68,19 @@ def test_points_for_an_unknown_check_are_an_error():
 def test_a_dependency_that_is_not_defined_above_is_an_error():
     with pytest.raises(ValueError, match="no check above is named frist"):
         Checks()(after=("frist",))
+
+
+def test_an_exception_in_a_check_is_the_exercise_s_with_its_file_and_line():
+    checks = Checks()
+
+    @checks()
+    def divides(recordings, tolerances):
+        """It divides."""
+        return Finding(1 / 0, "never")
+
+    with pytest.raises(CheckFailed) as error:
+        verdicts(checks, {"divides": 1})
+    assert (error.value.whose, error.value.exit_code) == ("exercise", 3)
+    assert "'divides' failed itself" in error.value.message
+    assert "test_check.py, line" in error.value.message
+    assert error.value.message.endswith("ZeroDivisionError: division by zero")
