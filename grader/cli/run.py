@@ -15,17 +15,14 @@ from grader.cli import error_file, progress
 from grader.errors import GraderError
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
-from grader.grading import Runner, run_all
+from grader.grading import RUNNERS, run_all
 from grader.recording import folder
 from grader.recording.recording import Recordings
 from grader.reports import Report, render, terminal
 from grader.requirements import require
 from grader.result.result import build
-from grader.run import real_time, virtual_time
 from grader.scenes import load_scene
 from grader.submission.opening import open_submission
-
-RUNNERS: dict[str, Runner] = {"real": real_time.run, "virtual": virtual_time.run}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -10,10 +10,7 @@ from __future__ import annotations
 import socket
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Any
-
-from rclpy.qos import QoSDurabilityPolicy
 
 from grader.run.lockstep import real
 from grader.run.lockstep.protocol import (
@@ -44,6 +41,7 @@ from grader.run.lockstep.registry import (
 )
 from grader.run.lockstep.times import NEVER
 from grader.run.processes import cores
+from grader.run.student.remotes import RemoteEndpoint, remembers
 from grader.run.student.scheduler import Scheduler
 
 #: How long DDS may take to connect two endpoints, or to deliver a message [s].
@@ -55,23 +53,6 @@ UNBOUNDED = 0xFFFFFFFF
 #: What sending a message costs: 20 us. What counting the endpoints of a channel costs.
 SEND_UNITS = 4
 QUESTION_UNITS = 4
-
-
-@dataclass(eq=False)
-class RemoteEndpoint(Endpoint):
-    """A reader or writer of the simulator.
-
-    Attributes:
-        id: as in the tables.
-        writes: which of the two it is.
-        sent: how much we have sent to it; it has sent so much.
-        readers: ours that it writes to.
-    """
-
-    id: int = 0
-    writes: bool = False
-    sent: int = 0
-    readers: list[Reader] = field(default_factory=list)
 
 
 class SimulatorLink(EndpointRegistry):
@@ -247,7 +228,7 @@ class SimulatorLink(EndpointRegistry):
                 if remote.writes and compatible(remote, reader):
                     reader.remote.append(remote)
                     remote.readers.append(reader)
-                    if remote not in before and remote.sent and _remembers(remote, reader):
+                    if remote not in before and remote.sent and remembers(remote, reader):
                         reader.arrivals.expected += 1
         for writer in self.writers:
             readers = [remote for remote in remotes[writer.channel] if not remote.writes]
@@ -306,9 +287,3 @@ class SimulatorLink(EndpointRegistry):
     def _break(self, error: ProtocolError) -> None:
         """Somebody else has read or written here, and only the submission can."""
         self.refuse(f"broke our virtual time ({error!r})")
-
-
-def _remembers(writer: Endpoint, reader: Endpoint) -> bool:
-    """Whether a new reader still gets the writer's last message."""
-    lasting = QoSDurabilityPolicy.TRANSIENT_LOCAL
-    return bool(writer.qos.durability == lasting and reader.qos.durability == lasting)

@@ -102,10 +102,10 @@ def test_a_folder_that_does_not_exist_cannot_be_watched(tmp_path):
 
 @pytest.fixture
 def reported(monkeypatch):
-    """Which of these events make a save: of the submission /work/pkg, or of one file in it."""
+    """Which of these events make a save: of the submission /home/a/pkg, or of one file in it."""
 
     def counted(*events, only=None):
-        saves = Saves(Path("/work/pkg"), only)
+        saves = Saves(Path("/home/a/pkg"), only)
         taken = []
         monkeypatch.setattr(saves, "_seen", type("Queue", (), {"put": taken.append}))
         for event in events:
@@ -118,11 +118,11 @@ def reported(monkeypatch):
 @pytest.mark.parametrize(
     "event",
     [
-        FileModifiedEvent("/work/pkg/pkg/node.py"),
-        FileCreatedEvent("/work/pkg/setup.cfg"),
-        FileDeletedEvent("/work/pkg/node.py"),
-        FileMovedEvent("/work/pkg/node.py~", "/work/pkg/node.py"),
-        FileModifiedEvent(b"/work/pkg/node.py"),
+        FileModifiedEvent("/home/a/pkg/pkg/node.py"),
+        FileCreatedEvent("/home/a/pkg/setup.cfg"),
+        FileDeletedEvent("/home/a/pkg/node.py"),
+        FileMovedEvent("/home/a/pkg/node.py~", "/home/a/pkg/node.py"),
+        FileModifiedEvent(b"/home/a/pkg/node.py"),
     ],
 )
 def test_what_can_change_a_verdict_is_a_save(reported, event):
@@ -132,15 +132,17 @@ def test_what_can_change_a_verdict_is_a_save(reported, event):
 @pytest.mark.parametrize(
     "event",
     [
-        FileOpenedEvent("/work/pkg/node.py"),
-        FileClosedEvent("/work/pkg/node.py"),
-        DirCreatedEvent("/work/pkg/graded/turtle_controller.py"),
-        FileCreatedEvent("/work/pkg/graded/pkg/result.json"),
-        FileCreatedEvent("/work/pkg/graded/pkg/report.html"),
-        FileMovedEvent("/work/pkg/graded/pkg/a", "/work/pkg/graded/pkg/recording/metadata.yaml"),
-        FileModifiedEvent("/work/pkg/__pycache__/node.py"),
-        FileModifiedEvent("/work/pkg/.git/hooks/hook.py"),
-        FileModifiedEvent("/work/pkg/.node.py.swp"),
+        FileOpenedEvent("/home/a/pkg/node.py"),
+        FileClosedEvent("/home/a/pkg/node.py"),
+        DirCreatedEvent("/home/a/pkg/graded/turtle_controller.py"),
+        FileCreatedEvent("/home/a/pkg/graded/pkg/result.json"),
+        FileCreatedEvent("/home/a/pkg/graded/pkg/report.html"),
+        FileMovedEvent(
+            "/home/a/pkg/graded/pkg/a", "/home/a/pkg/graded/pkg/recording/metadata.yaml"
+        ),
+        FileModifiedEvent("/home/a/pkg/__pycache__/node.py"),
+        FileModifiedEvent("/home/a/pkg/.git/hooks/hook.py"),
+        FileModifiedEvent("/home/a/pkg/.node.py.swp"),
     ],
 )
 def test_what_grading_reads_and_writes_is_no_save(reported, event):
@@ -148,6 +150,6 @@ def test_what_grading_reads_and_writes_is_no_save(reported, event):
 
 
 def test_of_a_single_file_its_neighbours_do_not_count(reported):
-    own = FileModifiedEvent("/work/pkg/node.py")
-    others = [FileModifiedEvent(f"/work/pkg/{name}") for name in ("other.py", "graded/node.py")]
+    own = FileModifiedEvent("/home/a/pkg/node.py")
+    others = [FileModifiedEvent(f"/home/a/pkg/{name}") for name in ("other.py", "graded/node.py")]
     assert reported(own, *others, only="node.py") == [own]
