@@ -15,9 +15,9 @@ from turtlesim.srv import SetPen, TeleportAbsolute, TeleportRelative
 
 from tests import golden_runs
 from tests.graph import Graph, wait_for_arrival
-from turtlesim_py.replay import number
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.floats import json_number
 
 #: Those with one turtle for the whole run and one event a tick. Recorded events go straight into
 #: the original's handlers; two in a tick may come in another order through topics and services.
@@ -62,7 +62,7 @@ class Lockstep:
         self.graph.until(lambda: len(self.poses) == len(self.colors) == self.ticks, "a tick")
         pose, color = self.poses[-1], self.colors[-1]
         values = (pose.x, pose.y, pose.theta, pose.linear_velocity, pose.angular_velocity)
-        return [self.ticks, *map(number, values), color.r, color.g, color.b]
+        return [self.ticks, *map(json_number, values), color.r, color.g, color.b]
 
     def on_cmd_vel(self, event: dict[str, Any]) -> None:
         linear, angular = (
@@ -95,7 +95,7 @@ class Lockstep:
         goal_id = event["id"]
 
         def on_feedback(message: Any) -> None:
-            self._note(goal_id, "feedback", remaining=number(message.feedback.remaining))
+            self._note(goal_id, "feedback", remaining=json_number(message.feedback.remaining))
 
         def on_acceptance(future: Any) -> None:
             self._note(goal_id, "accepted")
@@ -103,7 +103,7 @@ class Lockstep:
 
         def on_result(future: Any) -> None:
             status, delta = STATUS[future.result().status], future.result().result.delta
-            self._note(goal_id, "result", status=status, delta=number(delta))
+            self._note(goal_id, "result", status=status, delta=json_number(delta))
 
         goal = RotateAbsolute.Goal(theta=float(event["theta"]))
         sent = self._rotation.send_goal_async(goal, feedback_callback=on_feedback)
