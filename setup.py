@@ -49,6 +49,12 @@ def data_files() -> list[tuple[str, list[str]]]:
     for name, function in PROJECT["scripts"].items():
         programs[function.split(".")[0]].append(f"ros2run/{name}")
     files = []
+    if not ROS_IS_SOURCED:
+        # `ros2 run turtlesim turtlesim_node`, as every tutorial has it. A sourced ROS has its own
+        files += [
+            ("share/turtlesim/launch", ROS_PACKAGES["turtlesim_py"]),
+            ("lib/turtlesim", programs["turtlesim_py"]),
+        ]
     for package, launch_files in ROS_PACKAGES.items():
         manifest = "package.xml" if package == PROJECT["name"] else f"{package}/package.xml"
         files += [

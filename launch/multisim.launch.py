@@ -2,7 +2,8 @@
 
     ros2 launch turtlesim_py multisim.launch.py
 
-Only where ROS 2 is sourced: launch and launch_ros are not on PyPI.
+Where ROS 2 is not sourced it is also that of the package turtlesim, but launch and launch_ros are
+not on PyPI.
 """
 
 from launch import LaunchDescription

@@ -15,6 +15,8 @@ PROGRAMS = [
     ("turtlesim_challenge", "turtle_controller"),
     ("grader", "grader"),
 ]
+#: The tutorials' `ros2 run turtlesim ...`. A sourced ROS has the original's.
+TUTORIALS = ["turtlesim_node", "turtle_teleop_key", "draw_square", "mimic"]
 
 
 @pytest.fixture
@@ -37,6 +39,25 @@ def test_ros2_run_starts_the_simulator(
 ) -> None:
     path = ros2_run("turtlesim_py", "turtlesim_node", shell)
     assert "Starting turtlesim" in run_until_started(path, shell)
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own turtlesim")
+def test_ros2_run_turtlesim_finds_the_programs_of_the_tutorials(
+    ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
+) -> None:
+    found = {program: ros2_run("turtlesim", program, shell) for program in TUTORIALS}
+    assert all(path.is_relative_to(sys.prefix) for path in found.values())
+    assert "Starting turtlesim" in run_until_started(found["turtlesim_node"], shell)
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own turtlesim")
+def test_ros2_launch_turtlesim_finds_multisim() -> None:
+    """PyPI has no launch; what the file would start is tested in test_multisim."""
+    ours, theirs = (
+        Path(sys.prefix, "share", package, "launch", "multisim.launch.py")
+        for package in ("turtlesim_py", "turtlesim")
+    )
+    assert ours.read_bytes() == theirs.read_bytes()
 
 
 def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment) -> None:

@@ -85,6 +85,9 @@ def test_every_file_of_the_packages_is_in_the_wheel(
     assert files - set(names) == set()
     assert {"grader/py.typed", "turtlesim_py/py.typed"} <= files
     assert [name for name in names if name.endswith(".so")] == []
+    # nor the programs of an ament package turtlesim, which that ROS has itself
+    assert [name for name in names if "/data/lib/turtlesim/" in name] == []
+    assert [name for name in names if "/data/share/turtlesim/" in name] == []
 
 
 def test_a_deleted_module_is_not_in_the_next_wheel(

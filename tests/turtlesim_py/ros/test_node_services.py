@@ -15,6 +15,9 @@ from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelativ
 
 from tests.graph import ROSOUT_QOS, Graph
 from tests.programs import Program
+from turtlesim_py.ros.arrivals import Arrivals
+from turtlesim_py.ros.node import TurtlesimNode
+from turtlesim_py.world.arena import TICK_NS
 
 #: `Log.WARN`, a byte or a number depending on who built the message.
 WARN = 30
@@ -73,6 +76,21 @@ def test_simultaneous_requests_of_one_service_are_executed_one_a_tick(
     graph.until(lambda: all(future.done() for future in asked), "all answers")
     graph.until(lambda: poses[-1].x == places[-1], "the last place")
     assert [pose.x for pose in poses if pose.y == 5.0][: len(places)] == places
+
+
+def test_of_many_requests_of_one_service_the_last_ten_are_kept(graph: Graph) -> None:
+    node = TurtlesimNode(["--ros-args", "-r", "__ns:=/crowded"])
+    name = "/crowded/spawn"
+    (service,) = (service for service in node.services if service.service_name == name)
+    arrivals = Arrivals()
+    arrivals.watch(service)
+    for number in range(15):
+        graph.ask(Spawn, name, name=f"number{number}")
+        graph.until(arrivals.any_new, "the request")
+    for tick in range(1, 21):
+        node.tick(tick * TICK_NS)
+    assert list(node.arena.turtles) == ["turtle1", *(f"number{n}" for n in range(5, 15))]
+    node.destroy_node()
 
 
 def test_set_pen_changes_what_is_drawn(graph: Graph, turtle: str) -> None:
