@@ -1,4 +1,7 @@
-"""Drive turtle1 with the keyboard: the original's turtle_teleop_key."""
+"""Drive turtle1 with the keyboard: the original's turtle_teleop_key.
+
+The letter keys lie around F as the headings lie around the turtle: G is right, R is up, and so on.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +19,13 @@ from turtlesim_py.ros.executor import TickExecutor
 from turtlesim_py.ros.rclcpp_node import RclcppNode
 from turtlesim_py.ros.turtle_endpoints import TOPIC_QOS
 
+#: The original's words, since 1.8.3 with the keys as a keyboard of Linux gives them.
 HELP = """\
-Keys for turtle1 (this terminal has to be in front):
-  arrow keys     ahead, back, turn left, turn right; each press lasts a second
-  e r t          turn to a heading, which is where the key lies as seen from F:
-  d   g          G is right, R is up, and so on
-  c v b
-  f              cancel such a turn
-  q              quit
+Reading from keyboard
+---------------------------
+Use arrow keys to move the turtle.
+Use g|b|v|c|d|e|r|t keys to rotate to absolute orientations. 'f' to cancel a rotation.
+'q' to quit.
 """
 #: Key -> how far ahead and how far to the left, in units of the scales.
 DRIVE = {"up": (1.0, 0.0), "down": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}

@@ -1,4 +1,4 @@
-"""The turtles' pictures: ten of our own, drawn by code, under the names that the original uses.
+"""The turtles' pictures: eleven of our own, drawn by code, under the names that turtlesim 1.8.4 uses.
 
 A turtle seen from above, its head up, 45 x 45 pixels: the original takes the height of its
 pictures as the length of a metre. Shapes are judged at 8 x 8 points in each pixel, by IEEE sums,
@@ -161,6 +161,16 @@ def _bands() -> Mask:
     return bands
 
 
+def _keys() -> Mask:
+    """Cover the black keys of a piano, and the gaps between the white ones."""
+    keys = np.zeros(_X.shape, np.bool_)
+    for x in (2.6, 7.8):
+        aside = np.abs(np.abs(_X - _SHELL_X) - x)
+        keys |= aside < 0.4
+        keys |= (aside < 1.5) & (_Y < _SHELL_Y + 1.5)
+    return keys
+
+
 _LOOKS: Final = {
     "ardent": Look((236, 164, 92), (176, 36, 40), (232, 74, 52), (88, 18, 26), _honeycomb),
     "bouncy": Look((130, 206, 96), (244, 120, 172), (255, 196, 220), (120, 34, 84), _spots),
@@ -171,6 +181,7 @@ _LOOKS: Final = {
     "galactic": Look((150, 132, 210), (34, 22, 66), (120, 226, 232), (14, 8, 34), _spots),
     "humble": Look((150, 190, 84), (112, 82, 44), (176, 140, 80), (52, 38, 20), _star),
     "iron": Look((170, 178, 186), (88, 96, 106), (200, 208, 214), (38, 42, 50), _bands),
+    "jazzy": Look((92, 186, 172), (250, 244, 228), (44, 30, 62), (58, 36, 78), _keys),
     "rolling": Look((240, 214, 90), (20, 120, 84), (96, 206, 140), (8, 58, 44), _rings),
 }
 

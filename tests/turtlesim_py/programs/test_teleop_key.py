@@ -41,7 +41,7 @@ class Teleop:
     def wait_for_help(self) -> str:
         """What is on the screen when the help is."""
         shown = b""
-        while b"quit" not in shown:
+        while b"quit." not in shown:
             shown += os.read(self._user, 1024)
         return shown.decode()
 
@@ -147,6 +147,21 @@ def test_it_says_where_there_is_no_simulator() -> None:
     with teleop("--ros-args", "-r", "__ns:=/alone") as driver:
         driver.type("g")
         driver.program.wait_for_line("is turtlesim_node running?")
+
+
+def test_it_greets_in_the_words_of_turtlesim_1_8_4() -> None:
+    driver = Teleop("--ros-args", "-r", "__ns:=/alone")
+    try:
+        lines = driver.wait_for_help().splitlines()
+    finally:
+        driver.close()
+    assert lines == [
+        "Reading from keyboard",
+        "---------------------------",
+        "Use arrow keys to move the turtle.",
+        "Use g|b|v|c|d|e|r|t keys to rotate to absolute orientations. 'f' to cancel a rotation.",
+        "'q' to quit.",
+    ]
 
 
 def test_without_a_terminal_it_is_one_line_and_exit_code_2() -> None:
