@@ -85,7 +85,7 @@ def generate(package: str, definitions: Path, out: Path) -> None:
 def _write_share(
     package: str, definitions: Path, share: Path, files: Sequence[Path], idls: Sequence[Path]
 ) -> None:
-    """The definitions themselves with their licence, and the package's entries in the ament index."""
+    """Definitions with their licence, and the package's entries in the ament index."""
     licence = [path.relative_to(definitions) for path in definitions.glob("LICENSE")]
     for file in (Path("package.xml"), *licence, *files):
         shutil.copyfile(definitions / file, share / package / file)

@@ -13,11 +13,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from rosbags.interfaces import Connection
-from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
+from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
+from grader.recording.rosbag2_writer import Rosbag2Writer
 from grader.scenes.scene import Message, Scene, Trace
 
 
@@ -30,9 +31,7 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
         OSError: it cannot be written, e.g. because the disk is full.
     """
     types = _store(scene.message_definitions())
-    writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
-    # Chunks inside the file: 0.2 MB instead of 2 MB a run, and every reader of MCAP can unpack it.
-    writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    writer = Rosbag2Writer(folder)
     connections: dict[str, Connection] = {}
 
     def connection(topic: str, msgtype: str) -> Connection:

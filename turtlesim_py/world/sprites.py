@@ -1,4 +1,4 @@
-"""The turtles' pictures: eleven of our own, drawn by code, under the names that turtlesim 1.8.4 uses.
+"""The turtles' pictures: eleven of our own, drawn by code, under the names of turtlesim 1.8.4.
 
 A turtle seen from above, its head up, 45 x 45 pixels: the original takes the height of its
 pictures as the length of a metre. Shapes are judged at 8 x 8 points in each pixel, by IEEE sums,

@@ -82,8 +82,14 @@ def on(topic: str, decoded: list[tuple[str, int, Any]]) -> list[tuple[int, Any]]
 # The container --------------------------------------------------------------------------------
 
 
+def information(folder: Path) -> dict[str, Any]:
+    text = (folder / "metadata.yaml").read_text()
+    found: dict[str, Any] = yaml.safe_load(text)["rosbag2_bagfile_information"]
+    return found
+
+
 def test_the_metadata_is_that_of_version_9_and_knows_every_topic(folder):
-    info = yaml.safe_load((folder / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    info = information(folder)
     span = {
         "starting_time": {"nanoseconds_since_epoch": TICK_NS},
         "duration": {"nanoseconds": 8 * TICK_NS},
@@ -100,7 +106,7 @@ def test_the_metadata_is_that_of_version_9_and_knows_every_topic(folder):
         "compression_format": "",
         "compression_mode": "",
         "custom_data": None,
-        "ros_distro": "rosbags",
+        "ros_distro": "jazzy",
     }
     found = {}
     for topic in topics:
@@ -117,8 +123,7 @@ def test_the_metadata_is_that_of_version_9_and_knows_every_topic(folder):
 def test_the_type_hashes_are_those_of_the_installed_interfaces(folder):
     from ament_index_python.packages import get_package_share_directory
 
-    info = yaml.safe_load((folder / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
-    for topic in info["topics_with_message_count"]:
+    for topic in information(folder)["topics_with_message_count"]:
         package, _, name = (kind := topic["topic_metadata"]["type"]).split("/")
         path = Path(get_package_share_directory(package), "msg", f"{name}.json")
         hashes = json.loads(path.read_text())["type_hashes"]
@@ -138,16 +143,30 @@ def test_mcaps_own_reader_finds_schemas_channels_and_counts(folder):
         reader = make_reader(stream, validate_crcs=True)
         assert reader.get_header().profile == "ros2"
         summary = reader.get_summary()
+    hashes = {
+        topic["topic_metadata"]["name"]: topic["topic_metadata"]["type_description_hash"]
+        for topic in information(folder)["topics_with_message_count"]
+    }
     counts = summary.statistics.channel_message_counts
     found = {}
     for number, channel in summary.channels.items():
         schema = summary.schemas[channel.schema_id]
         assert (channel.message_encoding, schema.encoding) == ("cdr", "ros2msg")
-        assert channel.metadata == {"offered_qos_profiles": "[]"}
+        assert channel.metadata == {
+            "offered_qos_profiles": "[]",
+            "topic_type_hash": hashes[channel.topic],
+        }
         found[channel.topic] = (schema.name, counts[number])
     assert found == TOPICS
     assert {chunk.compression for chunk in summary.chunk_indexes} == {"zstd"}
     assert all(chunk.message_index_length for chunk in summary.chunk_indexes)
+
+
+def test_the_mcap_has_the_metadata_too(folder):
+    with (folder / "recording.mcap").open("rb") as stream:
+        (record,) = make_reader(stream).iter_metadata()
+    assert record.name == "rosbag2"
+    assert yaml.safe_load(record.metadata["serialized_metadata"]) == information(folder)
 
 
 def test_rosbags_reads_it_without_being_told_the_types(folder, recorded):
