@@ -1,6 +1,6 @@
 """One turtle: motion, watchdog, teleports, rotation goal and pen, by the original's arithmetic.
 
-Every expression keeps the order of operations of turtlesim 1.8.2, because published values are
+Every expression keeps the order of operations of turtlesim 1.8.4, because published values are
 compared bit for bit. Positions are metres with y growing DOWN, as inside the original; `Pose`
 is what it publishes, y growing up.
 """
