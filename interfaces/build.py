@@ -13,7 +13,9 @@ from setuptools.command.build_ext import build_ext
 from interfaces.generate import generate, ros_prefix
 
 HERE = Path(__file__).resolve().parent
-PACKAGES = ("turtlesim",)
+# The same definitions under the two names that they have: from ROS 2 Kilted on it is the second.
+PACKAGES = ("turtlesim", "turtlesim_msgs")
+DEFINITIONS = HERE / "packages" / "turtlesim"
 
 # Packages whose types ours use. An action uses all but the first by itself: goal ids, the status
 # topic, and the events of its services.
@@ -52,7 +54,7 @@ class BuildInterfaces(build_ext):
             # no leftovers of interfaces that were renamed or removed
             shutil.rmtree(generated, ignore_errors=True)
             shutil.rmtree(Path(self.build_lib) / package, ignore_errors=True)
-            generate(package, HERE / "packages" / package, generated)
+            generate(package, HERE / "packages" / package / "package.xml", DEFINITIONS, generated)
             _configure(ext, package, generated)
             super().build_extension(ext)
         self._collect(package, generated)

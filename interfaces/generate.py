@@ -25,8 +25,8 @@ def ros_prefix() -> Path:
     return Path(rosidl_generator_c.__file__).resolve().parents[4]
 
 
-def generate(package: str, definitions: Path, out: Path) -> None:
-    """Generate a package from its `definitions` (msg/, srv/, action/, package.xml) below `out`.
+def generate(package: str, manifest: Path, definitions: Path, out: Path) -> None:
+    """Generate a package from `definitions` (msg/, srv/, action/) and its package.xml below `out`.
 
     `out` then holds `share/`, as ROS installs it (definitions, type descriptions, index), and one
     folder a generator, `<generator>/<package>/`, with its sources.
@@ -48,7 +48,7 @@ def generate(package: str, definitions: Path, out: Path) -> None:
         for path in sorted((definitions / kind).glob(f"*.{kind}"))
     ]
     idls = [convert_to_idl(definitions, package, file, share).relative_to(share) for file in files]
-    _write_share(package, definitions, out / "share", files, idls)
+    _write_share(package, manifest, definitions, out / "share", files, idls)
 
     def arguments(generator: str, output: Path | None = None, **more: Any) -> str:
         return _arguments_file(package, generator, out, share, idls, output, more)
@@ -83,11 +83,17 @@ def generate(package: str, definitions: Path, out: Path) -> None:
 
 
 def _write_share(
-    package: str, definitions: Path, share: Path, files: Sequence[Path], idls: Sequence[Path]
+    package: str,
+    manifest: Path,
+    definitions: Path,
+    share: Path,
+    files: Sequence[Path],
+    idls: Sequence[Path],
 ) -> None:
     """Definitions with their licence, and the package's entries in the ament index."""
+    shutil.copyfile(manifest, share / package / "package.xml")
     licence = [path.relative_to(definitions) for path in definitions.glob("LICENSE")]
-    for file in (Path("package.xml"), *licence, *files):
+    for file in (*licence, *files):
         shutil.copyfile(definitions / file, share / package / file)
     entries = {
         "packages": "",
