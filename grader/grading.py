@@ -23,6 +23,8 @@ from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
 from grader.run import real_time, virtual_time
 from grader.run.plan import Plan
+from grader.scenes import load_scene
+from grader.submission.imports import read_imports
 from grader.submission.opening import Submission, open_submission
 
 Progress = Callable[[float], None]
@@ -64,7 +66,7 @@ def grade(
             another thread.
 
     Raises:
-        SubmissionError: there is nothing to start, or no way to tell what.
+        SubmissionError: there is nothing to start, no way to tell what, or no ROS to run it in.
         ExerciseError: there is no such exercise, or it cannot be used.
         GraderFailure: the grader itself failed, twice; never the submission's fault.
     """
@@ -137,11 +139,17 @@ def run_all(
         progress: called with the simulated seconds of the nominal run.
 
     Raises:
+        SubmissionError: there is no ROS in which it could run.
         GraderFailure: a run could not be made, twice.
     """
     starts = exercise.starts(seed)
     used = exercise.varied.seed if seed is None else seed
-    nominal_plan = Plan(exercise.limits, scene=exercise.scene, seed=used if starts else None)
+    nominal_plan = Plan(
+        exercise.limits,
+        scene=exercise.scene,
+        seed=used if starts else None,
+        interfaces=interfaces_for(submission, exercise),
+    )
     plans = [nominal_plan, *(replace(nominal_plan, start=s, seed=None) for s in starts)]
 
     def run_twice_at_most(plan: Plan) -> Recording:
@@ -154,6 +162,16 @@ def run_all(
     with ThreadPoolExecutor(max_workers=min(len(plans), max(2, os.cpu_count() or 1))) as pool:
         nominal, *varied = pool.map(run_twice_at_most, plans)
     return Recordings(nominal, tuple(varied))
+
+
+def interfaces_for(submission: Submission, exercise: Exercise) -> str:
+    """Which interfaces of the exercise's scene a submission is written for.
+
+    Raises:
+        SubmissionError: there is no ROS in which it could run.
+    """
+    imports = read_imports(submission)
+    return load_scene(exercise.scene).interfaces_for(imports.surely, imports.perhaps)
 
 
 def _record(

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 import shutil
 from pathlib import Path
 
 from grader.errors import UsageError
 from grader.exercise.loading import DEFAULT, load_exercise
+from grader.scenes import load_scene
+from grader.scenes.scene import Scene
+
+#: The ROS 2 releases that a starter can be for.
+RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
+#: What of a starter depends on the release.
+ADAPTED = ("*.py", "package.xml")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,6 +24,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
     parser.add_argument(
         "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help="whose starter (the challenge's)"
+    )
+    parser.add_argument(
+        "--ros",
+        choices=RELEASES,
+        default=os.environ.get("ROS_DISTRO"),
+        help="the ROS 2 release that it is for; default: the sourced one, else as it comes",
     )
 
 
@@ -26,7 +40,8 @@ def main(args: argparse.Namespace) -> int:
         UsageError: the folder holds something, or cannot be written; the exercise has no starter.
     """
     folder: Path = args.folder
-    starter = load_exercise(args.exercise).starter
+    exercise = load_exercise(args.exercise)
+    starter = exercise.starter
     if starter is None:
         raise UsageError(f"the exercise {args.exercise!r} has no starter; nothing was written")
     try:
@@ -36,6 +51,8 @@ def main(args: argparse.Namespace) -> int:
             raise UsageError(f"{folder} is not empty; give a new folder, nothing was written")
         skip = shutil.ignore_patterns("__pycache__", "*.pyc")
         shutil.copytree(starter, folder, dirs_exist_ok=True, ignore=skip)
+        if args.ros:
+            _adapt(folder, load_scene(exercise.scene), args.ros)
     except OSError as error:
         raise UsageError(f"cannot write {folder}: {error.strerror}") from None
     print(f"The starter package is in {folder}.")
@@ -49,6 +66,13 @@ def main(args: argparse.Namespace) -> int:
         words += ["--exercise", args.exercise]
     print(f"    {shlex.join(words)}")
     return 0
+
+
+def _adapt(folder: Path, scene: Scene, ros_distro: str) -> None:
+    """Give the files the names that things have in a ROS 2 release."""
+    for path in (path for pattern in ADAPTED for path in folder.rglob(pattern)):
+        text = path.read_bytes().decode("utf-8", "surrogateescape")
+        path.write_bytes(scene.adapted(text, ros_distro).encode("utf-8", "surrogateescape"))
 
 
 def _with_todos(folder: Path) -> list[str]:

@@ -15,7 +15,7 @@ from grader.cli import error_file, progress
 from grader.errors import GraderError
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
-from grader.grading import RUNNERS, run_all
+from grader.grading import RUNNERS, interfaces_for, run_all
 from grader.recording import folder
 from grader.recording.recording import Recordings
 from grader.reports import Report, render, terminal
@@ -91,6 +91,9 @@ def _grade(args: argparse.Namespace) -> int:
     console, messages = Console(), Console(stderr=True, highlight=False)
     with open_submission(args.submission, args.executable) as submission:
         messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
+        interfaces_for(
+            submission, exercise
+        )  # what it refuses, it refuses before anything is written
         _prepare(out, args.json)
         messages.print(f"Running it beside a simulator, in {args.time} time ...")
         with progress.shown(messages, "running") as show:

@@ -49,5 +49,7 @@ def remarks(recording: Recording) -> list[str]:
     if recording.run.outcome == "crashed":
         found.append(how_it_ended(recording).strip())
     published = [topic.topic for topic in recording.topics]
-    found += load_scene(recording.scene).remarks(recording.trace, published)
+    found += load_scene(recording.scene).remarks(
+        recording.trace, published, recording.run.interfaces
+    )
     return found

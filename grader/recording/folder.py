@@ -128,6 +128,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     mcap = _bag().write(recording.trace, scene, folder)
     run = asdict(recording.run)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
+    if not recording.run.interfaces:
+        del run["interfaces"]
     facts = {
         "schema": SCHEMA,
         "bag_sha256": _sha256(mcap),

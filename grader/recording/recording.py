@@ -31,6 +31,7 @@ class Run:
         isolation: what kept the run apart from others.
         flags: remarks on the run that a reader of the result should know.
         seed: chose where the varied runs start; None where there are none.
+        interfaces: with which the scene was run; '' where it has no choice, or had none.
     """
 
     time: Clock = "real"
@@ -43,6 +44,7 @@ class Run:
     isolation: str = ""
     flags: tuple[str, ...] = ()
     seed: int | None = None
+    interfaces: str = ""
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,8 @@ class RunSummary(Run):
         run = asdict(self) | {"flags": list(self.flags)}
         if self.start is None:
             del run["start"]
+        if not self.interfaces:
+            del run["interfaces"]
         return run
 
     @classmethod

@@ -50,6 +50,7 @@ def record(
             isolation=ending.isolation,
             flags=(*ending.flags, *plan.flags),
             seed=plan.seed,
+            interfaces=plan.interfaces,
         ),
         topics=topics,
         output=ending.output,

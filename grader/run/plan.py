@@ -19,6 +19,8 @@ class Plan:
         scene: the name of what runs beside the submission.
         seed: of the varied runs that this one has beside it, for the record.
         flags: remarks that are known before it begins.
+        interfaces: those that the submission was written for, where the scene has several; '' for
+            its usual ones.
     """
 
     limits: Limits
@@ -26,6 +28,7 @@ class Plan:
     scene: str = "turtlesim"
     seed: int | None = None
     flags: tuple[str, ...] = ()
+    interfaces: str = ""
 
     def to_json(self) -> str:
         """As an argument of the simulator's process."""

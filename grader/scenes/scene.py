@@ -151,10 +151,30 @@ class Scene(Protocol):
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Where varied runs start, so far from the usual place; the same for the same seed."""
 
+    def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
+        """Which of its interfaces a submission was written for; '' in a scene that has no choice.
+
+        Args:
+            surely, perhaps: the modules that the submission imports whenever it is run, and those
+                that it may import, each with the place of the first import, in the order of these.
+
+        Raises:
+            SubmissionError: it cannot have been written for any.
+        """
+
+    def adapted(self, text: str, ros_distro: str) -> str:
+        """A Python file or a package.xml as a ROS 2 release needs it; named as in ROS_DISTRO."""
+
     # In the simulator's process ---------------------------------------------------------------
 
-    def simulate(self, limits: Limits, start: Start | None, hooks: Hooks) -> Simulation:
-        """Make the nodes and everything else; ROS is up."""
+    def simulate(
+        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str
+    ) -> Simulation:
+        """Make the nodes and everything else; ROS is up.
+
+        Args:
+            interfaces: from `interfaces_for`; '' for the usual ones.
+        """
 
     def encode(self, trace: Trace) -> bytes:
         """A trace's bytes, for the way from the simulator's process to the grader's."""
@@ -200,9 +220,10 @@ class Scene(Protocol):
     def view(self, trace: Trace) -> View:
         """The trace for a page."""
 
-    def remarks(self, trace: Trace, published: Sequence[str]) -> list[str]:
+    def remarks(self, trace: Trace, published: Sequence[str], interfaces: str) -> list[str]:
         """What a reader of any exercise's result should know about the run.
 
         Args:
             published: the topics that the submission published on.
+            interfaces: with which the scene was run.
         """

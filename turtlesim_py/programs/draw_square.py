@@ -8,11 +8,10 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from geometry_msgs.msg import Twist
-from rclpy.node import Node
 from std_srvs.srv import Empty
-from turtlesim.msg import Pose
 
 from turtlesim_py.ros import program
+from turtlesim_py.ros.rclcpp_node import RclcppNode
 
 #: The square's side [m].
 SIDE_M = 2.0
@@ -92,21 +91,22 @@ class Square:
         return near and abs(off_rad) < NEAR_RAD
 
 
-class DrawSquare(Node):
+class DrawSquare(RclcppNode):
     """The node `/draw_square`: resets the simulator, then drives turtle1."""
 
     def __init__(self) -> None:
         super().__init__("draw_square")
-        self._pose: Pose | None = None
+        self._pose: PoseLike | None = None
         self._reset_asked = False
         self._ready = False
         self._square = Square(self._log_goal)
         self._velocity = self.create_publisher(Twist, "turtle1/cmd_vel", 1)
         self._reset = self.create_client(Empty, "reset")
-        self.create_subscription(Pose, "turtle1/pose", self._on_pose, 1)
+        pose = self.declare_interfaces().Pose
+        self.create_subscription(pose, "turtle1/pose", self._on_pose, 1)
         self.create_timer(PERIOD_S, self._on_timer)
 
-    def _on_pose(self, pose: Pose) -> None:
+    def _on_pose(self, pose: PoseLike) -> None:
         self._pose = pose
 
     def _on_timer(self) -> None:

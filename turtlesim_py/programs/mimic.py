@@ -6,23 +6,24 @@ mimic --ros-args -r input/pose:=turtle1/pose -r output/cmd_vel:=turtle2/cmd_vel
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 from geometry_msgs.msg import Twist
-from rclpy.node import Node
-from turtlesim.msg import Pose
 
 from turtlesim_py.ros import program
+from turtlesim_py.ros.rclcpp_node import RclcppNode
 
 
-class Mimic(Node):
+class Mimic(RclcppNode):
     """The node `/turtle_mimic`: the speeds of `input/pose` become commands on `output/cmd_vel`."""
 
     def __init__(self) -> None:
         super().__init__("turtle_mimic")
         self._velocity = self.create_publisher(Twist, "output/cmd_vel", 1)
-        self.create_subscription(Pose, "input/pose", self._on_pose, 1)
+        pose = self.declare_interfaces().Pose
+        self.create_subscription(pose, "input/pose", self._on_pose, 1)
 
-    def _on_pose(self, pose: Pose) -> None:
+    def _on_pose(self, pose: Any) -> None:
         twist = Twist()
         twist.linear.x = pose.linear_velocity
         twist.angular.z = pose.angular_velocity

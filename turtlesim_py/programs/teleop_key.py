@@ -11,7 +11,6 @@ from typing import Any
 
 from geometry_msgs.msg import Twist
 from rclpy.action import ActionClient
-from turtlesim.action import RotateAbsolute
 
 from turtlesim_py.programs.keyboard import Keyboard, NotATerminal
 from turtlesim_py.ros import program
@@ -52,7 +51,8 @@ class TeleopTurtle(RclcppNode):
         self.declare("scale_angular", 2.0, "Speed of a turn [rad/s]")
         self.declare("scale_linear", 2.0, "Speed ahead and back [m/s]")
         self._velocity = self.create_publisher(Twist, "turtle1/cmd_vel", TOPIC_QOS)
-        self._rotation = ActionClient(self, RotateAbsolute, "turtle1/rotate_absolute")
+        self._type = self.declare_interfaces().RotateAbsolute
+        self._rotation = ActionClient(self, self._type, "turtle1/rotate_absolute")
         self._goal: Any = None  # the future of its handle
 
     def press(self, key: str) -> None:
@@ -78,7 +78,7 @@ class TeleopTurtle(RclcppNode):
         if not self._rotation.server_is_ready():
             self.get_logger().warning("There is no turtle1 here: is turtlesim_node running?")
             return
-        self._goal = self._rotation.send_goal_async(RotateAbsolute.Goal(theta=heading_rad))
+        self._goal = self._rotation.send_goal_async(self._type.Goal(theta=heading_rad))
 
 
 def drive(node: TeleopTurtle, stopped: Callable[[], bool]) -> None:

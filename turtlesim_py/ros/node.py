@@ -17,7 +17,6 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time_source import CLOCK_TOPIC, USE_SIM_TIME_NAME
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import Empty
-from turtlesim.srv import Kill, Spawn
 
 from turtlesim_py.ros import pacer, program, window
 from turtlesim_py.ros.executor import TickExecutor
@@ -44,11 +43,13 @@ class TurtlesimNode(RclcppNode):
 
     Attributes:
         arena: the turtles and what they have drawn.
+        interfaces: the classes of the topics, services and actions.
         tick_executor: serves the node, once in a tick.
         follows_ros_clock: whether the time comes from /clock: the parameter `use_sim_time`.
 
     Raises:
-        UnusableParameter: a parameter override is out of range or of the wrong type.
+        UnusableParameter: a parameter override is out of range or of the wrong type, or names a
+            package that is not there.
         InvalidParameterTypeException: the same, for a parameter of every ROS node.
     """
 
@@ -59,6 +60,7 @@ class TurtlesimNode(RclcppNode):
             limits = None if low is None or high is None else (low, high)
             self.declare(parameter.name, parameter.default, parameter.description, limits)
         sprite = self._declare_sprite()
+        self.interfaces = self.declare_interfaces()
         window.declare_parameters(self)
         self.get_logger().info(
             f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
@@ -81,8 +83,8 @@ class TurtlesimNode(RclcppNode):
         )
         self.create_service(Empty, "clear", self._on_clear)
         self.create_service(Empty, "reset", self._on_reset)
-        self.create_service(Spawn, "spawn", self._on_spawn)
-        self.create_service(Kill, "kill", self._on_kill)
+        self.create_service(self.interfaces.Spawn, "spawn", self._on_spawn)
+        self.create_service(self.interfaces.Kill, "kill", self._on_kill)
         self.tick_executor = TickExecutor(self)
 
     def destroy_node(self) -> None:
@@ -203,7 +205,7 @@ class TurtlesimNode(RclcppNode):
         self._drop_endpoints(self._endpoints.keys() - self.arena.turtles.keys())
         for name in self.arena.turtles:
             if name not in self._endpoints:
-                self._endpoints[name] = TurtleEndpoints(self, self.arena, name)
+                self._endpoints[name] = TurtleEndpoints(self, self.interfaces, self.arena, name)
 
     def _drop_endpoints(self, names: set[str]) -> None:
         for name in names:

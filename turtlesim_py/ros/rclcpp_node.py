@@ -17,6 +17,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_policy_name_from_kind
 
+from turtlesim_py.ros import interfaces
+from turtlesim_py.ros.interfaces import Interfaces
 from turtlesim_py.world.parameters import wrong_type
 
 Value = TypeVar("Value", bound=bool | int | float | str)
@@ -76,6 +78,26 @@ class RclcppNode(Node):
             found = self._parameter_overrides[name].value
             raise UnusableParameter(name, found, expected) from None
         return value
+
+    def declare_interfaces(self) -> Interfaces:
+        """Declare the parameter `interfaces`; return the classes of the package that it names.
+
+        Raises:
+            UnusableParameter: there is no such package here.
+        """
+        one_of = f"one of {', '.join(interfaces.NAMES)}"
+        name = self.declare(
+            "interfaces",
+            interfaces.usual(),
+            f"Package of turtlesim's messages, services and action, {one_of}",
+            read_only=True,
+        )
+        if name not in interfaces.NAMES:
+            raise UnusableParameter("interfaces", name, one_of)
+        if name not in (there := interfaces.installed()):
+            found = f"here is {' and '.join(there) or 'neither of them'}"
+            raise UnusableParameter("interfaces", name, f"an installed package, and {found}")
+        return Interfaces.of(name)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all or none; an undeclared one is a refusal here, an exception in rclpy."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 from rclpy.node import Node
-from turtlesim.action import RotateAbsolute
 
+from turtlesim_py.ros.interfaces import Interfaces
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.notices import GoalFeedback, GoalResult
 
@@ -22,13 +22,14 @@ class RotateAction:
     `finish` sets the state and the waiting result itself.
     """
 
-    def __init__(self, node: Node, arena: Arena, turtle: str) -> None:
+    def __init__(self, node: Node, interfaces: Interfaces, arena: Arena, turtle: str) -> None:
+        self._type = interfaces.RotateAbsolute
         self._arena = arena
         self._turtle = turtle
         self._running: dict[bytes, ServerGoalHandle] = {}
         self._server = ActionServer(
             node,
-            RotateAbsolute,
+            self._type,
             f"{turtle}/rotate_absolute",
             execute_callback=lambda _: None,  # never called, but required
             handle_accepted_callback=self._on_goal,
@@ -38,7 +39,7 @@ class RotateAction:
 
     def feedback(self, event: GoalFeedback) -> None:
         """Tell a goal's client how far it still is."""
-        message = RotateAbsolute.Feedback(remaining=event.remaining_rad)
+        message = self._type.Feedback(remaining=event.remaining_rad)
         self._running[_key(event)].publish_feedback(message)
 
     def finish(self, event: GoalResult) -> None:
@@ -53,8 +54,8 @@ class RotateAction:
             if not handle.is_cancel_requested:  # the turtle is gone, nobody has asked
                 handle._update_state(GoalEvent.CANCEL_GOAL)
             handle.canceled()
-        response = RotateAbsolute.Impl.GetResultService.Response(
-            status=handle.status, result=RotateAbsolute.Result(delta=event.delta_rad)
+        response = self._type.Impl.GetResultService.Response(
+            status=handle.status, result=self._type.Result(delta=event.delta_rad)
         )
         self._server._result_futures[key].set_result(response)
 

@@ -7,9 +7,8 @@ from typing import Any
 
 from geometry_msgs.msg import Twist
 from rclpy.qos import QoSProfile
-from turtlesim.msg import Color, Pose
-from turtlesim.srv import SetPen, TeleportAbsolute, TeleportRelative
 
+from turtlesim_py.ros.interfaces import Interfaces
 from turtlesim_py.ros.rclcpp_node import RclcppNode
 from turtlesim_py.ros.rotate_action import RotateAction
 from turtlesim_py.world.arena import Arena
@@ -18,7 +17,7 @@ from turtlesim_py.world.turtle import Reading
 #: Reliable and volatile, the last 7 messages: the original's choice for every topic.
 TOPIC_QOS = QoSProfile(depth=7)
 #: Pose and Color as they travel: behind a header, five singles or three bytes. The way through a
-#: message object would be the dearest part of a tick.
+#: message object would be the dearest part of a tick. They are the same under both names.
 CDR = b"\0\1\0\0"  # little-endian
 POSE_BYTES = Struct("<4s5f")
 COLOR_BYTES = Struct("<4s3Bx")
@@ -31,12 +30,12 @@ class TurtleEndpoints:
         action: `rotate_absolute`.
     """
 
-    def __init__(self, node: RclcppNode, arena: Arena, name: str) -> None:
+    def __init__(self, node: RclcppNode, interfaces: Interfaces, arena: Arena, name: str) -> None:
         self._node = node
         self._arena = arena
         self._name = name
-        self._pose_publisher = self._publisher(Pose, f"{name}/pose")
-        self._color_publisher = self._publisher(Color, f"{name}/color_sensor")
+        self._pose_publisher = self._publisher(interfaces.Pose, f"{name}/pose")
+        self._color_publisher = self._publisher(interfaces.Color, f"{name}/color_sensor")
         cmd_vel = f"{name}/cmd_vel"
         self._subscription = node.create_subscription(
             Twist,
@@ -46,15 +45,14 @@ class TurtleEndpoints:
             event_callbacks=node.warn_publishers(cmd_vel),
         )
         self._services = [
-            node.create_service(SetPen, f"{name}/set_pen", self._on_set_pen),
-            node.create_service(
-                TeleportAbsolute, f"{name}/teleport_absolute", self._on_teleport_absolute
-            ),
-            node.create_service(
-                TeleportRelative, f"{name}/teleport_relative", self._on_teleport_relative
-            ),
+            node.create_service(service, f"{name}/{called}", callback)
+            for service, called, callback in (
+                (interfaces.SetPen, "set_pen", self._on_set_pen),
+                (interfaces.TeleportAbsolute, "teleport_absolute", self._on_teleport_absolute),
+                (interfaces.TeleportRelative, "teleport_relative", self._on_teleport_relative),
+            )
         ]
-        self.action = RotateAction(node, arena, name)
+        self.action = RotateAction(node, interfaces, arena, name)
 
     def publish(self, reading: Reading) -> None:
         """Send a tick's pose and colour."""

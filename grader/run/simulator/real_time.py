@@ -42,7 +42,7 @@ class GradedSimulator:
         self._link = link
         self._file = file
         self._scene = load_scene(plan.scene)
-        self._simulation = self._scene.simulate(plan.limits, plan.start, Hooks())
+        self._simulation = self._scene.simulate(plan.limits, plan.start, Hooks(), plan.interfaces)
         self._topics = PublishedTopics(self._simulation.node)
         self._running = False
         self._start_at_s = math.inf

@@ -58,7 +58,7 @@ class Lockstep:
         self._scene = load_scene(plan.scene)
         assert self._scene.tick_ns == TICK_NS
         hooks = Hooks(has_unread=self._registry.has_unread, after_serving=self._introduce_changes)
-        self._simulation = self._scene.simulate(plan.limits, plan.start, hooks)
+        self._simulation = self._scene.simulate(plan.limits, plan.start, hooks, plan.interfaces)
         self._simulation.record()
         self._topics = PublishedTopics(self._simulation.node)
         self._tick = 0

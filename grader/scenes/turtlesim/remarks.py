@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from turtlesim_py.ros.interfaces import NEWER, OLDER
 from turtlesim_py.world.events import (
     Clear,
     Event,
@@ -28,9 +29,19 @@ _INTERVENTIONS: dict[type[Event], str] = {
 _POSE = f"/{FIRST_TURTLE}/pose"
 
 
-def remarks(trace: TurtleTrace, published: Sequence[str]) -> list[str]:
-    """One sentence a thing; `published` are the topics that the submission published on."""
+def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER) -> list[str]:
+    """One sentence a thing.
+
+    Args:
+        published: the topics that the submission published on.
+        interfaces: the package whose messages it was given.
+    """
     found = []
+    if interfaces == NEWER:
+        found.append(
+            f"The node was run with the messages of {NEWER}: ROS 2 has them from Kilted on, "
+            f"in Jazzy they are those of {OLDER}."
+        )
     for kind, effect in _INTERVENTIONS.items():
         calls = [event for event in trace.events if isinstance(event, kind)]
         if calls:

@@ -15,7 +15,7 @@ from grader.scenes.scene import (
     Start,
     Trace,
 )
-from grader.scenes.turtlesim import remarks, starts, trace, view
+from grader.scenes.turtlesim import interfaces, remarks, starts, trace, view
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.view import Pictures, View
 from turtlesim_py.world.arena import TICK_NS
@@ -46,11 +46,21 @@ class Turtlesim:
         """Places round the centre of the window."""
         return starts.starts(count, seed, nearest_m, farthest_m)
 
-    def simulate(self, limits: Limits, start: Start | None, hooks: Hooks) -> Simulation:
+    def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
+        """One of the two packages that turtlesim's messages come from."""
+        return interfaces.choose(surely, perhaps)
+
+    def adapted(self, text: str, ros_distro: str) -> str:
+        """With the package that the release has."""
+        return interfaces.adapted(text, ros_distro)
+
+    def simulate(
+        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str
+    ) -> Simulation:
         """Make the node and the recorder; ROS is up."""
         from grader.scenes.turtlesim.simulation import TurtlesimSimulation
 
-        return TurtlesimSimulation(limits, start, hooks)
+        return TurtlesimSimulation(limits, start, hooks, interfaces)
 
     def encode(self, made: Trace) -> bytes:
         """A trace's bytes."""
@@ -102,9 +112,9 @@ class Turtlesim:
         """Ways, pens and curves."""
         return view.view(TurtleTrace.of(made))
 
-    def remarks(self, made: Trace, published: Sequence[str]) -> list[str]:
-        """What was done to the arena other than by driving."""
-        return remarks.remarks(TurtleTrace.of(made), published)
+    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[str]:
+        """What was done to the arena other than by driving, and for which ROS that was."""
+        return remarks.remarks(TurtleTrace.of(made), published, interfaces)
 
 
 SCENE: Scene = Turtlesim()

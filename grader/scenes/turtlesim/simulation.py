@@ -20,9 +20,12 @@ SERVE_TICKS = 63
 class HookedNode(TurtlesimNode):
     """A turtlesim node that is served only where something has come, and tells when it was."""
 
-    def __init__(self, hooks: Hooks) -> None:
+    def __init__(self, hooks: Hooks, interfaces: str) -> None:
         self._hooks = hooks
-        super().__init__(["--ros-args", "-p", "turtle_image:=rolling"])
+        parameters = ["turtle_image:=rolling"]
+        if interfaces:
+            parameters.append(f"interfaces:={interfaces}")
+        super().__init__(["--ros-args", *(word for text in parameters for word in ("-p", text))])
 
     def serve(self, now_ns: int | None = None) -> int:
         """Serve what has arrived, if anything has."""
@@ -43,8 +46,10 @@ class TurtlesimSimulation:
         node: `/turtlesim`.
     """
 
-    def __init__(self, limits: Limits, start: Start | None, hooks: Hooks) -> None:
-        self.node = HookedNode(hooks)
+    def __init__(
+        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str = ""
+    ) -> None:
+        self.node = HookedNode(hooks, interfaces)
         _place(self.node.arena, start)
         self._recorder = Recorder(self.node.arena)
         self._end = EndOfRun(limits)

@@ -1,0 +1,115 @@
+"""What a submission imports, read from the files that its start loads; nothing of it is run."""
+
+from __future__ import annotations
+
+import ast
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from grader.submission.folder import read_bounded
+from grader.submission.opening import EntryPoint, Submission
+from grader.submission.python_source import parse
+from grader.text import without_controls
+
+#: What runs together with the statement that it stands in, once and in any case.
+_ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)
+_BODIES: Final = (ast.stmt, ast.ExceptHandler, ast.match_case)
+
+
+@dataclass(frozen=True)
+class Imports:
+    """The modules, by the first part of their names, that are not the submission's own.
+
+    Each with the place of its first import ("file.py, line 3"), in the order of these.
+
+    Attributes:
+        surely: imported whenever the submission is run.
+        perhaps: only if a function is called, a condition holds, another import fails.
+    """
+
+    surely: dict[str, str] = field(default_factory=dict)
+    perhaps: dict[str, str] = field(default_factory=dict)
+
+
+def read_imports(submission: Submission) -> Imports:
+    """Read what is started, and what of the submission that imports in turn.
+
+    A file that cannot be read or parsed tells nothing: the run shows what is wrong with it. Nor
+    does a name in a string that is given to importlib.
+    """
+    found = Imports()
+    root, start = submission.root, submission.start
+    pending: deque[tuple[Path, str, bool]] = deque()  # file, its package, whether surely loaded
+    if isinstance(start, EntryPoint):
+        pending.extend((*file, True) for file in _files(root, start.module))
+    else:
+        pending.append((start.path, "", True))
+    seen: set[tuple[Path, bool]] = set()
+    while pending:
+        file, package, is_loaded = pending.popleft()
+        if (file, True) in seen or (file, is_loaded) in seen:
+            continue
+        seen.add((file, is_loaded))
+        for node, always in _statements(file):
+            surely = is_loaded and always
+            for module in _modules(node, package):
+                pending.extend((*loaded, surely) for loaded in _files(root, module))
+                top = module.partition(".")[0]
+                if not _files(root, top):
+                    where = f"{file.relative_to(root)}, line {node.lineno}"
+                    names = found.surely if surely else found.perhaps
+                    names.setdefault(top, without_controls(where, "?"))
+    return found
+
+
+def _statements(file: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:
+    """The imports in a file, in order, and whether each is run whenever the file is."""
+    try:
+        data = read_bounded(file)
+        tree = parse(data or b"", file.name)
+    except (OSError, SyntaxError):
+        return
+    pending: list[tuple[ast.AST, bool]] = [(tree, True)]
+    while pending:
+        node, always = pending.pop()
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            yield node, always
+        inside = always and isinstance(node, _ALWAYS)
+        children = [child for child in ast.iter_child_nodes(node) if isinstance(child, _BODIES)]
+        pending += [(child, inside) for child in reversed(children)]
+
+
+def _modules(node: ast.Import | ast.ImportFrom, package: str) -> list[str]:
+    """The full names of all that a statement may load."""
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    origin = node.module or ""
+    if node.level:
+        parents = package.split(".") if package else []
+        if node.level > len(parents):
+            return []  # Python refuses it
+        parents = parents[: len(parents) - node.level + 1]
+        origin = ".".join([*parents, *([origin] if origin else [])])
+    return [origin, *(f"{origin}.{alias.name}" for alias in node.names if alias.name != "*")]
+
+
+def _files(root: Path, module: str) -> list[tuple[Path, str]]:
+    """The files of the submission that an import of a module loads, each with its package."""
+    files = []
+    folder, package = root, ""
+    for part in module.split("."):
+        own = f"{package}.{part}" if package else part
+        candidates = ((folder / part / "__init__.py", own), (folder / f"{part}.py", package))
+        files += [candidate for candidate in candidates if _is_file(candidate[0])][:1]
+        folder, package = folder / part, own
+    return files
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name that is too long
+        return False

@@ -1,0 +1,77 @@
+"""The package that turtlesim's messages, services and action come from: it has had two names.
+
+Up to ROS 2 Jazzy they are in `turtlesim`, from Kilted on in `turtlesim_msgs`; the definitions are
+the same. Both ends of a topic must name the same, so a node serves one of the two. Nothing of ROS
+is imported before `Interfaces.of`: who only has to choose needs none.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, Final, Self
+
+OLDER: Final = "turtlesim"
+NEWER: Final = "turtlesim_msgs"
+NAMES: Final = (OLDER, NEWER)
+#: The first ROS 2 release of the newer name; releases are named in the order of the alphabet.
+FIRST_OF_NEWER: Final = "kilted"
+
+
+@dataclass(frozen=True)
+class Interfaces:
+    """The classes of one of the packages.
+
+    Attributes:
+        package: its name.
+    """
+
+    package: str
+    Color: Any
+    Pose: Any
+    Kill: Any
+    SetPen: Any
+    Spawn: Any
+    TeleportAbsolute: Any
+    TeleportRelative: Any
+    RotateAbsolute: Any
+
+    @classmethod
+    def of(cls, package: str) -> Self:
+        """Import them.
+
+        Raises:
+            ModuleNotFoundError: the package is not installed.
+        """
+        msg, srv, action = (import_module(f"{package}.{kind}") for kind in ("msg", "srv", "action"))
+        return cls(
+            package,
+            Color=msg.Color,
+            Pose=msg.Pose,
+            Kill=srv.Kill,
+            SetPen=srv.SetPen,
+            Spawn=srv.Spawn,
+            TeleportAbsolute=srv.TeleportAbsolute,
+            TeleportRelative=srv.TeleportRelative,
+            RotateAbsolute=action.RotateAbsolute,
+        )
+
+
+def installed() -> tuple[str, ...]:
+    """Which of the packages can be imported here; nothing of them is run to find out."""
+    specs = ((name, find_spec(name)) for name in NAMES)
+    # without an origin it is no more than a folder of that name
+    return tuple(name for name, spec in specs if spec is not None and spec.origin)
+
+
+def of_release(ros_distro: str) -> str:
+    """The package's name in a ROS 2 release, which is named as in `ROS_DISTRO`."""
+    return NEWER if ros_distro >= FIRST_OF_NEWER else OLDER
+
+
+def usual() -> str:
+    """Which to serve where nobody chooses: that of the sourced ROS, else the older."""
+    name = of_release(os.environ.get("ROS_DISTRO", ""))
+    return name if name in installed() else OLDER
