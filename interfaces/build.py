@@ -5,6 +5,7 @@ wheels of PyPI. Used by setup.py, and only where ROS is not sourced.
 """
 
 import shutil
+from importlib.metadata import version
 from pathlib import Path
 
 from setuptools import Extension
@@ -50,13 +51,16 @@ class BuildInterfaces(build_ext):
         package = ext.name.split(".")[0]
         generated = (Path(self.build_temp) / "rosidl" / package).resolve()
         module = Path(self.get_ext_fullpath(ext.name))
-        if self.force or not _is_newer(module, than=_inputs()) or not generated.is_dir():
+        built_with = generated / "built_with.txt"
+        is_ours = built_with.exists() and built_with.read_text() == _ros_version()
+        if self.force or not is_ours or not _is_newer(module, than=_inputs()):
             # no leftovers of interfaces that were renamed or removed
             shutil.rmtree(generated, ignore_errors=True)
             shutil.rmtree(Path(self.build_lib) / package, ignore_errors=True)
             generate(package, HERE / "packages" / package / "package.xml", DEFINITIONS, generated)
             _configure(ext, package, generated)
             super().build_extension(ext)
+            built_with.write_text(_ros_version())
         self._collect(package, generated)
 
     def _collect(self, package: str, generated: Path) -> None:
@@ -78,6 +82,11 @@ def _inputs() -> list[Path]:
     """Everything that decides what is built; pyproject.toml holds the versions of ROS."""
     own = [path for path in HERE.rglob("*") if path.is_file() and path.suffix != ".pyc"]
     return [*own, HERE.parent / "pyproject.toml"]
+
+
+def _ros_version() -> str:
+    """Tells the ROS releases apart: environments of several share build/."""
+    return version("ros-rosidl-generator-py")
 
 
 def _is_newer(path: Path, than: list[Path]) -> bool:

@@ -91,9 +91,7 @@ def _grade(args: argparse.Namespace) -> int:
     console, messages = Console(), Console(stderr=True, highlight=False)
     with open_submission(args.submission, args.executable) as submission:
         messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
-        interfaces_for(
-            submission, exercise
-        )  # what it refuses, it refuses before anything is written
+        interfaces_for(submission, exercise)  # refuses, if at all, before anything is written
         _prepare(out, args.json)
         messages.print(f"Running it beside a simulator, in {args.time} time ...")
         with progress.shown(messages, "running") as show:

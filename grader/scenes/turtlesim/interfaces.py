@@ -32,7 +32,8 @@ def choose(surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
     if surely.keys() >= set(NAMES):
         raise SubmissionError(
             f"The submission imports both {OLDER} ({surely[OLDER]}) and {NEWER} ({surely[NEWER]}), "
-            f"but no ROS 2 has both: keep {OLDER} for Jazzy and older, {NEWER} for Kilted and newer."
+            f"but no ROS 2 has both: keep {OLDER} for Jazzy and older releases, {NEWER} for Kilted "
+            "and newer ones."
         )
     there = installed()
     return next((name for name in (*surely, *perhaps) if name in there), usual())

@@ -1,0 +1,49 @@
+"""The build of the interface packages: one source, and nothing of another ROS is taken over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from setuptools import Distribution
+from setuptools.command.build_ext import build_ext
+
+from interfaces import build
+
+
+@pytest.fixture
+def built(monkeypatch, tmp_path) -> list[str]:
+    """The packages that were compiled, by a compiler that only touches files."""
+    compiled: list[str] = []
+
+    def compile_nothing(command: build_ext, extension: build.Extension) -> None:
+        compiled.append(extension.name.partition(".")[0])
+        module = Path(command.get_ext_fullpath(extension.name))
+        module.parent.mkdir(parents=True, exist_ok=True)
+        module.touch()
+
+    monkeypatch.setattr(build, "generate", lambda *arguments: arguments[-1].mkdir(parents=True))
+    monkeypatch.setattr(build, "_ros_version", lambda: "0.22.2")
+    monkeypatch.setattr(build, "_configure", lambda *_: None)
+    monkeypatch.setattr(build_ext, "build_extension", compile_nothing)
+    monkeypatch.chdir(tmp_path)
+    return compiled
+
+
+def make() -> None:
+    command = build.BuildInterfaces(Distribution({"ext_modules": build.extensions()}))
+    command.ensure_finalized()
+    command.run()
+
+
+def test_what_is_built_is_not_built_again(built):
+    make()
+    make()
+    assert built == ["turtlesim", "turtlesim_msgs"]
+
+
+def test_what_was_built_with_another_ros_is_built_again(built, monkeypatch):
+    make()
+    monkeypatch.setattr(build, "_ros_version", lambda: "0.24.2")
+    make()
+    assert built == ["turtlesim", "turtlesim_msgs"] * 2
