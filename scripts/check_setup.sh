@@ -12,6 +12,8 @@ fail() {
 }
 
 wanted="Python 3.11, 3.12 or 3.13"
+# Ubuntu 26.04 has 3.14; the wheels of ROS 2 are not tried with it
+[ "${ROS_DISTRO:-}" != lyrical ] || wanted="Python 3.12, 3.13 or 3.14"
 [ "${BOUNDS:-}" != lowest ] || wanted="Python 3.11 or 3.12"
 
 # "3.12" when the command $1 is a Python that starts
@@ -23,14 +25,18 @@ fits() {
     case "$(version_of "$1")" in
     3.11 | 3.12) return 0 ;;
     3.13) [ "${BOUNDS:-}" != lowest ] ;;
+    3.14) [ "${ROS_DISTRO:-}" = lyrical ] ;;
     *) return 1 ;;
     esac
 }
 
 system="$(uname -s) $(uname -m)"
 if [ -n "${ROS_DISTRO:-}" ]; then
-    [ "$ROS_DISTRO" = jazzy ] ||
-        fail "ROS 2 $ROS_DISTRO is sourced, needed is Jazzy: source that, or use a shell without any ROS."
+    # older ones have a Python that is too old; what Rolling has changes from day to day
+    case "$ROS_DISTRO" in
+    jazzy | kilted | lyrical) ;;
+    *) fail "ROS 2 $ROS_DISTRO is sourced, needed is Jazzy, Kilted or Lyrical: source one of them, or use a shell without any ROS." ;;
+    esac
 elif [ "$system" != "Linux x86_64" ]; then
     fail "this is $system, but ROS 2 is on PyPI for Linux x86_64 only: install ROS 2 Jazzy and source it, or use a Linux x86_64 container."
 fi

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 import tomllib
-import xml.etree.ElementTree as ET
+import warnings
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, packages_distributions, requires
 from pathlib import Path
+
+from catkin_pkg.package import parse_package
 
 from .conftest import ROOT
 
@@ -45,10 +47,17 @@ def dependencies() -> dict[str, str]:
     return {_name(line): line for line in pyproject["tool"]["turtlesim-py"]["dependencies"]}
 
 
+def depends(manifest: str, release: str) -> set[str]:
+    """What a package.xml wants at run time in a ROS 2 release."""
+    package = parse_package(str(ROOT / manifest))
+    with warnings.catch_warnings(action="ignore"):  # of pyparsing's, about catkin_pkg
+        package.evaluate_conditions({"ROS_DISTRO": release})
+    return {depend.name for depend in package.exec_depends if depend.evaluated_condition}
+
+
 def keys(manifest: str) -> set[str]:
     """The Python packages that a package.xml wants from rosdep."""
-    depends = ET.parse(ROOT / manifest).getroot().iter("exec_depend")
-    return {key for depend in depends if (key := depend.text or "").startswith("python3-")}
+    return {key for key in depends(manifest, "jazzy") if key.startswith("python3-")}
 
 
 def hide_all_but(folder: Path, names: Iterable[str]) -> Path:

@@ -145,9 +145,32 @@ def test_the_python_has_to_be_that_of_the_sourced_ros(system: System) -> None:
     assert "cannot import its rclpy" in system.complaint()
 
 
-def test_another_release_of_ros_is_refused(system: System) -> None:
-    system.env["ROS_DISTRO"] = "humble"
-    assert "ROS 2 humble is sourced, needed is Jazzy" in system.complaint()
+@pytest.mark.parametrize("release", ["jazzy", "kilted", "lyrical"])
+def test_these_releases_of_ros_may_be_sourced(system: System, release: str) -> None:
+    system.add("python3", without("rclpy").replace("*rclpy*) exit 1", "*rclpy*) exit 0"))
+    system.env["ROS_DISTRO"] = release
+    assert system.check().returncode == 0
+
+
+@pytest.mark.parametrize("release", ["humble", "rolling"])
+def test_another_release_of_ros_is_refused(system: System, release: str) -> None:
+    system.env["ROS_DISTRO"] = release
+    expected = f"ROS 2 {release} is sourced, needed is Jazzy, Kilted or Lyrical"
+    assert expected in system.complaint()
+
+
+@pytest.mark.parametrize(
+    ("release", "complaint"),
+    [("jazzy", "no Python 3.11, 3.12 or 3.13 found"), ("lyrical", "ROS 2 lyrical is sourced, but")],
+)
+def test_the_python_of_ubuntu_26_04_is_for_lyrical(
+    system: System, release: str, complaint: str
+) -> None:
+    cases = ['*_base_executable*) echo "$0" ;;', "*version_info*) echo 3.14 ;;"]
+    cases += ["*rclpy*) exit 1 ;;"]
+    system.add("python3", "\n".join(['case "$2" in', *cases, "esac"]))
+    system.env["ROS_DISTRO"] = release
+    assert complaint in system.complaint()
 
 
 def test_says_it_through_make(system: System) -> None:

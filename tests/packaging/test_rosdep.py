@@ -14,7 +14,7 @@ from grader.reports import FORMATS
 from grader.requirements import OPTIONAL
 
 from .conftest import ROOT
-from .rosdep import KEYS, dependencies, hide_all_but, keys
+from .rosdep import KEYS, dependencies, depends, hide_all_but, keys
 
 pytestmark = pytest.mark.skipif(
     "ROS_DISTRO" in os.environ, reason="there the packages are apt's, which this imitates"
@@ -77,6 +77,18 @@ def graded(shell: Shell) -> Path:
 @pytest.mark.parametrize("manifest", ["package.xml", "grader/package.xml"])
 def test_package_xml_asks_for_what_pip_is_asked_for(manifest):
     assert keys(manifest) == {KEYS[name] for name in dependencies()}
+
+
+@pytest.mark.parametrize("manifest", ["package.xml", "turtlesim_challenge/package.xml"])
+@pytest.mark.parametrize(
+    ("release", "interfaces"),
+    [
+        *((release, "turtlesim") for release in ("", "humble", "jazzy")),
+        *((release, "turtlesim_msgs") for release in ("kilted", "lyrical", "rolling")),
+    ],
+)
+def test_package_xml_asks_for_the_interfaces_that_a_release_has(manifest, release, interfaces):
+    assert depends(manifest, release) & {"turtlesim", "turtlesim_msgs"} == {interfaces}
 
 
 def test_a_package_that_is_missing_is_named_with_the_bounds_of_pyproject():

@@ -90,6 +90,20 @@ def test_every_file_of_the_packages_is_in_the_wheel(
     assert [name for name in names if "/data/share/turtlesim/" in name] == []
 
 
+@pytest.mark.parametrize(
+    ("release", "expected"), [("jazzy", "turtlesim"), ("kilted", "turtlesim_msgs")]
+)
+def test_the_reference_takes_the_messages_that_the_sourced_ros_has(
+    checkout: Path, ros_sourced: Environment, release: str, expected: str
+) -> None:
+    call_hook(checkout, ros_sourced | {"ROS_DISTRO": release}, "build_wheel", checkout.parent)
+    (wheel,) = checkout.parent.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        text = archive.read("turtlesim_challenge/turtle_controller.py").decode()
+    assert f"from {expected}.msg import Pose" in text
+    assert f"from {expected}.srv import SetPen" in text
+
+
 def test_a_deleted_module_is_not_in_the_next_wheel(
     checkout: Path, ros_sourced: Environment
 ) -> None:
