@@ -14,8 +14,10 @@ from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.grading import run_all
 from grader.run import virtual_time
+from grader.scenes.turtlesim.interfaces import adapted
 from grader.submission.opening import open_submission
 from tests.submissions.mutants import MUTANTS, REFERENCE
+from turtlesim_py.ros.interfaces import installed
 
 SUBMISSIONS = Path(__file__).parents[1] / "submissions"
 RIGHT = {
@@ -33,6 +35,8 @@ RIGHT = {
         )
     },
 }
+#: The reference as it is written for ROS 2 from Kilted on.
+NEWER = "reference_for_lyrical"
 #: Graded a second time, to see that nothing changes.
 TWICE = ("reference", "rate_with_spin_thread", "random_colours", "draws_by_teleport")
 
@@ -42,10 +46,13 @@ def graded(tmp_path_factory):
     """Name of a submission -> its verdicts and hashes, once for each grading."""
     folder = tmp_path_factory.mktemp("mutants")
     paths = dict(RIGHT)
-    for name, mutant in MUTANTS.items():
+    texts = {name: mutant.text() for name, mutant in MUTANTS.items()}
+    if len(installed()) == 2:
+        texts[NEWER] = adapted(REFERENCE.read_text(encoding="utf-8"), "lyrical")
+    for name, text in texts.items():
         paths[name] = folder / name / "turtle_controller.py"
         paths[name].parent.mkdir()
-        paths[name].write_text(mutant.text(), encoding="utf-8")
+        paths[name].write_text(text, encoding="utf-8")
     exercise = load_exercise("turtlesim_challenge")
 
     def grade_one(name):
@@ -72,6 +79,13 @@ def scores(verdicts):
 def test_a_right_solution_gets_every_point(graded, name):
     verdicts, _ = graded[name][0]
     assert [(v.check, v.rationale) for v in verdicts if v.status != "passed"] == []
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.skipif(len(installed()) < 2, reason="beside a sourced ROS there is one package")
+def test_the_reference_for_newer_releases_of_ros_is_as_good_and_makes_the_same_trace(graded):
+    assert graded[NEWER][0] == graded["reference"][0]
+    assert sum(verdict.score for verdict in graded[NEWER][0][0]) == 100
 
 
 @pytest.mark.timeout(600)

@@ -1,4 +1,4 @@
-"""The interface package turtlesim: the original's types, and they really travel.
+"""The interface packages: the original's types under both of its names, and they really travel.
 
 Where ROS is sourced this checks apt's package in the same way.
 """
@@ -16,10 +16,9 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.task import Future
-from turtlesim.action import RotateAbsolute
-from turtlesim.msg import Color, Pose
-from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 from type_description_interfaces.srv import GetTypeDescription
+
+from turtlesim_py.ros.interfaces import NAMES, Interfaces, installed
 
 # Measured on turtlesim 1.8.2; later ones of Jazzy have the same. Two programs talk only where these
 # are equal.
@@ -56,18 +55,32 @@ string name
 """,
 }
 
-MESSAGES = [
-    Pose(x=1.5, y=-2.25, theta=0.5, linear_velocity=2.0, angular_velocity=-1.0),
-    Color(r=0, g=128, b=255),
-]
+# Of the same definitions under their newer name, which is a part of the hash; the generator that
+# made these makes those above.
+NEWER_TYPE_HASHES = {
+    "action/RotateAbsolute": "18617e6b742158766b7a9a14938f06be93e499368904e91955b75e8bcc1b0fcf",
+    "msg/Color": "f5b5666da8f19d47420026187389c750b66998436878dd631ae83498059a59e2",
+    "msg/Pose": "37b07ace09a0ed2c5b774b1410dec972dfd1d292de5656ebc2b075ac646e09c8",
+    "srv/Kill": "8dd58248926d8137dc17c84b8203ea4fda6ff74b1ef4a407a6a32faaab4e7eb0",
+    "srv/SetPen": "9d5465611d8822f9ded80bfff0f697bb1046c2e2ca428502c38cb2bfff241325",
+    "srv/Spawn": "1538b7b668cce0074f0ca9fa992bdeb6979bda1f722fc7ea33ca47b408aa32e9",
+    "srv/TeleportAbsolute": "bd9ecb11b762865429dff079c4c296c97b751c4ec968f8d1893292c86d3d1b7c",
+    "srv/TeleportRelative": "8f51764645d3ceae8555544bd8207c8d714958d98e519a3c950a2f85c4431b43",
+}
+HASHES = {"turtlesim": TYPE_HASHES, "turtlesim_msgs": NEWER_TYPE_HASHES}
 
-CALLS = [
-    (Kill, Kill.Request(name="Schildkröte"), Kill.Response()),
-    (SetPen, SetPen.Request(r=1, g=2, b=3, width=4, off=5), SetPen.Response()),
-    (Spawn, Spawn.Request(x=1.0, y=2.0, theta=3.0, name="a"), Spawn.Response(name="b")),
-    (TeleportAbsolute, TeleportAbsolute.Request(x=1.0, theta=0.25), TeleportAbsolute.Response()),
-    (TeleportRelative, TeleportRelative.Request(linear=2.0), TeleportRelative.Response()),
-]
+#: A message, and requests with their responses: name of the type -> values of its fields.
+MESSAGES = {
+    "Pose": {"x": 1.5, "y": -2.25, "theta": 0.5, "linear_velocity": 2.0, "angular_velocity": -1.0},
+    "Color": {"r": 0, "g": 128, "b": 255},
+}
+CALLS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "Kill": ({"name": "Schildkröte"}, {}),
+    "SetPen": ({"r": 1, "g": 2, "b": 3, "width": 4, "off": 5}, {}),
+    "Spawn": ({"x": 1.0, "y": 2.0, "theta": 3.0, "name": "a"}, {"name": "b"}),
+    "TeleportAbsolute": ({"x": 1.0, "theta": 0.25}, {}),
+    "TeleportRelative": ({"linear": 2.0}, {}),
+}
 
 DEADLINE_S = 30.0  # only a failing test waits for it
 
@@ -102,14 +115,27 @@ def peer() -> Iterator[Peer]:
     peer.close()
 
 
+@pytest.fixture(params=installed())
+def interfaces(request: pytest.FixtureRequest) -> Interfaces:
+    """Each of the packages that are here: beside a sourced ROS only its own."""
+    return Interfaces.of(request.param)
+
+
+def description(package: str, name: str) -> dict[str, Any]:
+    """What the package says of a type, for programs."""
+    file = Path(get_package_share_directory(package), f"{name}.json")
+    made: dict[str, Any] = json.loads(file.read_text())
+    return made
+
+
 @pytest.mark.parametrize("name", TYPE_HASHES)
-def test_type_hash_is_that_of_the_original(name: str) -> None:
-    description = Path(get_package_share_directory("turtlesim"), f"{name}.json")
+def test_type_hash_is_that_of_the_original(interfaces: Interfaces, name: str) -> None:
     hashes = {
         entry["type_name"]: entry["hash_string"]
-        for entry in json.loads(description.read_text())["type_hashes"]
+        for entry in description(interfaces.package, name)["type_hashes"]
     }
-    assert hashes[f"turtlesim/{name}"] == f"RIHS01_{TYPE_HASHES[name]}"
+    expected = HASHES[interfaces.package][name]
+    assert hashes[f"{interfaces.package}/{name}"] == f"RIHS01_{expected}"
 
 
 @pytest.mark.parametrize("name", COMMENTED)
@@ -118,69 +144,81 @@ def test_definition_has_the_originals_comments(name: str) -> None:
     assert installed.splitlines() == COMMENTED[name].splitlines()
 
 
-@pytest.mark.parametrize("message", MESSAGES, ids=lambda message: type(message).__name__)
-def test_message_arrives_as_it_was_sent(peer: Peer, message: Any) -> None:
+@pytest.mark.skipif(len(installed()) < 2, reason="beside a sourced ROS there is one package")
+@pytest.mark.parametrize("name", TYPE_HASHES)
+def test_both_packages_say_the_same_of_a_type(name: str) -> None:
+    older, newer = (description(package, name)["type_description_msg"] for package in NAMES)
+    assert json.loads(json.dumps(older).replace("turtlesim/", "turtlesim_msgs/")) == newer
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_message_arrives_as_it_was_sent(peer: Peer, interfaces: Interfaces, name: str) -> None:
+    kind = getattr(interfaces, name)
+    message = kind(**MESSAGES[name])
     received: Future = Future()
-    topic = f"turtle1/{type(message).__name__.lower()}"
-    peer.node.create_subscription(type(message), topic, received.set_result, 7)
-    publisher = peer.node.create_publisher(type(message), topic, 7)
+    topic = f"turtle1/{name.lower()}"
+    peer.node.create_subscription(kind, topic, received.set_result, 7)
+    publisher = peer.node.create_publisher(kind, topic, 7)
     peer.node.create_timer(0.01, lambda: publisher.publish(message))  # until it is known
     assert peer.wait_for(received) == message
     (endpoint,) = peer.node.get_publishers_info_by_topic(topic)
-    assert str(endpoint.topic_type_hash) == (
-        f"RIHS01_{TYPE_HASHES[f'msg/{type(message).__name__}']}"
-    )
+    expected = HASHES[interfaces.package][f"msg/{name}"]
+    assert str(endpoint.topic_type_hash) == f"RIHS01_{expected}"
 
 
-@pytest.mark.parametrize(
-    ("kind", "request_", "response"), CALLS, ids=[kind.__name__ for kind, _, _ in CALLS]
-)
-def test_service_is_called_and_answers(peer: Peer, kind: Any, request_: Any, response: Any) -> None:
+@pytest.mark.parametrize("name", CALLS)
+def test_service_is_called_and_answers(peer: Peer, interfaces: Interfaces, name: str) -> None:
+    kind = getattr(interfaces, name)
+    asked, answered = CALLS[name]
+    request_, response = kind.Request(**asked), kind.Response(**answered)
     requests = []
 
     def answer(incoming: Any, _: Any) -> Any:
         requests.append(incoming)
         return response
 
-    peer.node.create_service(kind, f"turtle1/{kind.__name__.lower()}", answer)
-    client = peer.node.create_client(kind, f"turtle1/{kind.__name__.lower()}")
+    peer.node.create_service(kind, f"turtle1/{name.lower()}", answer)
+    client = peer.node.create_client(kind, f"turtle1/{name.lower()}")
     assert client.wait_for_service(DEADLINE_S)
     assert peer.wait_for(client.call_async(request_)) == response
     assert requests == [request_]
 
 
-def test_action_gives_feedback_and_a_result(peer: Peer) -> None:
+def test_action_gives_feedback_and_a_result(peer: Peer, interfaces: Interfaces) -> None:
+    kind = interfaces.RotateAbsolute
+
     def execute(goal: Any) -> Any:
-        goal.publish_feedback(RotateAbsolute.Feedback(remaining=goal.request.theta))
+        goal.publish_feedback(kind.Feedback(remaining=goal.request.theta))
         goal.succeed()
-        return RotateAbsolute.Result(delta=-goal.request.theta)
+        return kind.Result(delta=-goal.request.theta)
 
     feedback: Future = Future()
-    ActionServer(peer.node, RotateAbsolute, "turtle1/rotate_absolute", execute)
-    client = ActionClient(peer.node, RotateAbsolute, "turtle1/rotate_absolute")
+    ActionServer(peer.node, kind, "turtle1/rotate_absolute", execute)
+    client = ActionClient(peer.node, kind, "turtle1/rotate_absolute")
     assert client.wait_for_server(DEADLINE_S)
     goal = peer.wait_for(
         client.send_goal_async(
-            RotateAbsolute.Goal(theta=1.5),
+            kind.Goal(theta=1.5),
             lambda message: feedback.set_result(message.feedback),
         )
     )
-    assert peer.wait_for(goal.get_result_async()).result == RotateAbsolute.Result(delta=-1.5)
-    assert peer.wait_for(feedback) == RotateAbsolute.Feedback(remaining=1.5)
+    assert peer.wait_for(goal.get_result_async()).result == kind.Result(delta=-1.5)
+    assert peer.wait_for(feedback) == kind.Feedback(remaining=1.5)
 
 
-def test_a_node_describes_the_type_to_others(peer: Peer) -> None:
-    peer.node.create_publisher(Pose, "described", 7)
+def test_a_node_describes_the_type_to_others(peer: Peer, interfaces: Interfaces) -> None:
+    package = interfaces.package
+    peer.node.create_publisher(interfaces.Pose, "described", 7)
     client = peer.node.create_client(GetTypeDescription, "/peer/get_type_description")
     assert client.wait_for_service(DEADLINE_S)
     answer = peer.wait_for(
         client.call_async(
             GetTypeDescription.Request(
-                type_name="turtlesim/msg/Pose", type_hash=f"RIHS01_{TYPE_HASHES['msg/Pose']}"
+                type_name=f"{package}/msg/Pose", type_hash=f"RIHS01_{HASHES[package]['msg/Pose']}"
             )
         )
     )
     assert answer.successful, answer.failure_reason
     fields = [field.name for field in answer.type_description.type_description.fields]
     assert fields == ["x", "y", "theta", "linear_velocity", "angular_velocity"]
-    assert [source.type_name for source in answer.type_sources] == ["turtlesim/msg/Pose"]
+    assert [source.type_name for source in answer.type_sources] == [f"{package}/msg/Pose"]

@@ -20,6 +20,47 @@ def test_the_challenge_s_starter_comes_by_itself(tmp_path, capsys):
     ]
 
 
+def text_of(folder, name):
+    return next(folder.rglob(name)).read_text()
+
+
+@pytest.mark.parametrize(
+    ("release", "package"),
+    [
+        *((release, "turtlesim") for release in ("humble", "jazzy")),
+        *((release, "turtlesim_msgs") for release in ("kilted", "lyrical", "rolling")),
+    ],
+)
+@pytest.mark.parametrize("is_sourced", [True, False])
+def test_the_starter_is_for_the_release_that_is_asked_for_or_sourced(
+    tmp_path, monkeypatch, release, package, is_sourced
+):
+    asked = [] if is_sourced else ["--ros", release]
+    monkeypatch.setenv("ROS_DISTRO", release if is_sourced else "jazzy")
+    assert main(["new", str(tmp_path / "mine"), *asked]) == 0
+    controller = text_of(tmp_path / "mine", "turtle_controller.py")
+    assert f"from {package}.msg import Pose\n" in controller
+    assert f"from {package}.srv import SetPen" in controller
+    assert "(with a turtlesim running)" in controller
+    manifest = text_of(tmp_path / "mine", "package.xml")
+    assert f"<exec_depend>{package}</exec_depend>" in manifest
+    assert "<name>turtlesim_challenge</name>" in manifest
+
+
+def test_without_any_ros_it_is_as_it_comes(tmp_path, monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    assert main(["new", str(tmp_path / "mine")]) == 0
+    starter = load_exercise("turtlesim_challenge").starter
+    for path in (tmp_path / "mine").rglob("*.*"):
+        assert path.read_bytes() == (starter / path.relative_to(tmp_path / "mine")).read_bytes()
+
+
+def test_an_unknown_release_is_refused(tmp_path, capsys):
+    assert main(["new", str(tmp_path / "mine"), "--ros", "noetic"]) == 2
+    assert "invalid choice: 'noetic'" in capsys.readouterr().err
+    assert not (tmp_path / "mine").exists()
+
+
 def test_an_exercise_elsewhere_has_its_own(tmp_path, capsys):
     exercise = exercises.write(tmp_path / "ahead", starter="begin")
     (exercise / "begin").mkdir()

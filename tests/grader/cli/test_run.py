@@ -20,6 +20,8 @@ import pytest
 import yaml
 
 from grader.result import json_file
+from grader.scenes.turtlesim.interfaces import adapted
+from turtlesim_py.ros.interfaces import installed
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 ROOT = Path(__file__).parents[3]
@@ -51,6 +53,10 @@ FILES = {
     "pathlib.Path('result.json').write_text(json.dumps({'score': 100}))\n"
     "print(json.dumps({'say': 'done', 'reason': 'rest'}))\n",
 }
+#: The right solution as a student of Lyrical writes it.
+if has_both := len(installed()) == 2:
+    FILES["for_lyrical"] = adapted((SUBMISSIONS / "quick_spiral.py").read_text(), "lyrical")
+both = pytest.mark.skipif(not has_both, reason="beside a sourced ROS there is one package")
 
 
 @dataclass
@@ -124,6 +130,33 @@ def test_a_right_solution_gets_full_marks_by_either_clock(graded, name, time):
     assert (run.result["run"]["outcome"], run.result["run"]["time"]) == ("finished", time)
 
 
+@both
+def test_a_solution_for_newer_releases_of_ros_needs_nothing_but_to_be_graded(graded):
+    run, older = graded["for_lyrical"], graded["quick_spiral"]
+    assert (run.code, run.result["score"]) == (0, 100)
+    assert run.result["verdicts"] == older.result["verdicts"]
+    assert run.result["run"]["trace_sha256"] == older.result["run"]["trace_sha256"]
+    assert run.result["run"]["interfaces"] == "turtlesim_msgs"
+    assert older.result["run"]["interfaces"] == "turtlesim"
+    (flag,) = run.result["run"]["flags"]
+    assert "turtlesim_msgs" in flag
+    facts = json.loads((run.out / "recording" / "run.json").read_text())
+    assert facts["run"]["interfaces"] == "turtlesim_msgs"
+    for bag in ("recording.mcap", "metadata.yaml"):
+        pair = [(graded_.out / "recording" / bag).read_bytes() for graded_ in (run, older)]
+        assert pair[0] == pair[1]
+
+
+@both
+def test_it_is_graded_in_real_time_as_well(tmp_path, exercise):
+    path = tmp_path / "turtle_controller.py"
+    path.write_text(FILES["for_lyrical"])
+    out = tmp_path / "out"
+    run = finish(start(path, out, "--exercise", str(exercise), "--time", "real"), out)
+    assert (run.code, run.result["score"]) == (0, 100)
+    assert run.result["run"]["interfaces"] == "turtlesim_msgs"
+
+
 def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(graded):
     run = graded["starter"]
     assert (run.code, run.result["score"]) == (0, 0)
@@ -193,7 +226,7 @@ def test_a_score_below_the_mark_exits_with_1(graded, tmp_path):
 
 
 def test_a_recording_judged_again_gets_the_same_verdicts(graded, tmp_path, exercise):
-    for name in ("quick_spiral", "starter"):
+    for name in ("quick_spiral", "starter", *(["for_lyrical"] if has_both else [])):
         file = tmp_path / f"{name}.json"
         words = ["check", graded[name].out / "recording", "--json", file, "--exercise", exercise]
         subprocess.run(
@@ -202,7 +235,15 @@ def test_a_recording_judged_again_gets_the_same_verdicts(graded, tmp_path, exerc
             capture_output=True,
             cwd=ROOT,
         )
-        assert json.loads(file.read_text())["verdicts"] == graded[name].result["verdicts"]
+        again = json.loads(file.read_text())
+        assert again["verdicts"] == graded[name].result["verdicts"]
+        assert again["run"] == graded[name].result["run"]
+
+
+def written_for_no_ros(folder):
+    path = folder / "mixed.py"
+    path.write_text("from turtlesim.msg import Pose\nfrom turtlesim_msgs.srv import SetPen\n")
+    return path
 
 
 def empty_zip(folder):
@@ -216,6 +257,10 @@ def empty_zip(folder):
     [
         (lambda folder: folder / "nothing.py", "nothing.py"),
         (empty_zip, "empty"),
+        (
+            written_for_no_ros,
+            "imports both turtlesim (mixed.py, line 1) and turtlesim_msgs (mixed.py, line 2)",
+        ),
         (lambda folder: folder, "folder"),
     ],
 )

@@ -78,7 +78,7 @@ def test_every_kind_of_input_survives_in_its_order(tmp_path):
 
 def test_the_facts_about_a_run_survive(recorded, tmp_path):
     run = Run(
-        "virtual", "crashed", -11, 3, 0.048, 1.5, "ab" * 32, "ROS domain 77", ("odd", "ü"), 42
+        "virtual", "crashed", -11, 3, 0.048, 1.5, "ab" * 32, "ROS domain 77", ("odd", "ü"), 42, "i"
     )
     changed = replace(
         recorded,

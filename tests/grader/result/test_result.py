@@ -55,6 +55,14 @@ def test_everything_comes_back_as_it_was(tmp_path):
     assert Result.read(tmp_path / "new" / "result.json") == result
 
 
+def test_the_interfaces_are_there_where_they_are_known(tmp_path):
+    for number, run in enumerate((RunSummary(), RunSummary(interfaces="moon_msgs"))):
+        result = Result("e", "s", 0, 0, (), run)
+        result.write(tmp_path / f"{number}.json")
+        assert Result.read(tmp_path / f"{number}.json") == result
+        assert ("interfaces" in result.to_json()["run"]) == bool(number)
+
+
 @pytest.mark.parametrize(
     "change",
     [

@@ -32,7 +32,7 @@ EXPECTED = {
     **{(reason, -11): "killed" for reason in REASONS},
 }
 ENDING = Ending("virtual", "crashed", -11, 1.23456, "ROS domain 77", "printed\n", ("a", "b"))
-PLAN = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, ("c",))
+PLAN = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, ("c",), "turtlesim")
 TOPICS = (PublishedTopic("/a", "b/msg/C"),)
 
 
@@ -65,6 +65,7 @@ def test_a_recording_has_everything_about_its_run(trace):
         isolation="ROS domain 77",
         flags=("a", "b", "c"),
         seed=42,
+        interfaces="turtlesim",
     )
     assert (made.topics, made.output) == (TOPICS, "printed\n")
     assert (made.start, made.scene) == (Start(1.0, 2.0, 3.0), "turtlesim")

@@ -20,6 +20,7 @@ plans = st.builds(
     scene=st.text(),
     seed=st.none() | st.integers(),
     flags=st.lists(st.text(), max_size=3).map(tuple),
+    interfaces=st.text(),
 )
 
 
@@ -29,7 +30,7 @@ def test_a_plan_survives_the_way_to_another_process(plan):
 
 
 def test_every_field_and_its_type_survive():
-    plan = Plan(Limits(1.0, 2.0, 3.0), Start(-0.1, 1 / 3, 5e-324), "moon", 42, ("odd", "ü\n"))
+    plan = Plan(Limits(1.0, 2.0, 3.0), Start(-0.1, 1 / 3, 5e-324), "moon", 42, ("odd", "ü\n"), "i")
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))
     back = Plan.from_json(plan.to_json())
@@ -52,6 +53,7 @@ def test_it_is_one_line_of_ascii_as_an_argument_must_be(plan):
 def test_what_is_only_there_if_it_is_needed_has_its_usual_value():
     plan = Plan(Limits(1.0, 2.0, 3.0))
     assert (plan.start, plan.scene, plan.seed, plan.flags) == (None, "turtlesim", None, ())
+    assert plan.interfaces == ""
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"limits": {}, "start": null, "flags": []}'])

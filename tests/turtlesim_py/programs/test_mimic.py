@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import pytest
 from geometry_msgs.msg import Twist
-from turtlesim.msg import Pose
 
 from tests.graph import Graph
 from tests.programs import Program
+from turtlesim_py.ros.interfaces import Interfaces, installed
 
 
-def test_the_speeds_of_a_pose_become_a_command(graph: Graph) -> None:
-    arguments = ["-r", "input/pose:=/leader/pose", "-r", "output/cmd_vel:=/follower/cmd_vel"]
+@pytest.mark.parametrize("package", installed())
+def test_the_speeds_of_a_pose_become_a_command(graph: Graph, package: str) -> None:
+    pose = Interfaces.of(package).Pose
+    arguments = ["-r", f"input/pose:=/leader/{package}", "-r", "output/cmd_vel:=/follower/cmd_vel"]
+    arguments += ["-p", f"interfaces:={package}"]
     with Program("turtlesim_py.programs.mimic", "--ros-args", *arguments) as program:
         twists = graph.listen(Twist, "/follower/cmd_vel")
         nodes = graph.node.get_node_names_and_namespaces
         graph.until(lambda: ("turtle_mimic", "/") in nodes(), "the node")
-        poses = graph.publisher(Pose, "/leader/pose")
+        poses = graph.publisher(pose, f"/leader/{package}")
 
         def answered() -> bool:
-            poses.publish(Pose(linear_velocity=1.5, angular_velocity=-0.5))
+            poses.publish(pose(linear_velocity=1.5, angular_velocity=-0.5))
             return bool(twists)
 
         graph.until(answered, "a command")

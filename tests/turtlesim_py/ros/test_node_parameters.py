@@ -44,7 +44,7 @@ def get(graph: Graph, *names: str) -> list[Any]:
     return [value.integer_value for value in answer.values]
 
 
-def test_it_has_the_originals_parameters_and_three_of_its_own(graph: Graph) -> None:
+def test_it_has_the_originals_parameters_and_four_of_its_own(graph: Graph) -> None:
     names = graph.call(ListParameters, "/turtlesim/list_parameters").result.names
     assert sorted(names) == [
         "background_b",
@@ -53,6 +53,7 @@ def test_it_has_the_originals_parameters_and_three_of_its_own(graph: Graph) -> N
         "canvas_folder",
         "holonomic",
         "image_rate",
+        "interfaces",
         "start_type_description_service",
         "turtle_image",
         "use_sim_time",
@@ -126,6 +127,7 @@ def test_the_background_starts_in_the_originals_blue(graph: Graph) -> None:
             BOOL,
             "parameter 'start_type_description_service' cannot be set because it is read-only",
         ),
+        ("interfaces", STRING, "parameter 'interfaces' cannot be set because it is read-only"),
         ("turtle_image", STRING, "parameter 'turtle_image' cannot be set because it is read-only"),
         (
             "image_rate",

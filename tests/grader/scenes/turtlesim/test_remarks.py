@@ -22,6 +22,12 @@ def test_there_is_nothing_to_say_about_driving_and_pens(trace):
     assert remarks(trace, ["/turtle1/cmd_vel", "/somewhere/else"]) == []
 
 
+def test_the_messages_of_newer_releases_are_named_and_the_older_are_not(trace):
+    assert remarks(trace, [], "turtlesim") == remarks(trace, [], "") == []
+    (said,) = remarks(trace, [], "turtlesim_msgs")
+    assert "run with the messages of turtlesim_msgs: ROS 2 has them from Kilted on" in said
+
+
 @pytest.mark.parametrize(
     ("event", "sentence"),
     [
