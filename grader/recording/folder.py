@@ -116,6 +116,14 @@ def load_all(path: Path) -> Recordings:
     return Recordings(nominal, tuple(varied))
 
 
+def scene_of(folder: Path) -> str:
+    """The name of the scene of a recording, as far as its run.json tells; its bag is not opened."""
+    try:
+        return str(_read_json(folder / RUN).get("scene", FIRST_SCENE))
+    except RecordingError:
+        return FIRST_SCENE
+
+
 # Writing --------------------------------------------------------------------------------------
 
 

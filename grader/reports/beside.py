@@ -36,6 +36,12 @@ class Beside:
         return self.canvas_path
 
     @cached_property
+    def scene(self) -> str:
+        """The name of what ran beside the submission; the first there was, where nothing tells."""
+        base = self._artifact("recording")
+        return storage.FIRST_SCENE if base is None else storage.scene_of(base)
+
+    @cached_property
     def recordings(self) -> Mapping[int, Recording | str]:
         """A recording for each run, 0 nominal, 1, 2, ... varied, or why it cannot be read."""
         base = self._artifact("recording")
@@ -79,6 +85,11 @@ class StillInMemory(Beside):
     def canvas_file(self) -> Path | None:
         """None: the recording has the picture."""
         return None
+
+    @cached_property
+    def scene(self) -> str:
+        """The name of what ran beside the submission."""
+        return self._made.nominal.scene
 
     @cached_property
     def recordings(self) -> Mapping[int, Recording | str]:

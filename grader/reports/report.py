@@ -16,6 +16,7 @@ from grader.recording.recording import Recording, Recordings
 from grader.reports.beside import Beside, StillInMemory
 from grader.reports.wording import where, word
 from grader.result.result import Result
+from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
 
@@ -150,9 +151,9 @@ class Report:
 
     @cached_property
     def scene(self) -> Scene:
-        """What ran beside the submission; where no recording tells, the first there was."""
-        known = self.recordings.get(0)
-        return load_scene(known.scene if known else FIRST_SCENE)
+        """What ran beside the submission."""
+        name = self.beside.scene
+        return load_scene(name if name in SCENES else FIRST_SCENE)
 
     def no_recording(self, run: int) -> str:
         """Why a run has no recording."""

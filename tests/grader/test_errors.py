@@ -5,7 +5,7 @@ from typing import get_args
 import pytest
 
 from grader import errors
-from grader.errors import GraderError, GraderFailure, SubmissionError, Whose
+from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, Whose
 
 
 def kinds():
@@ -21,7 +21,11 @@ def test_every_error_says_whose_turn_it_is_in_one_text():
 
 
 def test_only_the_graders_own_failure_exits_with_3():
-    assert {kind for kind in kinds() if kind.exit_code == 3} == {GraderError, GraderFailure}
+    assert {kind for kind in kinds() if kind.exit_code == 3} == {
+        GraderError,
+        GraderFailure,
+        CheckFailed,
+    }
     assert all((kind.exit_code == 3) == (kind.whose == "grader") for kind in kinds())
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from grader.errors import CheckFailed
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
@@ -345,5 +346,5 @@ def test_a_turtle_that_drives_into_the_wall_draws_no_square():
 def test_an_exercise_that_promises_points_for_other_starts_must_have_them():
     exercise = load_exercise("square")
     alone = Recordings(drive(Legs(polygon([2] * 4))))
-    with pytest.raises(ValueError, match="varied_runs"):
+    with pytest.raises(CheckFailed, match="varied_runs"):
         judge(alone, exercise.checks, exercise.points, exercise.tolerances)
