@@ -19,7 +19,7 @@ endif
 NOT_AT_LOWEST := tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
 
-.PHONY: help install test test-lowest test-kilted lint demo bench clean
+.PHONY: help install test test-lowest test-kilted lint demo bench wheel clean
 .DEFAULT_GOAL := help
 
 help:
@@ -30,6 +30,7 @@ help:
 	@echo "make test-kilted   run them with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
 	@echo "make lint      ruff and mypy"
 	@echo "make bench     what the simulator and a grading cost: tables (minutes)"
+	@echo "make wheel     a wheel for each Python that is here, in dist/jazzy, each tried where there is no gcc"
 	@echo "make clean     remove everything that was made here"
 	@echo "PYTHON=python3.12 make install   with that Python (3.11, 3.12 or 3.13)"
 
@@ -66,6 +67,9 @@ bench: install
 	@$(BIN)/python benchmarks/node.py
 	@$(BIN)/python benchmarks/grading.py
 
+wheel:
+	@scripts/wheel.sh
+
 clean:
-	rm -rf .venv .venv-* build install log demo *.egg-info .eggs .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .venv-* build dist install log demo *.egg-info .eggs .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

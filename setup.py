@@ -22,7 +22,11 @@ PROJECT = PYPROJECT["project"]
 REQUIREMENTS = PYPROJECT["tool"]["turtlesim-py"]
 ROS_IS_SOURCED = bool(os.environ.get("ROS_DISTRO"))
 # where it is not: which ROS release from PyPI
-ROS = REQUIREMENTS["ros"][os.environ.get("ROS") or "jazzy"]
+RELEASE = os.environ.get("ROS") or "jazzy"
+ROS = REQUIREMENTS["ros"][RELEASE]
+# Commands that compile, or by which pip asks what compiling needs. It asks before it downloads
+# anything; later the line about a missing compiler would stand below hundreds of others.
+COMPILING = {"egg_info", "dist_info", "bdist_wheel", "editable_wheel", "install", "build"}
 
 # Each is a ROS package of its own, with the files that it launches. turtlesim_py stands last:
 # of several destinations of one file, colcon sees the last.
@@ -81,12 +85,17 @@ def ros_dependent() -> dict[str, Any]:
         return {"install_requires": REQUIREMENTS["dependencies"], "cmdclass": {"build_py": BuildPy}}
     sys.path.insert(0, str(ROOT))
     from interfaces.build import BuildInterfaces, extensions
+    from interfaces.compiler import complaint
 
+    if COMPILING.intersection(sys.argv) and (line := complaint()):
+        sys.exit(line)
     return {
         "install_requires": REQUIREMENTS["dependencies"] + ROS["run"],
         "setup_requires": ROS["build"],
         "ext_modules": extensions(),
         "cmdclass": {"build_py": BuildPy, "build_ext": BuildInterfaces},
+        # what is compiled for one release of ROS is not for another
+        "options": {"build": {"build_base": f"build/{RELEASE}"}},
     }
 
 

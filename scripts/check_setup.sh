@@ -71,15 +71,7 @@ if [ -n "${ROS_DISTRO:-}" ]; then
     "$python" -c 'import rclpy' 2>/dev/null ||
         fail "ROS 2 $ROS_DISTRO is sourced, but $python cannot import its rclpy: take the Python that ROS was built for (Ubuntu 24.04: PYTHON=/usr/bin/python3)."
 else
-    missing=
-    config() { "$python" -c "import sysconfig; print(sysconfig.get_config_var('$1') or '$2')"; }
-    for compiler in "${CC:-$(config CC gcc)}" "${CXX:-$(config CXX g++)}"; do
-        command -v "${compiler%% *}" >/dev/null 2>&1 || missing="$missing, ${compiler%% *}"
-    done
-    headers=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
-    [ -f "$headers/Python.h" ] || missing="$missing, Python.h of Python $version"
-    [ -z "$missing" ] ||
-        fail "missing: ${missing#, } (Debian, Ubuntu: sudo apt install build-essential python$version-dev; Fedora: sudo dnf install gcc gcc-c++ python$version-devel)."
+    "$python" "${0%/*}/../interfaces/compiler.py" || exit 1
 fi
 
 echo "$python"

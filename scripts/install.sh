@@ -44,6 +44,10 @@ pip_install() {
     done; then
         return
     fi
+    # setup.py has said it in one line
+    if grep -o -m 1 'Cannot install: .*' "$log" >&2; then
+        exit 1
+    fi
     # its warnings about single tries stay in the log when what failed in the end is a compiler
     if ! grep -q subprocess-exited "$log" && grep -qE \
         'NewConnectionError|NameResolutionError|ConnectTimeout|ReadTimeout|ProxyError|SSLError|Connection(Reset|Refused)' "$log"; then

@@ -77,8 +77,18 @@ def test_names_missing_compilers(system: System) -> None:
     assert "apt install build-essential" in line
 
 
+def test_says_that_a_wheel_needs_no_compiler(system: System) -> None:
+    system.env["CC"] = "/nonexistent/gcc -pthread"
+    line = system.complaint()
+    assert "missing: /nonexistent/gcc " in line
+    assert "make wheel" in line
+
+
 def test_names_missing_python_headers(system: System) -> None:
-    system.add("python3", without("get_path"))
+    nowhere = "import runpy, sys, sysconfig; sysconfig.get_path = lambda name: '/nowhere'; "
+    run = "runpy.run_path(sys.argv[1], run_name='__main__')"
+    check = f'*compiler.py) exec {PYTHON} -c "{nowhere}{run}" "$1" ;;'
+    system.add("python3", f'case "$1" in {check} *) {without("_base_executable")} ;; esac')
     line = system.complaint()
     assert "missing: Python.h" in line
     assert f"python3.{sys.version_info.minor}-dev" in line
@@ -134,7 +144,7 @@ def test_ros_is_on_pypi_for_one_system_only(system: System) -> None:
 
 def test_with_ros_sourced_no_compiler_is_needed(system: System) -> None:
     (system.folder / "cc").unlink()
-    system.add("python3", without("get_path").replace("*get_path*) exit 1", "*rclpy*) exit 0"))
+    system.add("python3", without("rclpy").replace("*rclpy*) exit 1", "*rclpy*) exit 0"))
     system.env["ROS_DISTRO"] = "jazzy"
     assert system.check().returncode == 0
 

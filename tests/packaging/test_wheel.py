@@ -1,17 +1,22 @@
-"""What pip is told to fetch, and what a wheel holds, with ROS sourced and without."""
+"""What pip is told to fetch, and what a wheel holds and needs, with ROS sourced and without."""
 
 import json
+import os
+import shutil
 import subprocess
 import sys
 import tomllib
 import zipfile
+from collections.abc import Iterator
 from email import message_from_string
+from importlib.metadata import files
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 
-from .conftest import ROOT, Environment
+from .conftest import ROOT, Environment, RunNode
 
 
 def call_hook(checkout: Path, env: Environment, name: str, *arguments: Path) -> Any:
@@ -119,3 +124,123 @@ def test_every_program_can_be_found_by_ros2_run(checkout: Path) -> None:
     assert {path.name for path in (checkout / "ros2run").glob("*") if path.is_symlink()} == set(
         scripts
     )
+
+
+def test_all_packages_have_one_version() -> None:
+    versions = {
+        path: ElementTree.parse(ROOT / path).findtext("version")
+        for path in ("package.xml", "grader/package.xml", "turtlesim_challenge/package.xml")
+    }
+    ours = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert versions == dict.fromkeys(versions, ours)
+
+
+@pytest.fixture
+def no_compiler(shell: Environment) -> Environment:
+    """Nothing on the path, and the variables that name compilers lead nowhere."""
+    shell.pop("ROS_DISTRO", None)
+    return shell | {"PATH": "/nonexistent", "CC": "/nonexistent/gcc", "CXX": "/nonexistent/g++"}
+
+
+MISSING = "Cannot install: missing: /nonexistent/gcc, /nonexistent/g++ (Debian, Ubuntu: sudo apt"
+
+
+def test_without_a_compiler_pip_shows_one_line(checkout: Path, no_compiler: Environment) -> None:
+    # no environment for the build, as for `make install`: another one comes from the index
+    pip = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-build-isolation"]
+    call = subprocess.run(
+        [*pip, "--target", checkout.parent / "target", checkout],
+        env=no_compiler,
+        capture_output=True,
+        text=True,
+    )
+    assert call.returncode != 0
+    said = call.stdout + call.stderr
+    assert "[1 lines of output]" in said
+    (line,) = [line for line in said.splitlines() if "Cannot install" in line]
+    assert line.strip().startswith(MISSING)
+
+
+def test_without_a_compiler_nothing_is_downloaded(checkout: Path, no_compiler: Environment) -> None:
+    code = "from setuptools import build_meta; build_meta.get_requires_for_build_wheel()"
+    call = subprocess.run(
+        [sys.executable, "-c", code], cwd=checkout, env=no_compiler, capture_output=True, text=True
+    )
+    assert call.returncode != 0
+    (line,) = call.stderr.splitlines()
+    assert line.startswith(MISSING)
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["sdist", "--help"], ["--version"]])
+def test_what_compiles_nothing_needs_no_compiler(
+    checkout: Path, no_compiler: Environment, arguments: list[str]
+) -> None:
+    setup = [sys.executable, "setup.py", *arguments]
+    call = subprocess.run(setup, cwd=checkout, env=no_compiler, capture_output=True, text=True)
+    assert call.returncode == 0, call.stderr
+
+
+def test_each_ros_has_a_build_folder_of_its_own(checkout: Path, shell: Environment) -> None:
+    shell.pop("ROS_DISTRO", None)
+    code = (
+        "import runpy, setuptools; "
+        "setuptools.setup = lambda options, **_: print(options['build']['build_base']); "
+        "runpy.run_path('setup.py')"
+    )
+    folders = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            cwd=checkout,
+            env=shell | {"ROS": ros},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for ros in ("jazzy", "kilted")
+    ]
+    assert folders == ["build/jazzy\n", "build/kilted\n"]
+
+
+@pytest.fixture
+def requirements_only(tmp_path: Path) -> Iterator[Path]:
+    """An environment with all that a wheel requires: links to this one, without this project."""
+    place = tmp_path / "environment"
+    ours = {Path(str(file.locate())).resolve() for file in files("turtlesim_py") or ()}
+
+    def leave_out(folder: str, names: list[str]) -> set[str]:
+        return {name for name in names if Path(folder, name).resolve() in ours}
+
+    shutil.copytree(sys.prefix, place, symlinks=True, ignore=leave_out, copy_function=os.symlink)
+    assert not (place / "bin" / "grader").exists()
+    yield place
+    shutil.rmtree(place)  # ten thousands of links, which pytest would keep
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="nothing is compiled there")
+@pytest.mark.timeout(300)  # compiles
+def test_a_wheel_needs_no_compiler(
+    checkout: Path,
+    shell: Environment,
+    no_compiler: Environment,
+    requirements_only: Path,
+    tmp_path: Path,
+    run_until_started: RunNode,
+) -> None:
+    wheel = tmp_path / call_hook(checkout, shell, "build_wheel", tmp_path)
+    place = requirements_only
+    bare = no_compiler | {"PATH": str(place / "bin"), "VIRTUAL_ENV": str(place)}
+    bare.pop("AMENT_PREFIX_PATH", None)  # that of this Python
+
+    def call(program: str, *arguments: str | Path) -> str:
+        command = [place / "bin" / program, *arguments]
+        done = subprocess.run(command, env=bare, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    call("python", "-m", "pip", "install", "--no-deps", "--no-index", wheel)
+    found = call("python", "-c", "import turtlesim.msg as m, grader as g; print(m, g)")
+    assert found.count(str(place)) == 2
+    assert "Starting turtlesim" in run_until_started(place / "bin" / "turtlesim_node", bare)
+    call("grader", "new", "mine")
+    call("grader", "run", "mine", "--out", "graded")
+    assert (tmp_path / "graded" / "result.json").is_file()
