@@ -75,6 +75,7 @@ fi
 [ ${#pythons[@]} -gt 0 ] || fail "no Python from 3.11 to 3.13 can build one, see above."
 
 export ROS=$ros
+"${pythons[0]}" scripts/requirements.py >/dev/null # says so where there is no such release
 rm -rf "$dist"
 for python in "${pythons[@]}"; do
     echo "== building with $python for ROS 2 ${ros^} (a minute)"
@@ -93,8 +94,7 @@ for python in "${pythons[@]}"; do
     # symbols that the extension modules ask for. Built on glibc 2.34 or newer that is
     # manylinux_2_34, because dlopen moved then; in a manylinux_2_28 container it is 2_28, as the
     # ROS wheels have. The libraries of ROS are left out, neither looked at nor copied: they come
-    # with the wheels of ROS that this one requires, exactly pinned, and $ORIGIN leads to them.
-    # Any other library that the system would have to bring fails here.
+    # with the wheels of ROS that this one requires, and $ORIGIN leads to them.
     PATH=$tools/bin:$PATH quietly "$tools/bin/auditwheel" repair --plat auto --only-plat \
         --exclude 'librosidl_*' --exclude 'lib*__rosidl_*' --exclude 'librmw.so*' \
         --exclude 'librcutils.so*' --exclude 'libfastcdr.so*' \

@@ -1,5 +1,6 @@
 """scripts/check_setup.sh: one line says what to install, and the build does not start."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -198,3 +199,19 @@ def test_says_it_through_make(system: System) -> None:
     assert result.returncode != 0
     assert "Cannot install: ROS 2 humble is sourced" in result.stderr
     assert not (copy / ".venv").exists()
+
+
+def test_a_compiler_that_is_gone_since_is_said_in_one_line(checkout: Path) -> None:
+    shutil.copytree(ROOT / "scripts", checkout / "scripts")
+    shutil.copy(ROOT / "Makefile", checkout)
+    said = "╰─> [1 lines of output]\n      Cannot install: missing: cc\nerror: subprocess-exited"
+    pip = System(checkout / ".venv" / "bin")
+    pip.folder.mkdir(parents=True)
+    pip.add("python", f'case "$*" in *pip*) echo "{said}"; exit 1 ;; esac')
+    (checkout / ".venv" / "made-in").write_text(f"{checkout} no ROS\n")
+    env = {"PATH": os.environ["PATH"]}
+    result = subprocess.run(
+        ["make", "-C", checkout, "install"], env=env, capture_output=True, text=True
+    )
+    lines = [line for line in result.stderr.splitlines() if not line.startswith("make")]
+    assert lines == ["Cannot install: missing: cc"]

@@ -133,6 +133,7 @@ def test_all_packages_have_one_version() -> None:
     }
     ours = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert versions == dict.fromkeys(versions, ours)
+    assert f"turtlesim_py-{ours}+jazzy-" in (ROOT / "README.md").read_text()
 
 
 @pytest.fixture
