@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import re
 from pathlib import Path
@@ -55,6 +54,8 @@ def check_writable(path: Path) -> None:
 def _why_not(path: Path) -> str | None:
     descriptor = _descriptor(path)
     if descriptor is not None:
+        import fcntl  # here: who names a descriptor by a path is not on Windows, which lacks it
+
         mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
         return "it is open for reading only" if mode == os.O_RDONLY else None
     if path.is_dir():

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 import shutil
 import tempfile
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from grader import locks, system
+
 PREFIX = "run-"
-LOCK = "lock"
+#: The lock of a folder lies beside it: Windows removes and renames nothing that holds an open file.
+LOCK = ".lock"
 
 
 def home() -> Path:
     """Where this user's runs, and the locks of their ROS domains, are: below the system's /tmp."""
-    folder = Path(tempfile.gettempdir()) / f"turtlesim-grader-{os.getuid()}"
+    folder = Path(tempfile.gettempdir()) / f"turtlesim-grader-{system.user()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     return folder
 
@@ -28,20 +30,35 @@ def make_folder() -> Iterator[Path]:
     A grader that is killed cannot remove its own; its lock is free then, and the next one does.
     """
     _clear()
-    made = Path(tempfile.mkdtemp(prefix="new-", dir=home()))
-    with (made / LOCK).open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        # only now may others find it, and see that it is in use
-        path = made.rename(made.with_name(made.name.replace("new-", PREFIX, 1)))
-        try:
-            yield path
-        finally:
-            shutil.rmtree(path, ignore_errors=True)
+    while True:
+        path = home() / f"{PREFIX}{uuid.uuid4().hex[:12]}"
+        beside = path.with_suffix(LOCK)
+        with beside.open("w") as lock:
+            # else another, who looked round between two of our steps, took it for a leftover
+            if locks.take(lock) and beside.exists():
+                path.mkdir(mode=0o700)
+                try:
+                    yield path
+                finally:
+                    shutil.rmtree(path, ignore_errors=True)
+                    _forget(beside)
+                break
+    _forget(beside)
 
 
 def _clear() -> None:
     """Remove the folders of runs that are no more."""
-    for path in home().glob(f"{PREFIX}*"):
-        with suppress(OSError), (path / LOCK).open() as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            shutil.rmtree(path, ignore_errors=True)
+    for beside in home().glob(f"{PREFIX}*{LOCK}"):
+        with suppress(OSError):
+            with beside.open() as lock:
+                if not locks.take(lock):
+                    continue
+                shutil.rmtree(beside.with_suffix(""), ignore_errors=True)
+                _forget(beside)
+            _forget(beside)
+
+
+def _forget(lock: Path) -> None:
+    """Remove a lock; on Windows, not while it is open."""
+    with suppress(OSError):
+        lock.unlink(missing_ok=True)

@@ -24,7 +24,7 @@ def below(package: str, *names: str) -> set[str]:
 
 
 #: What every station of the grader may import.
-GROUND = below("grader", "errors", "text", "files", "scratch", "requirements")
+GROUND = below("grader", "errors", "text", "files", "locks", "scratch", "system", "requirements")
 STATIONS = below(
     "grader",
     "submission",

@@ -11,7 +11,7 @@ from grader.recording.recording import Recording
 from grader.run import handover, stage
 from grader.run.finish import Ending, outcome, record
 from grader.run.plan import Plan
-from grader.run.processes.watched import Student
+from grader.run.processes.watched import Watched
 from grader.run.simulator_process import Simulator, start_simulator
 from grader.run.student import main as student_main
 from grader.scenes import load_scene
@@ -63,7 +63,7 @@ def command(submission: Submission, introduction: Introduction) -> list[str]:
 
 
 def _watch(
-    simulator: Simulator, student: Student, progress: Progress | None
+    simulator: Simulator, student: Watched, progress: Progress | None
 ) -> tuple[Reason, int | None]:
     """Start the clock of the run, wait for its end; the reason and the student's exit code."""
     simulator.say("start")

@@ -11,9 +11,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from grader import system
 from grader.errors import GraderFailure
 from grader.run.environment import simulator_environment
 from grader.run.plan import Plan
+from grader.run.processes.line import Line
 from grader.run.processes.watched import Watched
 from grader.run.stage import Stage
 
@@ -100,20 +102,21 @@ def start_simulator(
         link: inherited as well; its number follows the first three arguments.
         more: further arguments.
     """
-    ours, theirs = socket.socketpair()
-    with ours:
-        with theirs:
-            fds = [theirs.fileno(), *([link.fileno()] if link else [])]
-            file = f"/proc/self/fd/{stage.recording}"
-            words = [
-                *(str(fds[0]), file, plan.to_json()),
-                *map(str, fds[1:]),
-                *more,
-            ]
-            command = [*stage.entry, sys.executable, "-m", module, *words]
-            env = simulator_environment(stage.env)
-            process = Watched(command, env, stage.folder, (*fds, stage.recording))
+    with Line() as line:
+        links = [link.fileno()] if link else []
+        words = [line.word, stage.recording_path, plan.to_json(), *map(str, links), *more]
+        command = [*stage.entry, sys.executable, "-m", module, *words]
+        env = simulator_environment(stage.env)
+        fds = (*line.fds, *links, stage.recording) if system.inherits_descriptors() else ()
+        process = Watched(command, env, stage.folder, fds)
         try:
-            yield Simulator(process, ours)
+            yield Simulator(process, _connect(line, process))
         finally:
             process.end()
+
+
+def _connect(line: Line, process: Watched) -> socket.socket:
+    try:
+        return line.connect(lambda: process.poll() is None, SIMULATOR_PATIENCE_S)
+    except ConnectionError:
+        raise GraderFailure(f"the simulator did not call: {process.output()[-2000:]}") from None

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import os
+import tempfile
+import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader import scratch
+from grader import scratch, system
 from grader.run.environment import environment
 from grader.run.processes import isolation
-from grader.run.processes.watched import Student
+from grader.run.processes.watched import Watched, start_student
 from grader.submission.opening import EntryPoint, Submission
 
 
@@ -31,8 +33,9 @@ class Stage:
 
     Attributes:
         folder: the current folder of the simulator.
-        recording: a file without a name where the simulator leaves the recording. The submission
-            does not get it: whoever writes a pickle has the grader do as he likes.
+        recording: where the simulator leaves the recording: an open file, without a name where
+            that can be. The submission does not get it.
+        recording_path: what opens it in the simulator's process.
         isolation: for the result.
         env: environment variables of both processes.
         entry: stands before the command of each.
@@ -40,6 +43,7 @@ class Stage:
 
     folder: Path
     recording: int
+    recording_path: str
     isolation: str
     env: Mapping[str, str]
     entry: tuple[str, ...]
@@ -50,10 +54,10 @@ class Stage:
         submission: Submission,
         pass_fds: tuple[int, ...] = (),
         more_env: Mapping[str, str] | None = None,
-    ) -> Student:
+    ) -> Watched:
         """Start the submission's process in its own folder."""
         env = {**self.env, **(more_env or {})}
-        return Student(command, env, submission.root, pass_fds, self.entry)
+        return start_student(command, env, submission.root, pass_fds, self.entry)
 
 
 @contextmanager
@@ -65,8 +69,22 @@ def open_stage() -> Iterator[Stage]:
     """
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
         env = environment(folder, isolated.env)
-        recording = os.memfd_create("recording")
+        recording, path = _make_recording(folder)
         try:
-            yield Stage(folder, recording, isolated.name, env, isolated.entry)
+            yield Stage(folder, recording, path, isolated.name, env, isolated.entry)
         finally:
             os.close(recording)
+
+
+def _make_recording(folder: Path) -> tuple[int, str]:
+    """An open file for the recording, and what opens it in a process that we start."""
+    if not system.inherits_descriptors():
+        path = folder / f"recording-{uuid.uuid4().hex}"
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+        return os.open(path, flags), str(path)
+    if system.has_memfd():
+        descriptor = os.memfd_create("recording")
+    else:
+        with tempfile.TemporaryFile(dir=folder) as file:  # its name is gone at once
+            descriptor = os.dup(file.fileno())
+    return descriptor, system.descriptor_path(descriptor)

@@ -16,6 +16,7 @@ from pathlib import Path
 from grader.recording.recording import Outcome, Recording
 from grader.run import handover, real_time, stage
 from grader.run.finish import Ending, outcome, record
+from grader.run.lockstep import contract
 from grader.run.plan import Plan
 from grader.run.processes import cores
 from grader.run.real_time import Progress
@@ -51,9 +52,11 @@ def run(
     Raises:
         GraderFailure: the simulator could not be started or died.
     """
-    recording, why = _try(submission, plan, patience, {} if marks is None else marks)
-    if recording is not None:
-        return recording
+    why = contract.lacking()
+    if not why:
+        recording, why = _try(submission, plan, patience, {} if marks is None else marks)
+        if recording is not None:
+            return recording
     flag = f"graded in real time, because {why}"
     return real_time.run(submission, replace(plan, flags=(flag, *plan.flags)), progress)
 

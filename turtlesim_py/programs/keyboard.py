@@ -6,9 +6,13 @@ import os
 import re
 import select
 import signal
-import termios
 from collections.abc import Iterator
 from typing import Any, Self
+
+try:
+    import termios
+except ImportError:  # Windows
+    termios = None  # type: ignore[assignment]
 
 #: The last letter of what an arrow key sends, in a terminal's normal or application mode.
 ARROWS = {b"A": "up", b"B": "down", b"C": "right", b"D": "left"}
@@ -37,8 +41,10 @@ class Keyboard:
     """
 
     def __init__(self, file: int) -> None:
+        if termios is None:
+            raise NotATerminal("this system has no termios, which gives single keys")
         if not os.isatty(file):
-            raise NotATerminal("standard input is not a terminal")
+            raise NotATerminal("standard input is not a terminal: start it in one of its own")
         self.closed = False
         self._file = file
         self._taken = False

@@ -103,7 +103,7 @@ def main(argv: list[str] | None = None) -> int:
     try:
         return program.run("turtle_teleop_key", TeleopTurtle, drive, argv)
     except NotATerminal as error:
-        print(f"turtle_teleop_key: {error}: start it in one of its own", file=sys.stderr)
+        print(f"turtle_teleop_key: {error}", file=sys.stderr)
         return program.UNUSABLE
 
 

@@ -24,6 +24,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from grader import system
+
 #: Stands for rclpy's extension module, whatever it is called.
 CPP = "_rclpy"
 
@@ -53,6 +55,12 @@ def broken(*groups: Iterable[Assumption]) -> str:
             if fault:
                 return f"virtual time does not fit rclpy {version()}: {fault}"
     return ""
+
+
+def lacking() -> str:
+    """What of the system virtual time needs and does not have, in one line; '' where it has all."""
+    lacks = system.lacks_for_lockstep()
+    return f"virtual time needs {' and '.join(lacks)}, which this system lacks" if lacks else ""
 
 
 def version() -> str:

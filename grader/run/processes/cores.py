@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-_getaffinity, _setaffinity = os.sched_getaffinity, os.sched_setaffinity
+# None where the system does not let a process choose: then nothing is pinned
+_getaffinity = getattr(os, "sched_getaffinity", None)
+_setaffinity = getattr(os, "sched_setaffinity", None)
 
 
 def available() -> list[int]:
     """The cores that this process may use."""
-    return sorted(_getaffinity(0))
+    return sorted(_getaffinity(0)) if _getaffinity else list(range(os.cpu_count() or 1))
 
 
 @contextmanager
@@ -23,20 +25,15 @@ def reserve_core(run: int) -> Iterator[int]:
         run: any number; spreads the runs over the cores where there are more runs than cores.
     """
     # here: the processes of a run import this module too, and need no locks
-    import fcntl
-
-    from grader import scratch
+    from grader import locks, scratch
 
     possible = available()
     folder = scratch.home()
-    with ExitStack() as locks:
+    with ExitStack() as held:
         for core in possible:
-            lock = locks.enter_context((folder / f"core-{core}.lock").open("w"))
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue
-            break
+            lock = held.enter_context((folder / f"core-{core}.lock").open("w"))
+            if locks.take(lock):
+                break
         else:
             core = possible[run % len(possible)]
         yield core
@@ -44,7 +41,7 @@ def reserve_core(run: int) -> Iterator[int]:
 
 def pin(core: int) -> None:
     """Keep all threads of this process on a core; those to come follow. -1: on any."""
-    if core < 0:
+    if core < 0 or _setaffinity is None:
         return
     with suppress(OSError):  # not allowed, or no /proc
         for thread in Path("/proc/self/task").iterdir():

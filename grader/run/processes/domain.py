@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import fcntl
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from grader import scratch
+from grader import locks, scratch
 from grader.errors import GraderFailure
 
 #: Domain ids whose ports stay clear of the ephemeral ones, minus the low ones that people use.
@@ -26,10 +25,7 @@ def reserve_domain() -> Iterator[int]:
     folder = scratch.home()  # the empty lock files stay there for the next run
     for domain in random.sample(DOMAINS, len(DOMAINS)):
         with (folder / f"domain-{domain}.lock").open("w") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue
-            yield domain
-            return
+            if locks.take(lock):
+                yield domain
+                return
     raise GraderFailure(f"all {len(DOMAINS)} ROS domains are in use by other runs; try again later")

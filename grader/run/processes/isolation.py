@@ -3,6 +3,8 @@
 Best is a network namespace that holds nothing but a loopback device: root may make one, others
 inside a user namespace, where the system allows that. Else the run reserves a ROS domain. In both
 cases all goes by UDP over loopback: the shared memory of a process that is killed would stay.
+
+Where the system is not Linux, the name also says what is less out of a submission's reach.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from grader import system
 from grader.run.processes import domain, supervisor
 
 #: Fast DDS would use shared memory for discovery range LOCALHOST, whatever its settings say.
@@ -46,7 +49,7 @@ class Isolation:
     """What keeps a run to itself.
 
     Attributes:
-        name: for the result: "private network", "ROS domain 87".
+        name: for the result: "private network", "ROS domain 87"; see `weakness`.
         env: environment variables of both processes.
         entry: stands before a command that is to run inside.
     """
@@ -86,7 +89,7 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
     if namespaces := private_network():
         try:
             env = {**RANGE, "ROS_DOMAIN_ID": "0", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
-            yield Isolation("private network", env, namespaces.entry())
+            yield Isolation(f"private network{weakness()}", env, namespaces.entry())
         finally:
             namespaces.close()
         return
@@ -98,7 +101,21 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
             "ROS_DOMAIN_ID": str(number),
             "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
         }
-        yield Isolation(f"ROS domain {number}", env)
+        yield Isolation(f"ROS domain {number}{weakness()}", env)
+
+
+def weakness() -> str:
+    """What keeps a submission less apart here than on Linux, as an addition to the name; or ''.
+
+    `process group`, `process tree`: nobody adopts what it starts, so that what leaves its group (or
+    tree) and forgets its environment may outlive the run. `recording within reach`: the file in
+    which the simulator leaves the recording has a name.
+    """
+    if system.has_supervision():
+        return ""
+    if system.inherits_descriptors():
+        return ", process group"
+    return ", process tree, recording within reach"
 
 
 #: Ways that this system has refused once; it will not change its mind.

@@ -20,11 +20,12 @@ A script of its own, with nothing but the standard library: it starts in a few m
 from __future__ import annotations
 
 import ctypes
+import errno
 import os
 import signal
 import sys
 from contextlib import suppress
-from typing import NoReturn
+from typing import Any, NoReturn
 
 CLONE_NEWNS, CLONE_NEWIPC, CLONE_NEWUSER = 0x00020000, 0x08000000, 0x10000000
 CLONE_NEWPID, CLONE_NEWNET = 0x20000000, 0x40000000
@@ -32,13 +33,19 @@ MS_NOSUID, MS_NODEV, MS_NOEXEC, MS_REC, MS_PRIVATE = 2, 4, 8, 0x4000, 0x40000
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 SIOCSIFFLAGS, IFF_UP, IFF_RUNNING = 0x8914, 0x1, 0x40
 #: Signals that are meant for the command, and reach us only because we are in its group.
-NOT_OURS = (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
+NOT_OURS = [
+    getattr(signal, name) for name in ("SIGINT", "SIGHUP", "SIGQUIT") if hasattr(signal, name)
+]
 
-_libc = ctypes.CDLL(None, use_errno=True)
+# Other systems than Linux may import this, but have no use for it: Windows has no libc.
+_libc: Any = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
 
 
-def _checked(result: int) -> None:
-    if result != 0:
+def _call(function: str, *arguments: object) -> None:
+    there = getattr(_libc, function, None)
+    if there is None:
+        raise OSError(errno.ENOSYS, f"no {function} here")
+    if there(*arguments) != 0:
         raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
 
 
@@ -48,7 +55,7 @@ def unshare(kinds: int) -> None:
     Raises:
         OSError: the system does not allow it.
     """
-    _checked(_libc.unshare(kinds))
+    _call("unshare", kinds)
 
 
 def mount(kind: str, target: str, flags: int, data: str = "") -> None:
@@ -57,9 +64,8 @@ def mount(kind: str, target: str, flags: int, data: str = "") -> None:
     Raises:
         OSError: the system does not allow it.
     """
-    _checked(
-        _libc.mount(b"none", target.encode(), kind.encode(), ctypes.c_ulong(flags), data.encode())
-    )
+    words = (b"none", target.encode(), kind.encode(), ctypes.c_ulong(flags), data.encode())
+    _call("mount", *words)
 
 
 def raise_loopback() -> None:

@@ -18,16 +18,24 @@ from types import FrameType
 
 import psutil
 
+from grader import system
 from grader.errors import GraderFailure
 from grader.run.processes import supervisor
 
-PR_SET_CHILD_SUBREAPER = 36
+
+def _if_there(name: str) -> list[signal.Signals]:
+    """A signal that Windows lacks."""
+    return [getattr(signal, name)] if hasattr(signal, name) else []
+
+
 #: How much of a process's output is kept: this many bytes of its start and as many of its end.
 KEEP_BYTES = 32_768
 #: An environment variable that tells the processes of one run from those of others.
 MARK = "TURTLESIM_GRADER_PROCESS"
 #: What asks the grader to end: Ctrl-C, `timeout` or `docker stop`, a closed terminal.
-ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+ENDING = (signal.SIGINT, signal.SIGTERM, *_if_there("SIGHUP"))
+#: What a process is told to end with, ever less gently.
+INSISTING = (signal.SIGINT, signal.SIGTERM, *_if_there("SIGKILL"))
 #: How long a process may take to come up [s]; only a machine in distress takes so long.
 START_S = 30.0
 SUPERVISOR = (sys.executable, "-I", "-S", supervisor.__file__, "run")
@@ -38,7 +46,8 @@ def adopt_orphans() -> None:
 
     For a process that is the grader and nothing else; who calls us as a library is left as he is.
     """
-    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
+    if system.has_supervision():
+        ctypes.CDLL(None).prctl(supervisor.PR_SET_CHILD_SUBREAPER, 1)
 
 
 _running: set[Watched] = set()
@@ -67,10 +76,13 @@ def end_on_signals() -> None:
 
 
 def _all_processes() -> list[int]:
-    """The process ids of this user's processes, but for ourselves."""
-    me, user = os.getpid(), os.getuid()
+    """The process ids of this user's processes, but for ourselves; without /proc, of all."""
+    me = os.getpid()
+    if not system.has_proc():
+        return [pid for pid in psutil.pids() if pid != me]
+    user = os.getuid()
     found = []
-    for entry in Path("/proc").iterdir():
+    for entry in system.PROC.iterdir():
         if entry.name.isdigit() and int(entry.name) != me:
             with suppress(OSError):
                 if entry.stat().st_uid == user:
@@ -101,6 +113,7 @@ class Watched:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             start_new_session=True,
+            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # Windows
         )
         self._head = bytearray()
         self._tail = bytearray()
@@ -142,13 +155,21 @@ class Watched:
 
     def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
         """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
-        for sent in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)[0 if gently else 2 :]:
+        for sent in INSISTING if gently else INSISTING[-1:]:
             if self.poll() is None:
-                with suppress(ProcessLookupError):
-                    os.killpg(self.pid, sent)
+                self._send(sent)
                 self.wait(patience_s)
         _running.discard(self)
         self._sweep(patience_s)
+
+    def _send(self, number: signal.Signals) -> None:
+        """A signal to it and its group; Windows, which has no such groups, ends it at once."""
+        if hasattr(os, "killpg"):
+            # macOS forbids what Linux cannot find: a group of which only the dead are left
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, number)
+        else:
+            self._process.kill()
 
     def _sweep(self, patience_s: float) -> None:
         """End what it has started, wherever that has gone: its environment tells."""
@@ -162,7 +183,9 @@ class Watched:
         psutil.wait_procs(family, timeout=patience_s)
 
     def _owns(self, pid: int) -> bool:
-        with suppress(OSError):
+        with suppress(OSError, psutil.Error):
+            if not system.has_proc():
+                return psutil.Process(pid).environ().get(MARK) == self._mark
             return f"{MARK}={self._mark}".encode() in Path(f"/proc/{pid}/environ").read_bytes()
         return False
 
@@ -179,6 +202,42 @@ class Watched:
         if len(self._tail) > KEEP_BYTES:
             self._dropped += len(self._tail) - KEEP_BYTES
             del self._tail[:-KEEP_BYTES]
+
+
+def start_student(
+    command: Sequence[str],
+    env: Mapping[str, str],
+    cwd: Path | None = None,
+    pass_fds: tuple[int, ...] = (),
+    entry: Sequence[str] = (),
+) -> Watched:
+    """Start a submission's process, held as well as this system can.
+
+    Args:
+        entry: stands before the command; see `.isolation`.
+    """
+    if system.has_supervision():
+        return Student(command, env, cwd, pass_fds, entry)
+    return Unsupervised([*entry, *command], env, cwd, pass_fds)
+
+
+class Unsupervised(Watched):
+    """A submission's process where nobody can adopt its family: elsewhere than on Linux.
+
+    Its descendants are those that it still has at its end, its group, and whoever has its
+    environment. One that has got away from all three stays.
+    """
+
+    def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
+        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
+        family = []
+        with suppress(psutil.Error):
+            family = psutil.Process(self.pid).children(recursive=True)
+        super().end(patience_s, gently=gently)
+        for process in family:
+            with suppress(psutil.Error):
+                process.kill()  # not if another has its number by now
+        psutil.wait_procs(family, timeout=patience_s)
 
 
 class Student(Watched):

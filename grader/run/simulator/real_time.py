@@ -1,12 +1,12 @@
 """The simulator's process in a run in real time: a scene that the wall clock moves.
 
-    python -m grader.run.simulator.real_time FD FILE PLAN
+    python -m grader.run.simulator.real_time LINE FILE PLAN
 
-It speaks JSON lines with the grader over the inherited socket FD: out go `ready`, `progress` about
-once a second, and `done` when the recording lies in FILE; in come `start` when the submission's
-process is started, and `exited` when it has ended. PLAN is a `grader.run.plan.Plan`. The clock of
-the run starts when the submission has its first node, has ended, or has had FIRST_NODE_S for it. If
-the grader goes away, so does the simulator.
+It speaks JSON lines with the grader over LINE (`grader.run.processes.line`): out go `ready`,
+`progress` about once a second, and `done` when the recording lies in FILE; in come `start` when the
+submission's process is started, and `exited` when it has ended. PLAN is a `grader.run.plan.Plan`.
+The clock of the run starts when the submission has its first node, has ended, or has had
+FIRST_NODE_S for it. If the grader goes away, so does the simulator.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from grader.run import handover
 from grader.run.plan import Plan
+from grader.run.processes.line import take_up
 from grader.run.processes.parent import die_with_parent
 from grader.run.simulator.published_topics import EVENTS, PublishedTopics
 from grader.scenes import load_scene
@@ -99,6 +100,8 @@ class GradedSimulator:
             text = self._link.recv(4096)
         except BlockingIOError:
             return
+        except ConnectionError:
+            text = b""
         if not text:
             raise SystemExit(1)  # the grader is gone: nobody wants the recording any more
         for line in text.splitlines():
@@ -115,7 +118,7 @@ def main(argv: list[str]) -> int:
     die_with_parent()
     # Ctrl-C in a terminal reaches the whole group; the grader decides what happens then.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    link = socket.socket(fileno=int(argv[0]))
+    link = take_up(argv[0])
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     GradedSimulator(link, Path(argv[1]), Plan.from_json(argv[2])).run()
     rclpy.shutdown()

@@ -24,6 +24,7 @@ import time
 import traceback
 import types
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -166,8 +167,9 @@ def call(
 
 
 def die_with_parent() -> None:
-    """If whoever started us is killed, we go too."""
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    """If whoever started us is killed, we go too, where the system can see to that: Linux."""
+    with suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def forget_ourselves(root: str, target: str) -> None:
