@@ -5,11 +5,12 @@ import os
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tomllib
 import zipfile
 from collections.abc import Iterator
 from email import message_from_string
-from importlib.metadata import files
+from importlib.metadata import Distribution
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -206,7 +207,10 @@ def test_each_ros_has_a_build_folder_of_its_own(checkout: Path, shell: Environme
 def requirements_only(tmp_path: Path) -> Iterator[Path]:
     """An environment with all that a wheel requires: links to this one, without this project."""
     place = tmp_path / "environment"
-    ours = {Path(str(file.locate())).resolve() for file in files("turtlesim_py") or ()}
+    # not the one that a build has left in this checkout
+    site = [sysconfig.get_path("purelib")]
+    (installed,) = Distribution.discover(name="turtlesim_py", path=site)
+    ours = {Path(str(file.locate())).resolve() for file in installed.files or ()}
 
     def leave_out(folder: str, names: list[str]) -> set[str]:
         return {name for name in names if Path(folder, name).resolve() in ours}

@@ -59,7 +59,7 @@ class Introduced:
     """
 
     def __init__(self, topics: list[str], services: list[str]) -> None:
-        self.patience_s = 2.0
+        self.patience_s = 4.0
         self._topics, self._services = tuple(topics), services
 
     def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
