@@ -5,12 +5,16 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from grader.errors import UsageError
 
 _STREAMS = {"/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
 _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,9})")
+
+#: So many bytes tell whose file it is [bytes].
+_BEGINNING = 200
 
 
 def write(path: Path, content: str) -> None:
@@ -66,6 +70,59 @@ def _why_not(path: Path) -> str | None:
     if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
         return f"{there} is no folder that you may write into"
     return None
+
+
+def check_replaceable(path: Path, schema: str, inputs: Iterable[Path]) -> None:
+    """Refuse to replace what somebody else has written, or what this very call reads.
+
+    Args:
+        schema: how the schema of what may be replaced begins: "turtlesim-grader/error/".
+        inputs: what the call reads; folders do not count, since whatever lies in them is told by
+            its own schema.
+
+    Raises:
+        UsageError: there is a file, neither empty nor of this schema, or it is one of the inputs.
+    """
+    check_is_no_input(path, inputs)
+    if _descriptor(path) is not None or not path.is_file():
+        return
+    try:
+        with path.open("rb") as file:
+            begin = file.read(_BEGINNING)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+    if begin and not re.match(rb'\s*\{\s*"schema"\s*:\s*"' + re.escape(schema.encode()), begin):
+        raise UsageError(
+            f"cannot write {path}: there is a file already that this grader has not written; "
+            "give another name, or remove it. Nothing was changed."
+        )
+
+
+def check_is_no_input(path: Path, inputs: Iterable[Path]) -> None:
+    """Refuse to write over what a call reads.
+
+    Raises:
+        UsageError: the path is one of the inputs.
+    """
+    with contextlib.suppress(OSError):  # what cannot be looked at is told where it is read
+        for one in inputs:
+            if one.is_file() and path.exists() and path.samefile(one):
+                raise UsageError(
+                    f"cannot write {path}: this call reads it; give another name. "
+                    "Nothing was changed."
+                )
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those above it, where they are not there.
+
+    Raises:
+        UsageError: it cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot make the folder {folder}: {error.strerror}") from None
 
 
 def withdraw(path: Path) -> None:

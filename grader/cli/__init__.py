@@ -33,7 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         args = _parser().parse_args(words)
     except error_file.Misuse as error:
         print(f"{error.usage}{error.prog}: error: {error}", file=sys.stderr)
-        return _ended(error, error_file.look_for(words))
+        return _misused(error, error_file.look_for(words))
     watched.adopt_orphans()
     watched.end_on_signals()
     say = Console(stderr=True, soft_wrap=True, highlight=False).print
@@ -72,6 +72,15 @@ def _parser() -> error_file.Parser:
         module.add_arguments(verb)
         error_file.add_argument(verb)
     return parser
+
+
+def _misused(error: error_file.Misuse, args: Namespace) -> int:
+    try:
+        error_file.prepare(args)
+    except UsageError as unwritable:
+        print(f"grader: {unwritable}", file=sys.stderr)
+        return error.exit_code
+    return _ended(error, args)
 
 
 def _ended(error: GraderError, args: Namespace, exit_code: int | None = None) -> int:

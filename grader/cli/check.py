@@ -8,12 +8,14 @@ from pathlib import Path
 
 from rich.console import Console
 
+from grader import files
+from grader.cli import error_file
 from grader.cli.run import points
 from grader.exercise.check import judge
 from grader.exercise.loading import DEFAULT, load_exercise
 from grader.recording.folder import WINDOW_PICTURE, load_all
 from grader.reports import Report, terminal
-from grader.result.result import build
+from grader.result.result import FAMILY, build
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,6 +35,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
+    if args.json:
+        files.check_writable(args.json)
+        files.check_replaceable(args.json, FAMILY, error_file.inputs(args))
     exercise = load_exercise(args.exercise)
     folder: Path = args.recording
     if (folder / "recording").is_dir():  # the folder of the result, which holds the recording

@@ -7,14 +7,14 @@ one is written whole or not at all.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NoReturn
 
 from grader import files
 from grader.errors import GraderError, UsageError
 from grader.exercise.loading import load_exercise
-from grader.result.error import ErrorResult
+from grader.result.error import FAMILY, ErrorResult
 
 
 class Misuse(UsageError):
@@ -42,24 +42,39 @@ def add_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def look_for(words: Sequence[str]) -> argparse.Namespace:
-    """The option, and the exercise, in a call that cannot be parsed; None where they are not."""
+    """The option, and the exercise, in a call that cannot be parsed; None where they are not.
+
+    Any other word may be meant as a file to read, so it counts as one.
+    """
     parser = Parser(add_help=False)
     add_argument(parser)
     parser.add_argument("--exercise")
     try:
-        return parser.parse_known_args(words)[0]
+        args, others = parser.parse_known_args(words)
     except Misuse:
         return argparse.Namespace(error_json=None, exercise=None)
+    args.result = [Path(word) for word in others]
+    return args
+
+
+def inputs(args: argparse.Namespace) -> Iterator[Path]:
+    """The files and folders that a call reads."""
+    for name in ("submission", "recording", "result", "exercise", "mutants"):
+        given = getattr(args, name, None)
+        for one in given if isinstance(given, list) else [given]:
+            if one is not None:
+                yield Path(one)
 
 
 def prepare(args: argparse.Namespace) -> None:
     """Remove an old file.
 
     Raises:
-        UsageError: no new one could be written.
+        UsageError: no new one could be written, or what is there is something else.
     """
     if args.error_json is not None:
         files.check_writable(args.error_json)
+        files.check_replaceable(args.error_json, FAMILY, inputs(args))
         files.withdraw(args.error_json)
 
 

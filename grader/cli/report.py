@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from rich.console import Console
 
 from grader import files, reports
+from grader.cli import error_file
+from grader.cli.run import ARTIFACTS
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.reports import FORMATS, Report, terminal
@@ -46,6 +49,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Show the results; see `grader.cli` for the exit codes."""
     checks = tuple(load_exercise(args.exercise).points) if args.exercise else ()
+    if args.out is not None:
+        files.check_is_no_input(args.out, _read(args))
     shown = [reports.read(path, checks) for path in args.result]
     summary = _summary_file() if args.github_summary else None
     if args.format == "terminal" and args.out is None and len(shown) == 1:
@@ -63,6 +68,14 @@ def main(args: argparse.Namespace) -> int:
     if summary is not None:
         _append(summary, "".join(reports.render("markdown", [each]) for each in shown))
     return 0
+
+
+def _read(args: argparse.Namespace) -> Iterator[Path]:
+    """What a report is made from: the results, and what lies beside them."""
+    for path in error_file.inputs(args):
+        yield path
+        yield from (path.parent / name for name in ARTIFACTS.values())
+        yield from (path.parent / ARTIFACTS["recording"]).rglob("*")
 
 
 def _print(content: str) -> None:

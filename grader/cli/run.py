@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 from PIL import Image
@@ -20,9 +21,12 @@ from grader.recording import folder
 from grader.recording.recording import Recordings
 from grader.reports import Report, render, terminal
 from grader.requirements import require
-from grader.result.result import build
+from grader.result.result import FAMILY, build
 from grader.scenes import load_scene
 from grader.submission.opening import open_submission
+
+#: What lies beside a result file: name -> path relative to it.
+ARTIFACTS = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -92,7 +96,7 @@ def _grade(args: argparse.Namespace) -> int:
     with open_submission(args.submission, args.executable) as submission:
         messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
         interfaces_for(submission, exercise)  # refuses, if at all, before anything is written
-        _prepare(out, args.json)
+        _prepare(out, args.json, error_file.inputs(args))
         messages.print(f"Running it beside a simulator, in {args.time} time ...")
         with progress.shown(messages, "running") as show:
             recordings = run_all(
@@ -122,7 +126,7 @@ def _default_out(submission: Path) -> Path:
     return Path("graded") / absolute.parent.name / absolute.name
 
 
-def _prepare(out: Path, copy: Path | None) -> None:
+def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
     """Find out before the run whether its result can be written, then make the folders.
 
     An older result goes now: it must not outlive a run that fails.
@@ -131,18 +135,21 @@ def _prepare(out: Path, copy: Path | None) -> None:
         UsageError: one of the places cannot be written; nothing has changed then.
     """
     written = [out / "result.json", *([copy] if copy else [])]
+    read = list(inputs)
     for path in written:
         files.check_writable(path)
+        files.check_replaceable(path, FAMILY, read)
     for path in written:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        files.make_folder(path.parent)
+    for path in written:
         files.withdraw(path)
 
 
 def _write(recordings: Recordings, out: Path) -> dict[str, str]:
     """Write everything but the result; name -> path relative to it."""
-    folder.save_all(recordings, out / "recording")
+    folder.save_all(recordings, out / ARTIFACTS["recording"])
     scene = load_scene(recordings.nominal.scene)
     window = scene.pictures(recordings.nominal.trace).window
-    Image.fromarray(window).save(out / "canvas.png")
-    (out / "output.txt").write_text(recordings.nominal.output, encoding="utf-8")
-    return {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
+    Image.fromarray(window).save(out / ARTIFACTS["canvas"])
+    (out / ARTIFACTS["output"]).write_text(recordings.nominal.output, encoding="utf-8")
+    return dict(ARTIFACTS)

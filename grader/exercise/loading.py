@@ -260,6 +260,14 @@ def _starter(where: object, place: Place) -> Path | None:
     folder = places.locate(place.folder, str(where))
     if not folder.is_dir():
         raise ExerciseError(f"starter: expected a folder, found {folder}")
+    real = folder.resolve()
+    package = Path(str(where)).parts[:1]
+    roots = [place.folder.resolve(), *places.package_folders(*package)]
+    if not any(root in real.parents for root in roots):
+        raise ExerciseError(
+            f"starter: expected a folder inside {place.folder}, or PACKAGE/FOLDER inside an "
+            f"installed package, found {where!r}, which is {real}"
+        )
     return folder
 
 

@@ -14,7 +14,9 @@ from grader.errors import GraderError, Whose
 from grader.result import json_file
 from grader.text import plain
 
-SCHEMA = "turtlesim-grader/error/v1"
+#: What the schemas of all versions begin with.
+FAMILY = "turtlesim-grader/error/"
+SCHEMA = f"{FAMILY}v1"
 
 
 @dataclass(frozen=True)

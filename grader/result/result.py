@@ -5,6 +5,7 @@ Its JSON Schema is `result.schema.json` beside this module.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
@@ -18,7 +19,9 @@ from grader.recording.recording import Recording, Recordings, Run
 from grader.result import json_file
 from grader.scenes.scene import Start
 
-SCHEMA = "turtlesim-grader/result/v1"
+#: What the schemas of all versions begin with.
+FAMILY = "turtlesim-grader/result/"
+SCHEMA = f"{FAMILY}v1"
 
 
 @dataclass(frozen=True)
@@ -115,21 +118,22 @@ class Result:
         )
 
     @classmethod
-    def read(cls, path: Path) -> Self:
+    def read(cls, path: str | os.PathLike[str]) -> Self:
         """Read a result file.
 
         Raises:
             UsageError: it cannot be read or is no result of this version.
         """
+        path = Path(path)
         return json_file.made(cls.from_json, path, json_file.read(path))
 
-    def write(self, path: Path) -> None:
+    def write(self, path: str | os.PathLike[str]) -> None:
         """Write the result file.
 
         Raises:
             UsageError: it cannot be written.
         """
-        files.write(path, json_file.text(self.to_json()))
+        files.write(Path(path), json_file.text(self.to_json()))
 
 
 def build(

@@ -90,8 +90,8 @@ def test_an_error_file_that_cannot_be_written_is_found_out_at_the_start(tmp_path
 
 
 def test_an_old_file_does_not_outlive_a_call_that_works(tmp_path, error):
-    error.parent.mkdir()
-    error.write_text("old")
+    assert main(["check", str(tmp_path / "missing"), "--error-json", str(error)]) == 2
+    assert error.exists()
     assert main(["new", str(tmp_path / "new"), "--error-json", str(error)]) == 0
     assert not error.exists()
 

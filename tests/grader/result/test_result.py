@@ -55,6 +55,12 @@ def test_everything_comes_back_as_it_was(tmp_path):
     assert Result.read(tmp_path / "new" / "result.json") == result
 
 
+def test_a_path_may_be_given_as_a_text(tmp_path):
+    result = Result.from_json(samples.result())
+    result.write(str(tmp_path / "result.json"))
+    assert Result.read(str(tmp_path / "result.json")) == result
+
+
 def test_the_interfaces_are_there_where_they_are_known(tmp_path):
     for number, run in enumerate((RunSummary(), RunSummary(interfaces="moon_msgs"))):
         result = Result("e", "s", 0, 0, (), run)
