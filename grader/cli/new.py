@@ -6,6 +6,8 @@ import argparse
 import os
 import shlex
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from grader.errors import UsageError
@@ -49,10 +51,14 @@ def main(args: argparse.Namespace) -> int:
             raise UsageError(f"{folder} is a file; give a new folder, nothing was written")
         if folder.exists() and any(folder.iterdir()):
             raise UsageError(f"{folder} is not empty; give a new folder, nothing was written")
-        skip = shutil.ignore_patterns("__pycache__", "*.pyc")
-        shutil.copytree(starter, folder, dirs_exist_ok=True, ignore=skip)
-        if args.ros:
-            _adapt(folder, load_scene(exercise.scene), args.ros)
+        with _whole_or_not_at_all(folder) as copy:
+            skip = shutil.ignore_patterns("__pycache__", "*.pyc")
+            shutil.copytree(starter, copy, ignore=skip)
+            if args.ros:
+                _adapt(copy, load_scene(exercise.scene), args.ros)
+    except shutil.Error as error:
+        source, _, why = error.args[0][0]  # (source, target, why) of each file
+        raise UsageError(f"cannot copy {source}: {why}; nothing was written") from None
     except OSError as error:
         raise UsageError(f"cannot write {folder}: {error.strerror}") from None
     print(f"The starter package is in {folder}.")
@@ -66,6 +72,22 @@ def main(args: argparse.Namespace) -> int:
         words += ["--exercise", args.exercise]
     print(f"    {shlex.join(words)}")
     return 0
+
+
+@contextmanager
+def _whole_or_not_at_all(folder: Path) -> Iterator[Path]:
+    """A place for a copy, which comes into the folder when it is whole; else nothing is left."""
+    is_new = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    unfinished = folder / f".unfinished.{os.getpid()}"
+    try:
+        yield unfinished
+        for path in unfinished.iterdir():
+            path.rename(folder / path.name)
+    except BaseException:
+        shutil.rmtree(folder if is_new else unfinished, ignore_errors=True)
+        raise
+    unfinished.rmdir()
 
 
 def _adapt(folder: Path, scene: Scene, ros_distro: str) -> None:

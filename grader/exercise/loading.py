@@ -10,6 +10,8 @@ import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +100,15 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
     Raises:
         ExerciseError: there is no such exercise, or something in it is wrong; with file and line.
     """
+    try:
+        return _load(name_or_path)
+    except PermissionError as error:
+        raise ExerciseError(
+            f"cannot read the exercise {str(name_or_path)!r}: {error.strerror}: {error.filename}"
+        ) from None
+
+
+def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
     path = Path(name_or_path)
     if path.suffix in SUFFIXES:
         return _from_file(path)
@@ -261,9 +272,11 @@ def _starter(where: object, place: Place) -> Path | None:
     if not folder.is_dir():
         raise ExerciseError(f"starter: expected a folder, found {folder}")
     real = folder.resolve()
-    package = Path(str(where)).parts[:1]
-    roots = [place.folder.resolve(), *places.package_folders(*package)]
-    if not any(root in real.parents for root in roots):
+    package = str(where).partition("/")[0]
+    roots = [place.folder]
+    if package.isidentifier() and find_spec(package) is not None:
+        roots.append(Path(str(files(package))))
+    if not any(root.resolve() in (real, *real.parents) for root in roots) or real == roots[0]:
         raise ExerciseError(
             f"starter: expected a folder inside {place.folder}, or PACKAGE/FOLDER inside an "
             f"installed package, found {where!r}, which is {real}"

@@ -30,6 +30,7 @@ from typing import Any
 import jsonschema
 from PIL import Image
 
+from grader import strict_json
 from grader.errors import RecordingError
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
 from grader.requirements import require
@@ -199,6 +200,10 @@ def _facts(folder: Path) -> dict[str, Any]:
         raise RecordingError(f"{folder} is {what}: it has no {RUN}")
     if not has_bag:
         raise RecordingError(f"{folder} is incomplete: it has no {METADATA}, which is saved last")
+    for name in (BAG, METADATA, RUN, OUTPUT, CIRCUMSTANCES_FILE):
+        path = folder / name
+        if path.exists() and not path.is_file():  # a pipe would be waited for, for ever
+            raise RecordingError(f"{path} is damaged: it is no ordinary file")
     facts = _read_json(folder / RUN)
     if facts.get("schema") != SCHEMA:
         found = f"expected schema {SCHEMA!r}, found {facts.get('schema')!r}"
@@ -227,14 +232,24 @@ def _load(folder: Path, facts: dict[str, Any]) -> Recording:
             f"{folder / BAG} is damaged: it is cut off or was changed since it was saved"
         )
     scene = _scene(folder, facts.get("scene", FIRST_SCENE))
+    _must_agree(folder, "ticks", run.ticks, round(run.simulated_s * 1e9 / scene.tick_ns))
+    trace = _bag().read(folder, scene, run.ticks)
+    _must_agree(folder, "trace_sha256", run.trace_sha256, trace.sha256())
     return Recording(
-        trace=_bag().read(folder, scene, run.ticks),
+        trace=trace,
         run=run,
         topics=tuple(PublishedTopic(**topic) for topic in facts["topics"]),
         output=output,
         start=Start(**facts["start"]) if facts["start"] else None,
         scene=scene.name,
     )
+
+
+def _must_agree(folder: Path, key: str, told: object, found: object) -> None:
+    if told != found:
+        raise RecordingError(
+            f"{folder / RUN} is damaged: its {key} is {told!r:.80}, but the run's is {found!r:.80}"
+        )
 
 
 def _scene(folder: Path, name: str) -> Scene:
@@ -246,7 +261,7 @@ def _scene(folder: Path, name: str) -> Scene:
 
 def _read_json(path: Path) -> dict[str, Any]:
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = strict_json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise RecordingError(f"cannot read the recording: {error}") from None
     except (ValueError, RecursionError) as error:

@@ -68,10 +68,10 @@ def read(path: Path, checks: Sequence[str] = ()) -> Report | ErrorReport:
         UsageError: it cannot be read or is neither.
     """
     data = json_file.read(path)
-    if isinstance(data, dict) and data.get("schema") == error.SCHEMA:
+    if isinstance(data, dict) and str(data.get("schema")).startswith(error.FAMILY):
         made = json_file.made(ErrorResult.from_json, path, data)
         return ErrorReport(made, path.parent, checks)
-    result = json_file.made(Result.from_json, path, data)
+    result = json_file.made(Result.from_file, path, data)
     return Report(result, Beside(result, path.parent))
 
 

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 import jsonschema
 
+from grader import strict_json
 from grader.errors import UsageError
 
 Made = TypeVar("Made")
@@ -29,6 +30,10 @@ def validate(data: object, name: str, version: str) -> None:
     Raises:
         ValueError: it does not follow it.
     """
+    found = data.get("schema") if isinstance(data, dict) else None
+    family = version.rpartition("/")[0]
+    if isinstance(found, str) and found != version and found.startswith(f"{family}/"):
+        raise ValueError(f"is no {name} of {version}: it is of another version, {found:.60}")
     error = jsonschema.exceptions.best_match(_validator(name).iter_errors(data))
     if error is not None:
         raise ValueError(f"is no {name} of {version}: {error.message}")
@@ -46,7 +51,8 @@ def read(path: Path) -> Any:
         UsageError: it cannot be read or is none.
     """
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        # utf-8-sig: some editors put a mark at the start
+        return strict_json.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise UsageError(f"cannot read the result {path}: {error.strerror}") from None
     except (ValueError, RecursionError) as error:

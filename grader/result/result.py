@@ -22,6 +22,8 @@ from grader.scenes.scene import Start
 #: What the schemas of all versions begin with.
 FAMILY = "turtlesim-grader/result/"
 SCHEMA = f"{FAMILY}v1"
+#: A total is rounded to hundredths, its parts need not be; with room for how floats add up [points].
+ROUNDING = 0.01 + 1e-9
 
 
 @dataclass(frozen=True)
@@ -118,6 +120,26 @@ class Result:
         )
 
     @classmethod
+    def from_file(cls, data: Any) -> Self:
+        """The same, where somebody else may have changed it.
+
+        Raises:
+            ValueError: it does not follow the schema, or does not add up.
+        """
+        result = cls.from_json(data)
+        names = [verdict.check for verdict in result.verdicts]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise ValueError(f"is damaged: it has two verdicts of the check {twice!r}")
+        for key in ("score", "max_score"):
+            total, found = sum(getattr(v, key) for v in result.verdicts), getattr(result, key)
+            if abs(total - found) > ROUNDING:
+                raise ValueError(
+                    f"is damaged: its {key} is {found:g}, that of its verdicts {total:g}"
+                )
+        return result
+
+    @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Self:
         """Read a result file.
 
@@ -125,7 +147,7 @@ class Result:
             UsageError: it cannot be read or is no result of this version.
         """
         path = Path(path)
-        return json_file.made(cls.from_json, path, json_file.read(path))
+        return json_file.made(cls.from_file, path, json_file.read(path))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the result file.

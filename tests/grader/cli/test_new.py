@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from grader.cli import main
@@ -82,4 +84,43 @@ def test_where_there_is_none_that_is_said_and_nothing_is_written(tmp_path, capsy
 def test_a_starter_must_be_a_folder(tmp_path):
     exercise = exercises.write(tmp_path / "ahead", starter="checks.py")
     with pytest.raises(ExerciseError, match="starter: expected a folder"):
+        load_exercise(exercise)
+
+
+@pytest.mark.parametrize(
+    "where", ["/etc", "..", "../other", ".", "link", "turtlesim_challenge/../../.."]
+)
+def test_a_starter_lies_inside_its_exercise_or_a_package(tmp_path, capsys, where):
+    exercise = exercises.write(tmp_path / "ahead", starter=where)
+    (tmp_path / "other").mkdir()
+    (exercise / "link").symlink_to(tmp_path / "other")
+    assert main(["new", str(tmp_path / "mine"), "--exercise", str(exercise)]) == 2
+    assert "starter: expected a folder inside" in capsys.readouterr().err
+    assert not (tmp_path / "mine").exists()
+
+
+@pytest.mark.parametrize("is_new", [True, False])
+def test_of_a_starter_that_cannot_be_copied_nothing_is_left(tmp_path, capsys, is_new):
+    exercise = exercises.write(tmp_path / "ahead", starter="begin")
+    (exercise / "begin").mkdir()
+    (exercise / "begin" / "node.py").write_text("print('nothing')\n")
+    os.mkfifo(exercise / "begin" / "pipe")
+    mine = tmp_path / "mine"
+    if not is_new:
+        mine.mkdir()
+    assert main(["new", str(mine), "--exercise", str(exercise)]) == 2
+    message = capsys.readouterr().err
+    assert "pipe" in message
+    assert "None" not in message
+    assert not list(mine.iterdir()) if mine.exists() else is_new
+
+
+def test_an_exercise_that_may_not_be_read_is_its_authors(tmp_path, monkeypatch):
+    exercise = exercises.write(tmp_path / "ahead")
+
+    def refuse(path):
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr("pathlib.Path.is_file", refuse)
+    with pytest.raises(ExerciseError, match=r"cannot read the exercise .*ahead.*Permission denied"):
         load_exercise(exercise)
