@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from grader.exercise.check import Check, CheckFunction, Tolerances, judge
+from grader.exercise.check import Check, CheckFunction, Tolerances, judge, wrong_with
 from grader.exercise.loading import Exercise
 from grader.exercise.places import describe
 from grader.exercise.verdict import Evidence, Finding, Verdict
@@ -24,21 +24,24 @@ class Fault(NamedTuple):
 def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], list[Fault]]:
     """The verdicts on recordings, and what is wrong with the checks that made them."""
     faults: list[Fault] = []
+    runs = len(list(recordings))
 
     def watched(check: Check) -> CheckFunction:
         def function(recordings: Recordings, tolerances: Tolerances) -> Finding:
             try:
                 finding = check.function(recordings, tolerances)
-            except Exception as error:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:
                 faults.append(Fault(check.name, f"raises {describe(error, exercise.folder)}"))
                 return Finding(0, "The check raised an exception.")
-            if not isinstance(finding, Finding):
-                found = type(finding).__name__
-                faults.append(Fault(check.name, f"returns a {found}; expected a Finding"))
+            wrong = wrong_with(finding, runs)
+            if wrong:
+                faults.append(Fault(check.name, wrong))
                 return Finding(0, "The check returned no finding.")
-            wrong = list(_wrong_with(finding, exercise, recordings))
-            faults.extend(Fault(check.name, text) for text in wrong)
-            return finding if _is_share(finding.share) else Finding(0, "The share is none.")
+            odd = list(_odd_about(finding, exercise, recordings))
+            faults.extend(Fault(check.name, text) for text in odd)
+            return finding
 
         return function
 
@@ -53,30 +56,20 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
     return first, list(dict.fromkeys(faults))
 
 
-def _wrong_with(finding: Finding, exercise: Exercise, recordings: Recordings) -> Iterator[str]:
-    if not _is_share(finding.share):
-        yield f"share: expected a number from 0 to 1, found {finding.share!r}"
-        return
-    if not isinstance(finding.rationale, str) or not finding.rationale.strip():
+def _odd_about(finding: Finding, exercise: Exercise, recordings: Recordings) -> Iterator[str]:
+    if not finding.rationale.strip():
         yield "has an empty rationale: what was seen?"
-    if finding.share < 1 and not (isinstance(finding.help, str) and finding.help.strip()):
+    if finding.share < 1 and not finding.help.strip():
         yield "fails without help: what is there to look at?"
-    if not isinstance(finding.evidence, tuple):
-        yield f"evidence: expected a tuple, found a {type(finding.evidence).__name__}"
-        return
     for item in finding.evidence:
-        yield from _wrong_with_evidence(item, exercise, recordings)
+        yield from _odd_about_evidence(item, exercise, recordings)
 
 
-def _wrong_with_evidence(item: object, exercise: Exercise, recordings: Recordings) -> Iterator[str]:
-    if not isinstance(item, Evidence):
-        yield f"evidence: expected Evidence, found a {type(item).__name__}"
-        return
-    runs = list(recordings)
+def _odd_about_evidence(
+    item: Evidence, exercise: Exercise, recordings: Recordings
+) -> Iterator[str]:
     scene = load_scene(exercise.scene)
-    if item.run not in range(len(runs)):
-        yield f"evidence: there is no run {item.run}; there are {len(runs)}, from 0 on"
-    elif not 0 <= item.tick <= runs[item.run].run.ticks:
+    if item.tick > list(recordings)[item.run].run.ticks:
         yield f"evidence: tick {item.tick} is outside the recording"
     elif abs(item.time_s - item.tick * scene.tick_ns / 1e9) > 0.001:
         yield f"evidence: time_s is not that of the tick: {item.time_s} s at tick {item.tick}"
@@ -85,8 +78,3 @@ def _wrong_with_evidence(item: object, exercise: Exercise, recordings: Recording
         yield f"evidence: the place ({item.x}, {item.y}) is outside the picture"
     if not item.note:
         yield "evidence: has an empty note"
-
-
-def _is_share(share: object) -> bool:
-    """A number from 0 to 1."""
-    return isinstance(share, int | float) and not isinstance(share, bool) and 0 <= share <= 1 + 1e-9

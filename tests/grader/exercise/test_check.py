@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 
 from grader.errors import CheckFailed
 from grader.exercise.check import Checks, judge
-from grader.exercise.verdict import Finding
+from grader.exercise.verdict import Evidence, Finding
 from grader.recording.recording import Recordings
 from grader.testing import drive
 
@@ -84,3 +88,102 @@ def test_an_exception_in_a_check_is_the_exercise_s_with_its_file_and_line():
     assert "'divides' failed itself" in error.value.message
     assert "test_check.py, line" in error.value.message
     assert error.value.message.endswith("ZeroDivisionError: division by zero")
+
+
+@pytest.mark.parametrize("error", [SystemExit(0), GeneratorExit()])
+def test_a_check_cannot_end_the_grader(error):
+    checks = Checks()
+
+    @checks()
+    def ends(recordings, tolerances):
+        """It ends."""
+        raise error
+
+    with pytest.raises(CheckFailed, match=r"'ends' failed itself.*test_check\.py, line \d+: "):
+        verdicts(checks, {"ends": 1})
+
+
+def returning(result):
+    checks = Checks()
+
+    @checks()
+    def returns(recordings, tolerances):
+        """It returns."""
+        return result
+
+    return checks
+
+
+HERE = Evidence(1, 0.016, 5.5, 5.5, "here")
+
+
+@pytest.mark.parametrize(
+    ("result", "words"),
+    [
+        (None, "returns a NoneType; expected a Finding"),
+        (True, "returns a bool"),
+        (Finding("1", "seen"), "share: expected a number from 0 to 1, found '1'"),
+        (Finding(True, "seen"), "share: expected"),
+        (Finding(2, "seen"), "share: expected"),
+        (Finding(-0.1, "seen"), "share: expected"),
+        (Finding(float("nan"), "seen"), "share: expected"),
+        (Finding(1, None), "rationale: expected a text, found None"),
+        (Finding(0, "seen", 3), "help: expected a text, found 3"),
+        (Finding(1, "seen", evidence=[HERE]), "evidence: expected a tuple, found a list"),
+        (Finding(1, "seen", evidence=("x",)), "evidence: expected Evidence, found a str"),
+        (Finding(1, "s", evidence=(replace(HERE, tick=1.5),)), "evidence: tick: expected"),
+        (Finding(1, "s", evidence=(replace(HERE, time_s="1"),)), "evidence: time_s: expected"),
+        (Finding(1, "s", evidence=(replace(HERE, note=None),)), "evidence: note: expected"),
+        (Finding(1, "s", evidence=(replace(HERE, run=1),)), "evidence: there is no run 1"),
+    ],
+)
+def test_what_is_no_finding_is_told_with_its_check_and_file(result, words):
+    with pytest.raises(CheckFailed) as error:
+        verdicts(returning(result), {"returns": 1})
+    assert "'returns'" in error.value.message
+    assert f"test_check.py: {words}" in error.value.message
+
+
+def test_a_finding_that_points_nowhere_is_one():
+    nowhere = replace(HERE, x=float("nan"))
+    assert verdicts(returning(Finding(1, "seen", evidence=(nowhere,))), {"returns": 1})
+
+
+def test_a_check_must_take_recordings_and_tolerances():
+    with pytest.raises(TypeError, match=r"one: expected \(recordings, tolerances\), found \(rec"):
+
+        @Checks()()
+        def one(recordings):
+            """It takes too little."""
+
+
+def test_a_name_is_that_of_one_check_only():
+    checks = an_exercise(1)
+    with pytest.raises(ValueError, match="two checks are named 'first'"):
+
+        @checks()
+        def first(recordings, tolerances):
+            """Another first one."""
+
+
+def test_after_is_a_tuple_and_the_decorator_has_brackets():
+    with pytest.raises(TypeError, match="after: expected a tuple of names, found 'first'"):
+        an_exercise(1)(after="first")
+    with pytest.raises(TypeError, match=r"write @checks\(\)"):
+        Checks()(an_exercise)
+
+
+def test_a_check_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_path, capsys):
+    checks = Checks()
+
+    @checks()
+    def wanders(recordings, tolerances):
+        """It wanders."""
+        print("so far")
+        os.chdir(tmp_path)
+        return Finding(1, "seen")
+
+    before = Path.cwd()
+    verdicts(checks, {"wanders": 1})
+    assert Path.cwd() == before
+    assert capsys.readouterr() == ("", "so far\n")

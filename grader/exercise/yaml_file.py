@@ -1,0 +1,104 @@
+"""A YAML file that an author wrote: strictly read, and every mistake told with file and line."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from grader.errors import ExerciseError
+
+#: Where a value stands in a file: the keys that lead to it.
+Keys = tuple[str, ...]
+
+
+class Mistake(ExerciseError):
+    """Something wrong with the value at some keys: 'limits: rest_s: expected ...'."""
+
+    def __init__(self, keys: Keys, text: str) -> None:
+        super().__init__(": ".join((*keys, text)))
+        self.keys = keys
+
+
+@dataclass(frozen=True)
+class YamlFile:
+    """What a file says.
+
+    Attributes:
+        name: the file's, without its folder.
+        data: its content.
+        lines: in which line the keys of the mappings stand, from 1.
+    """
+
+    name: str
+    data: Any
+    lines: Mapping[Keys, int] = field(default_factory=dict)
+
+    def told(self, mistake: Mistake) -> str:
+        """A mistake with the file, and the line of the nearest key that stands in it."""
+        keys = mistake.keys
+        while keys and keys not in self.lines:
+            keys = keys[:-1]
+        line = f", line {self.lines[keys]}" if keys else ""
+        return f"{self.name}{line}: {mistake.message}"
+
+
+def read_yaml(path: Path) -> YamlFile:
+    """Read a file.
+
+    Raises:
+        ExerciseError: it is no YAML, or a key stands in it twice.
+        OSError: it cannot be read.
+    """
+    raw = path.read_bytes()
+    try:
+        text = raw.decode("utf-8-sig")
+        loader = yaml.SafeLoader(text)
+        root = loader.get_single_node()
+        lines = dict(_lines(root, ())) if root is not None else {}
+        data = loader.construct_document(root) if root is not None else None
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise ExerciseError(f"{path.name}, line {line}: it is not UTF-8") from None
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 1
+        raise ExerciseError(f"{path.name}, line {line}: {error.problem}") from None
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        what = f"the character {error.character!r}"
+        raise ExerciseError(f"{path.name}, line {line}: {what} is not allowed") from None
+    except RecursionError:
+        raise ExerciseError(f"{path.name}: it is nested too deeply") from None
+    except (yaml.YAMLError, ValueError) as error:
+        raise ExerciseError(f"{path.name}: {str(error).splitlines()[0]}") from None
+    except ExerciseError as error:
+        raise ExerciseError(f"{path.name}, {error.message}") from None
+    return YamlFile(path.name, data, lines)
+
+
+def _lines(node: yaml.Node, above: Keys) -> Iterator[tuple[Keys, int]]:
+    """Where the keys of mappings stand; those in lists are not asked for, but looked through."""
+    todo: list[tuple[yaml.Node, Keys]] = [(node, above)]
+    seen: set[int] = set()  # an alias leads to the same node again, or into itself
+    while todo:
+        node, above = todo.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            todo += [(item, (*above, "")) for item in node.value]
+        if not isinstance(node, yaml.MappingNode):
+            continue
+        keys: set[Hashable] = set()
+        for key, value in node.value:
+            line = key.start_mark.line + 1
+            if not isinstance(key, yaml.ScalarNode):
+                continue
+            if key.value in keys and not key.tag.endswith(":merge"):
+                raise ExerciseError(f"line {line}: the key {key.value!r} stands here twice")
+            keys.add(key.value)
+            yield (*above, key.value), line
+            todo.append((value, (*above, key.value)))
