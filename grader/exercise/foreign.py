@@ -7,6 +7,7 @@ import os
 import sys
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 # Standard output and the current folder belong to the whole process; two that change them and
 # change them back at the same time would leave them changed.
@@ -22,7 +23,7 @@ def contained() -> Iterator[None]:
     """
     with _one_at_a_time, contextlib.redirect_stdout(sys.stderr):
         try:
-            before = os.getcwd()
+            before = str(Path.cwd())
         except OSError:  # it was deleted
             before = ""
         try:
