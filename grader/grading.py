@@ -183,6 +183,8 @@ def _record(
 ) -> Recordings:
     if time not in RUNNERS:
         raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
+    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
+        raise UsageError(f"seed: expected a whole number, found {seed!r}")
     return run_all(submission, exercise, RUNNERS[time], seed=seed, progress=progress)
 
 

@@ -24,7 +24,9 @@ def below(package: str, *names: str) -> set[str]:
 
 
 #: What every station of the grader may import.
-GROUND = below("grader", "errors", "text", "files", "locks", "scratch", "system", "requirements")
+GROUND = below(
+    "grader", "errors", "text", "files", "locks", "scratch", "system", "requirements", "strict_json"
+)
 STATIONS = below(
     "grader",
     "submission",

@@ -12,12 +12,16 @@ from argparse import Namespace
 from collections.abc import Sequence
 from typing import Any
 
-from rich.console import Console
-from rich.markup import escape
+try:  # this takes half a second, in which somebody may think better of it
+    from rich.console import Console
+    from rich.markup import escape
 
-from grader.cli import check, check_exercise, error_file, new, report, run
-from grader.errors import CheckFailed, GraderError, GraderFailure, UsageError
-from grader.run.processes import watched
+    from grader.cli import check, check_exercise, error_file, new, report, run
+    from grader.errors import CheckFailed, GraderError, GraderFailure, UsageError
+    from grader.run.processes import watched
+except KeyboardInterrupt:
+    print("grader: interrupted", file=sys.stderr)
+    sys.exit(130)
 
 VERBS: dict[str, Any] = {
     **{"run": run, "check": check, "report": report, "new": new},

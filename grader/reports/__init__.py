@@ -70,7 +70,7 @@ def read(path: Path, checks: Sequence[str] = ()) -> Report | ErrorReport:
     data = json_file.read(path)
     if isinstance(data, dict) and str(data.get("schema")).startswith(error.FAMILY):
         made = json_file.made(ErrorResult.from_json, path, data)
-        return ErrorReport(made, path.parent, checks)
+        return ErrorReport(made, path.parent, checks, path)
     result = json_file.made(Result.from_file, path, data)
     return Report(result, Beside(result, path.parent))
 

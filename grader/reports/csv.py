@@ -75,9 +75,9 @@ def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
     max_score = "" if report.max_score is None else text.number(report.max_score)
     what = _cell(text.clip(report.message, 300))
     return [
-        *("", "", score, max_score),
+        *(_cell(report.name), "", score, max_score),
         *[""] * (2 * len(checks)),
-        *(report.title.lower(), what, "", "", _cell(str(report.folder))),
+        *(report.title.lower(), what, "", "", _cell(str(report.file or report.folder))),
     ]
 
 

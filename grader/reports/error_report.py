@@ -31,21 +31,37 @@ class ErrorReport:
         error: the error.
         folder: where its file lies.
         checks: the names of the exercise's checks, for formats that have a score for each.
+        file: the error file; None where there is none.
 
     Attributes:
         is_judged: whether it is the student's turn, so that there is a score: 0.
         message: what was found, what was expected, what to do; may have several lines.
         max_score: the exercise's points; None where they are not known.
-        folder, checks: as above.
+        folder, checks, file: as above.
     """
 
-    def __init__(self, error: ErrorResult, folder: Path, checks: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        error: ErrorResult,
+        folder: Path,
+        checks: Sequence[str] = (),
+        file: Path | None = None,
+    ) -> None:
         self.is_judged = error.whose == "submission"
         self.whose = error.whose
         self.message = text.clip_middle(text.plain(error.message).strip(), _TEXT_LIMIT)
         self.max_score = None if error.max_score is None else float(error.max_score)
         self.folder = folder
         self.checks = tuple(checks)
+        self.file = file
+
+    @property
+    def name(self) -> str:
+        """Whose it may be, among those of a class: alice for alice.json and alice/error.json."""
+        if self.file is None:
+            return ""
+        file = self.file
+        return text.one_line(text.plain(file.parent.name if file.stem == "error" else file.stem))
 
     @property
     def title(self) -> str:

@@ -22,7 +22,7 @@ from grader.scenes.scene import Start
 #: What the schemas of all versions begin with.
 FAMILY = "turtlesim-grader/result/"
 SCHEMA = f"{FAMILY}v1"
-#: A total is rounded to hundredths, its parts need not be; floats add up with a rest [points].
+#: A total is rounded to hundredths, its parts need not be [points].
 ROUNDING = 0.01 + 1e-9
 
 

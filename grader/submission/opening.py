@@ -22,7 +22,7 @@ from pathlib import Path
 from sys import stdlib_module_names
 from typing import Final
 
-from grader.errors import SubmissionError
+from grader.errors import SubmissionError, UsageError
 from grader.scratch import make_folder
 from grader.submission.archive import unpack
 from grader.submission.entry_points import (
@@ -96,6 +96,7 @@ def open_submission(path: Path, executable: str | None = None) -> Iterator[Submi
 
     Raises:
         SubmissionError: there is nothing to start, or no way to tell what.
+        UsageError: there is no such path; or a choice is asked for where there is none.
     """
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
@@ -123,6 +124,13 @@ def _open(path: Path, executable: str | None, scratch: Path) -> Submission:
     if not path.is_file():
         raise SubmissionError(f"{name} is not an ordinary file. {HAND_IN}")
     if is_python:
+        if executable is not None and executable not in (path.stem, path.name):
+            raise UsageError(
+                _clean(
+                    f"there is no {executable!r} in {name}: a single .py file is itself what is "
+                    "started, and there is nothing to choose. Leave out --executable."
+                )
+            )
         folder = path.parent.resolve()
         return _from_file(HandedIn(name, folder), folder / path.name)
     unpacked = scratch / "unpacked"
@@ -146,13 +154,13 @@ def _advice(path: Path) -> str:
     return f"Only Python can be graded. {HAND_IN}" if kind in _CPP else HAND_IN
 
 
-def _missing(path: Path) -> SubmissionError:
+def _missing(path: Path) -> UsageError:
     folder = path.parent
     if not folder.is_dir():
-        return SubmissionError(f"{path} does not exist: there is no folder {folder}.")
+        return UsageError(_clean(f"{path} does not exist: there is no folder {folder}."))
     meant = near(path.name, sorted(entry.name for entry in folder.iterdir()))
     advice = f"Did you mean {listed(meant)}?" if meant else "Check the name and the folder."
-    return SubmissionError(f"{path} does not exist. {advice}")
+    return UsageError(_clean(f"{path} does not exist. {advice}"))
 
 
 def _unreadable(path: Path, error: OSError) -> SubmissionError:

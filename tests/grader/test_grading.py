@@ -179,3 +179,9 @@ def test_importing_it_costs_nothing_until_something_is_asked_for():
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", LAZY], env=env, capture_output=True, text=True)
     assert done.stdout == "well\n", done.stderr
+
+
+@pytest.mark.parametrize("seed", ["a", 1.5, True])
+def test_a_seed_that_is_no_whole_number_is_refused(drives, seed):
+    with pytest.raises(UsageError, match="seed: expected a whole number"):
+        grader.grade(drives, seed=seed)

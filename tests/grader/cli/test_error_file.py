@@ -32,11 +32,12 @@ def said(path):
 
 
 def test_an_unusable_submission_is_the_students(tmp_path, error, capsys):
-    missing = tmp_path / "missing.py"
-    assert main(["run", str(missing), "--error-json", str(error)]) == 2
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    assert main(["run", str(empty), "--error-json", str(error)]) == 2
     whose, message, max_score = said(error)
     assert (whose, max_score) == ("submission", 100)
-    assert message.startswith(f"{missing} does not exist.")
+    assert message.startswith("empty is an empty folder.")
     assert message in capsys.readouterr().err
 
 
@@ -63,6 +64,7 @@ def test_a_mistake_in_the_exercise_is_its_authors(tmp_path, error):
         (["run", "--nonsense"], "required: submission", None),
         (["run", "x.py", "--nonsense", "--exercise", "square"], "--nonsense", 100),
         (["run", "x.py", "--time", "mine"], "invalid choice: 'mine'", None),
+        (["run", "missing.py"], "missing.py does not exist", 100),
         (["check", "missing"], "missing does not exist", 100),
         (["report", "missing.json"], "cannot read the result missing.json", None),
         (["new", "/dev/null"], "is a file", 100),
@@ -134,7 +136,7 @@ def test_a_report_of_an_error_is_no_error(tmp_path, error, capsys):
     assert main(["run", str(tmp_path / "x.py"), "--error-json", str(error)]) == 2
     other = tmp_path / "other.json"
     assert main(["report", str(error), "--error-json", str(other)]) == 0
-    assert capsys.readouterr().out.startswith("Cannot be graded.\n")
+    assert capsys.readouterr().out.startswith("Not graded.\n")
     assert not other.exists()
 
 

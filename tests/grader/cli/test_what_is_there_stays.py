@@ -73,3 +73,10 @@ def test_an_empty_file_and_one_of_ours_are_replaced(here):
     assert main(["check", "recording", "--json", "rr.json"]) == 0
     assert (here / "rr.json").read_bytes() == (here / "empty.json").read_bytes()
     assert main(["report", "rr.json", "--format", "csv", "--out", "notes.txt"]) == 0
+
+
+def test_a_folder_that_cannot_be_made_is_told_and_no_traceback(here, capsys):
+    assert main(["run", "s.py", "--out", "/proc/x"]) == 2
+    message = capsys.readouterr().err
+    assert "/proc/x" in message
+    assert "Traceback" not in message

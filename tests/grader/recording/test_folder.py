@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sqlite3
 from dataclasses import replace
 from pathlib import Path
@@ -229,6 +230,11 @@ def test_the_version_is_checked(folder):
         {"run__outcome": "splendid"},
         {"run__flags": "odd"},
         {"run__unheard_of": 1},
+        {"run__trace_sha256": "ab" * 32},
+        {"run__ticks": 10**9},
+        {"run__ticks": 10**9, "run__simulated_s": 16_000_000.0},
+        {"run__simulated_s": float("nan")},
+        {"start": {"x": float("inf"), "y": 0.0, "theta": 0.0}},
         {"run": None},
         {"start": {"x": 1.0}},
         {"topics": [3]},
@@ -239,6 +245,28 @@ def test_the_version_is_checked(folder):
 def test_facts_of_the_wrong_kind_are_an_error(folder, values):
     change(folder / "run.json", **values)
     assert "damaged" in refused(folder)
+
+
+@pytest.mark.parametrize("wall_s", ["NaN", "-Infinity", "1e999"])
+def test_a_number_that_is_none_is_an_error(folder, wall_s):
+    (folder / CIRCUMSTANCES).write_text(f'{{"wall_s": {wall_s}}}')
+    assert f"{CIRCUMSTANCES} is damaged" in refused(folder)
+
+
+def test_an_unknown_key_is_named(folder):
+    change(folder / "run.json", run__unheard_of=1)
+    text = refused(folder)
+    assert "unheard_of" in text
+    assert "__init__" not in text
+
+
+@pytest.mark.parametrize(
+    "name", ["recording.mcap", "metadata.yaml", "run.json", "output.txt", CIRCUMSTANCES]
+)
+def test_a_pipe_is_refused_and_not_waited_for(folder, name):
+    (folder / name).unlink()
+    os.mkfifo(folder / name)
+    assert f"{name} is damaged: it is no ordinary file" in refused(folder)
 
 
 def test_a_scene_that_is_not_known_is_named(folder):

@@ -77,12 +77,11 @@ def test_every_kind_of_input_survives_in_its_order(tmp_path):
 
 
 def test_the_facts_about_a_run_survive(recorded, tmp_path):
-    run = Run(
-        "virtual", "crashed", -11, 3, 0.048, 1.5, "ab" * 32, "ROS domain 77", ("odd", "ü"), 42, "i"
-    )
+    ticks, simulated_s = recorded.run.ticks, recorded.run.simulated_s
+    told = ("ROS domain 77", ("odd", "ü"), 42, "i")
+    run = Run("virtual", "crashed", -11, ticks, simulated_s, 1.5, recorded.run.trace_sha256, *told)
     changed = replace(
         recorded,
-        trace=replace(recorded.trace, ticks=run.ticks),
         run=run,
         start=Start(1.25, math.pi, -0.1),
         topics=(PublishedTopic("/a", "b/msg/C"),),
@@ -101,7 +100,7 @@ def test_a_recording_without_a_single_tick_survives(recorded, tmp_path):
         logs=(),
         trajectories={"a": Trajectory.of_rows(np.zeros((0, 9)))},
     )
-    empty = replace(recorded, trace=nothing, run=Run())
+    empty = replace(recorded, trace=nothing, run=Run(trace_sha256=nothing.sha256()))
     storage.save(empty, tmp_path)
     assert_same(storage.load(tmp_path), empty)
 
@@ -157,12 +156,18 @@ def test_varied_runs_come_back_in_their_order(tmp_path):
 @st.composite
 def odd_recordings(draw) -> Recording:
     trace = draw(odd_traces())
+    finite = st.floats(allow_nan=False, allow_infinity=False)
     return Recording(
         trace=trace,
         topics=tuple(draw(st.lists(st.builds(PublishedTopic, texts, texts), max_size=3))),
         output=draw(st.text()),
-        run=Run(ticks=trace.ticks, seed=draw(st.none() | st.integers())),
-        start=draw(st.none() | st.builds(Start, *[st.floats(allow_nan=False)] * 3)),
+        run=Run(
+            ticks=trace.ticks,
+            simulated_s=trace.simulated_s,
+            trace_sha256=trace.sha256(),
+            seed=draw(st.none() | st.integers()),
+        ),
+        start=draw(st.none() | st.builds(Start, finite, finite, finite)),
     )
 
 

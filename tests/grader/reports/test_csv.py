@@ -5,7 +5,8 @@ import io
 
 import pytest
 
-from grader.reports import csv
+from grader.reports import csv, read
+from grader.result.error import ErrorResult
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 
@@ -39,3 +40,11 @@ def test_a_line_break_in_a_name_makes_no_row():
     content = csv.render(samples.report(submission='a\nb,"c"'))
     assert content.count("\n") == 2
     assert rows(samples.report(submission='a\nb,"c"'))[0]["submission"] == 'a b,"c"'
+
+
+@pytest.mark.parametrize("file", ["alice.json", "alice/error.json"])
+def test_an_error_tells_which_file_it_is_from(tmp_path, file):
+    path = tmp_path / file
+    ErrorResult("submission", "hand in a file", 100.0).write(path)
+    (row,) = rows(read(path))
+    assert (row["submission"], row["folder"]) == ("alice", str(path))

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 
+from grader import reports
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Evidence, Verdict
@@ -88,6 +89,39 @@ def test_what_does_not_follow_the_schema_is_refused(tmp_path, change):
     path.write_text(json.dumps(samples.result() | change))
     with pytest.raises(UsageError, match=r"x\.json is no result of"):
         Result.read(path)
+
+
+def test_a_mark_at_the_start_of_the_file_does_no_harm(tmp_path):
+    path = tmp_path / "x.json"
+    path.write_text(json.dumps(samples.result()), encoding="utf-8-sig")
+    assert Result.read(path) == Result.from_json(samples.result())
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"score": 5}, "its score is 5, that of its verdicts 10"),
+        ({"max_score": 20}, "its max_score is 20, that of its verdicts 10"),
+        ({"verdicts": [samples.verdict("a")] * 2}, "two verdicts of the check 'a'"),
+        ({"score": float("nan")}, "NaN is no number"),
+        ({"score": 10**400}, "is no number"),
+    ],
+)
+def test_what_somebody_has_changed_is_refused(tmp_path, change, why):
+    path = tmp_path / "x.json"
+    path.write_text(json.dumps(samples.result(samples.verdict("a")) | change))
+    for read in (Result.read, reports.read):
+        with pytest.raises(UsageError, match=r"x\.json is .*damaged") as error:
+            read(path)
+        assert why in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["result", "error"])
+def test_another_version_is_told(tmp_path, name):
+    path = tmp_path / "x.json"
+    path.write_text(json.dumps({"schema": f"turtlesim-grader/{name}/v9"}))
+    with pytest.raises(UsageError, match=f"of another version, turtlesim-grader/{name}/v9"):
+        reports.read(path)
 
 
 @pytest.mark.parametrize("text", ["{", "", "[" * 100_000, "\udcff"])

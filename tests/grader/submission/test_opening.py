@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.errors import SubmissionError
+from grader.errors import SubmissionError, UsageError
 from grader.submission.folder import HAND_IN
 from grader.submission.opening import (
     EntryPoint,
@@ -53,7 +53,7 @@ def found_in(path: Path, executable: str | None = None) -> Submission:
 
 
 def refused(path: Path, executable: str | None = None) -> str:
-    with pytest.raises(SubmissionError) as error, open_submission(path, executable):
+    with pytest.raises((SubmissionError, UsageError)) as error, open_submission(path, executable):
         pass
     assert "Traceback" not in str(error.value)
     return str(error.value)
@@ -201,7 +201,23 @@ def test_a_zip_may_hold_one_file(tmp_path: Path) -> None:
     assert submission.start == EntryPoint("node", "main")
 
 
+def test_a_single_file_leaves_nothing_to_choose(tmp_path: Path) -> None:
+    lay(tmp_path, {"node.py": NODE})
+    for name in ("node", "node.py"):
+        assert found_in(tmp_path / "node.py", name) == found_in(tmp_path / "node.py")
+    with (
+        pytest.raises(UsageError, match="there is nothing to choose"),
+        open_submission(tmp_path / "node.py", "zz"),
+    ):
+        pass
+
+
 # refusals
+
+
+def test_a_path_that_does_not_exist_is_the_callers_mistake(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="does not exist"), open_submission(tmp_path / "a.py"):
+        pass
 
 
 def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path: Path) -> None:
