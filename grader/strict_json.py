@@ -17,8 +17,9 @@ def loads(text: str) -> Any:
         ValueError: it is no JSON, or a number in it is none that can be computed with.
         RecursionError: it is nested too deeply.
     """
-    numbers = {"parse_float": _finite(float), "parse_int": _finite(int)}
-    return json.loads(text, parse_constant=_refuse, **numbers)
+    return json.loads(
+        text, parse_constant=_refuse, parse_float=_finite(float), parse_int=_finite(int)
+    )
 
 
 def _finite(make: Callable[[str], _Number]) -> Callable[[str], _Number]:
