@@ -15,12 +15,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.check import Checks
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
+from grader.exercise.yaml_file import Mistake, YamlFile, read_yaml
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Limits, Start
@@ -31,6 +30,8 @@ KEYS = (
     *("exercise", "title", "scene", "limits", "varied_runs", "points", "tolerances", "starter"),
 )
 LIMITS = ("first_motion_s", "rest_s", "total_s")
+#: Each is a whole run of every submission.
+MOST_RUNS = 100
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 _NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
@@ -125,7 +126,11 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
 
 def _from_place(place: Place) -> Exercise:
     try:
-        return _build(_described(place), place)
+        file = _read(place.description)
+        try:
+            return _build(_described(file, place), place)
+        except Mistake as mistake:
+            raise ExerciseError(file.told(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(f"cannot read {place.description}: {error.strerror}") from None
     except (ExerciseError, ValueError) as error:
@@ -137,8 +142,11 @@ def _from_file(path: Path) -> Exercise:
         return _from_place(places.in_folder(path.parent))
     try:
         edited = _read(path)
-        place, original = _original(edited.get("exercise"), path.parent)
-        return _build(_merged(original, edited), place)
+        try:
+            place, original = _original(edited.data.get("exercise"), path.parent)
+            return _build(_merged(original, edited.data), place)
+        except Mistake as mistake:
+            raise ExerciseError(edited.told(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(f"cannot read the exercise {path}: {error.strerror}") from None
     except (ExerciseError, ValueError) as error:
@@ -149,49 +157,51 @@ def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
     """What an edited copy in a folder is a copy of."""
     if all((folder / file).is_file() for file in (DESCRIPTION, CHECKS)):
         beside = places.in_folder(folder)
-        described = _described(beside)
+        file = _read(beside.description)
+        try:
+            described = _described(file, beside)
+        except Mistake as mistake:  # of another file than the one that is being read
+            raise ExerciseError(file.told(mistake)) from mistake
         if described["exercise"] == name:
             return beside, described
     if not isinstance(name, str) or name not in names():
-        raise ExerciseError(f"exercise: expected one of {', '.join(names())}, found {name!r}")
+        raise Mistake(
+            ("exercise",),
+            f"expected one of {', '.join(names())}, found {name!r}. An edited copy of an exercise "
+            f"that is not installed must lie in that exercise's own folder",
+        )
     place = places.installed(name)
-    return place, _described(place)
+    return place, _described(_read(place.description), place)
 
 
-def _described(place: Place) -> dict[str, Any]:
+def _described(file: YamlFile, place: Place) -> dict[str, Any]:
     """The exercise.yaml of an exercise, which must be whole."""
-    data = _read(place.description)
+    data: dict[str, Any] = file.data
     for key in ("exercise", "title", "limits", "points"):
         if key not in data:
-            raise ExerciseError(f"{DESCRIPTION} has no {key!r}")
+            raise Mistake((), f"it has no {key!r}")
     for key in data:
         if key not in KEYS:
-            raise ExerciseError(f"{DESCRIPTION}: unknown {key!r}; there are {', '.join(KEYS)}")
+            raise Mistake((), f"unknown {key!r}; there are {', '.join(KEYS)}")
     name = data["exercise"]
     if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise ExerciseError(f"exercise: expected a name such as my_exercise, found {name!r}")
+        raise Mistake(("exercise",), f"expected a name such as my_exercise, found {name!r}")
     if place.name and name != place.name:
-        raise ExerciseError(
-            f"exercise: it is installed as {place.name!r}, and calls itself {name!r}"
+        raise Mistake(
+            ("exercise",), f"it is installed as {place.name!r}, and calls itself {name!r}"
         )
     if not place.name and name in names():
-        raise ExerciseError(
-            f"exercise: {name!r} is the name of an installed exercise; give yours another"
+        raise Mistake(
+            ("exercise",), f"{name!r} is the name of an installed exercise; give yours another"
         )
     return data
 
 
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except yaml.MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else "?"
-        raise ExerciseError(f"line {line}: {error.problem}") from None
-    except yaml.YAMLError as error:
-        raise ExerciseError(str(error).splitlines()[0]) from None
-    if not isinstance(data, dict):
-        raise ExerciseError("expected keys such as exercise, limits, points")
-    return data
+def _read(path: Path) -> YamlFile:
+    file = read_yaml(path)
+    if not isinstance(file.data, dict):
+        raise ExerciseError(f"{file.name}: expected keys such as exercise, limits, points")
+    return file
 
 
 def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
@@ -200,12 +210,12 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
     for part in ("limits", "tolerances", "varied_runs"):
         known, given = original.get(part) or {}, edited.get(part, {})
         if not isinstance(given, dict):
-            raise ExerciseError(f"{part}: expected names with numbers, found {given!r}")
+            raise Mistake((part,), f"expected names with numbers, found {given!r}")
         for key, value in given.items():
             if key not in known:
-                raise ExerciseError(f"{part}: unknown {key!r}; there are {', '.join(known)}")
+                raise Mistake((part,), f"unknown {key!r}; there are {', '.join(known)}")
             if not _alike(value, known[key]):
-                raise ExerciseError(f"{part}: {key}: expected e.g. {known[key]!r}, found {value!r}")
+                raise Mistake((part, key), f"expected e.g. {known[key]!r}, found {value!r}")
         merged[part] = {**known, **given}
     return merged
 
@@ -227,21 +237,25 @@ def _is_amount(value: object) -> bool:
 def _build(data: dict[str, Any], place: Place) -> Exercise:
     scene = data.get("scene", "turtlesim")
     if scene not in SCENES:
-        raise ExerciseError(f"scene: expected one of {', '.join(SCENES)}, found {scene!r}")
+        raise Mistake(("scene",), f"expected one of {', '.join(SCENES)}, found {scene!r}")
     limits = _numbers(data, "limits", dict.fromkeys(LIMITS, 1.0))
     missing = [key for key in LIMITS if key not in limits]
     if missing:
-        raise ExerciseError(f"limits: {missing[0]} is missing; there must be {', '.join(LIMITS)}")
-    varied = _numbers(data, "varied_runs", VARIED)
+        raise Mistake(("limits",), f"{missing[0]} is missing; there must be {', '.join(LIMITS)}")
+    for key in ("first_motion_s", "total_s"):
+        if not limits[key]:
+            raise Mistake(("limits", key), "expected a number above 0, found 0")
+    varied = VariedRuns(**_numbers(data, "varied_runs", VARIED))
+    _check_varied(varied, load_scene(scene).farthest_start_m)
     tolerances = data.get("tolerances") or {}
     if not isinstance(tolerances, dict):
-        raise ExerciseError(f"tolerances: expected names with values, found {tolerances!r}")
+        raise Mistake(("tolerances",), f"expected names with values, found {tolerances!r}")
     checks = places.import_checks(place)
     return Exercise(
         name=data["exercise"],
         title=str(data["title"]),
         limits=Limits(**{key: float(value) for key, value in limits.items()}),
-        varied=VariedRuns(**varied),
+        varied=varied,
         points=_points(data["points"], checks),
         tolerances=tolerances,
         checks=checks,
@@ -251,48 +265,69 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     )
 
 
+def _check_varied(varied: VariedRuns, farthest_m: float) -> None:
+    """Refuse what gives runs that nobody can mean.
+
+    Args:
+        farthest_m: so far from the centre something can start in the scene.
+    """
+    part = "varied_runs"
+    if varied.count > MOST_RUNS:
+        raise Mistake((part, "count"), f"expected at most {MOST_RUNS}, found {varied.count}")
+    if varied.farthest_m > farthest_m:
+        text = f"expected at most {farthest_m:g}: there are walls; found {varied.farthest_m:g}"
+        raise Mistake((part, "farthest_m"), text)
+    if varied.nearest_m > varied.farthest_m:
+        text = f"expected at most farthest_m, {varied.farthest_m:g}; found {varied.nearest_m:g}"
+        raise Mistake((part, "nearest_m"), text)
+
+
 def _numbers(data: Mapping[str, Any], part: str, examples: Mapping[str, float]) -> dict[str, Any]:
     """A part of an exercise.yaml that holds numbers; whole ones where the example is whole."""
     given = data.get(part) or {}
     if not isinstance(given, dict):
-        raise ExerciseError(f"{part}: expected names with numbers, found {given!r}")
+        raise Mistake((part,), f"expected names with numbers, found {given!r}")
     for key, value in given.items():
         if key not in examples:
-            raise ExerciseError(f"{part}: unknown {key!r}; there are {', '.join(examples)}")
+            raise Mistake((part,), f"unknown {key!r}; there are {', '.join(examples)}")
         if not _is_amount(value) or (isinstance(examples[key], int) and value != int(value)):
             what = "a whole number" if isinstance(examples[key], int) else "a number"
-            raise ExerciseError(f"{part}: {key}: expected {what} from 0, found {value!r}")
+            raise Mistake((part, key), f"expected {what} from 0, found {value!r}")
     return {k: int(v) if isinstance(examples[k], int) else v for k, v in given.items()}
 
 
 def _starter(where: object, place: Place) -> Path | None:
     if where is None:
         return None
-    folder = places.locate(place.folder, str(where))
+    try:
+        folder = places.locate(place.folder, str(where))
+    except ExerciseError as error:
+        raise Mistake(("starter",), error.message) from None
     if not folder.is_dir():
-        raise ExerciseError(f"starter: expected a folder, found {folder}")
+        raise Mistake(("starter",), f"expected a folder, found {folder}")
     real = folder.resolve()
     package = str(where).partition("/")[0]
     roots = [place.folder]
     if package.isidentifier() and find_spec(package) is not None:
         roots.append(Path(str(files(package))))
     if not any(root.resolve() in (real, *real.parents) for root in roots) or real == roots[0]:
-        raise ExerciseError(
-            f"starter: expected a folder inside {place.folder}, or PACKAGE/FOLDER inside an "
-            f"installed package, found {where!r}, which is {real}"
+        raise Mistake(
+            ("starter",),
+            f"expected a folder inside {place.folder}, or PACKAGE/FOLDER inside an "
+            f"installed package, found {where!r}, which is {real}",
         )
     return folder
 
 
 def _points(points: object, checks: Checks) -> dict[str, float]:
     if not isinstance(points, dict) or not points:
-        raise ExerciseError("points: expected check names with points")
+        raise Mistake(("points",), "expected check names with points")
     known = [check.name for check in checks]
     for check, value in points.items():
         if check not in known:
-            raise ExerciseError(
-                f"points: no check is named {check!r}; there are {', '.join(known)}"
-            )
+            raise Mistake(("points",), f"no check is named {check!r}; there are {', '.join(known)}")
         if not _is_amount(value):
-            raise ExerciseError(f"points: {check}: expected a number from 0, found {value!r}")
+            raise Mistake(("points", str(check)), f"expected a number from 0, found {value!r}")
+    if not any(points.values()):
+        raise Mistake(("points",), "all are 0")
     return {check: float(value) for check, value in points.items()}

@@ -10,6 +10,8 @@ from __future__ import annotations
 import importlib
 import importlib.machinery
 import importlib.util
+import opcode
+import re
 import sys
 import threading
 import traceback
@@ -24,10 +26,13 @@ from types import ModuleType
 
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
+from grader.exercise.foreign import contained
 
 GROUP = "grader.exercises"
 DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
 
+#: What the package of a folder that is in none is called, with a number.
+_PACKAGE = "_grader_exercise_"
 _numbers = count(1)
 _importing = threading.Lock()
 
@@ -85,12 +90,23 @@ def in_folder(folder: Path) -> Place:
     """
     for name in (DESCRIPTION, CHECKS):
         if not (folder / name).is_file():
-            raise ExerciseError(f"{folder} is no exercise: it has no {name}")
+            raise ExerciseError(f"{folder} is not an exercise: {_instead_of(folder / name)}")
     folder = folder.resolve()
     for name, ours in _ours().items():
         if ours.resolve() == folder:
             return installed(name)
     return Place(folder)
+
+
+def _instead_of(file: Path) -> str:
+    """What lies where a file should be."""
+    if file.is_symlink() and not file.exists():
+        return f"{file.name} is a link to {file.readlink()}, which is not there"
+    if file.is_dir():
+        return f"{file.name} is a folder, not a file"
+    if file.exists():
+        return f"{file.name} is not a regular file"
+    return f"it has no {file.name}"
 
 
 def import_checks(place: Place) -> Checks:
@@ -104,8 +120,8 @@ def import_checks(place: Place) -> Checks:
     if place.package:
         module = _imported(f"{place.package}.checks", place)
     else:
-        package = f"_grader_exercise_{next(_numbers)}"
-        with _importing, _without_bytecode():
+        package = f"{_PACKAGE}{next(_numbers)}"
+        with contained(), _importing, _without_bytecode():
             importlib.invalidate_caches()
             try:
                 _make_package(package, place.folder)
@@ -171,7 +187,9 @@ def _of_entry_point(point: EntryPoint) -> Place:
     package = spec.parent or ""
     for name in (DESCRIPTION, CHECKS):
         if not (folder / name).is_file():
-            raise ExerciseError(f"{_told(point)} is no exercise: {folder} has no {name}")
+            raise ExerciseError(
+                f"{_told(point)} is not an exercise: {folder}: {_instead_of(folder / name)}"
+            )
     return Place(folder, package, point.name)
 
 
@@ -194,38 +212,73 @@ def _make_package(name: str, folder: Path) -> None:
     sys.modules[name] = module
     if init.is_file():
         assert spec.loader is not None
-        with _told_as_the_author_s(folder):
+        with _told_as_the_author_s(folder, init.name):
             spec.loader.exec_module(module)
 
 
 def _imported(name: str, place: Place) -> ModuleType:
-    with _told_as_the_author_s(place.folder):
+    with contained(), _told_as_the_author_s(place.folder, CHECKS):
         return importlib.import_module(name)
 
 
 @contextmanager
-def _told_as_the_author_s(folder: Path) -> Iterator[None]:
-    """What goes wrong in the files of a folder, with file and line, as an ExerciseError."""
+def _told_as_the_author_s(folder: Path, file: str) -> Iterator[None]:
+    """What goes wrong in the files of a folder, with file and line, as an ExerciseError.
+
+    Args:
+        file: that is imported, for errors that do not know where they are.
+    """
     try:
         yield
-    except (Exception, SystemExit) as error:
-        raise ExerciseError(describe(error, folder)) from error
+    except BaseException as error:  # SystemExit too: a file must not end us unjudged
+        if isinstance(error, KeyboardInterrupt) and not _is_raised(error, folder):
+            raise
+        raise ExerciseError(describe(error, folder, file)) from error
 
 
-def describe(error: BaseException, folder: Path) -> str:
-    """An exception in the files of a folder: 'checks.py, line 3: NameError: ...'."""
+def _is_raised(error: BaseException, folder: Path) -> bool:
+    """Whether a statement `raise` in a file of the folder raised it, not a key on the keyboard."""
+    innermost = error.__traceback__
+    while innermost is not None and innermost.tb_next is not None:
+        innermost = innermost.tb_next
+    if innermost is None:
+        return False
+    code = innermost.tb_frame.f_code
+    raised = code.co_code[innermost.tb_lasti] == opcode.opmap["RAISE_VARARGS"]
+    return raised and Path(code.co_filename).is_relative_to(folder)
+
+
+def describe(error: BaseException, folder: Path, file: str = "") -> str:
+    """An exception in the files of a folder: 'checks.py, line 3: NameError: ...'.
+
+    Args:
+        file: in which it is if it does not know that itself.
+    """
     name = type(error).__name__
     if isinstance(error, SyntaxError) and error.filename:
         return f"{_shown(error.filename, folder)}, line {error.lineno}: {name}: {error.msg}"
     text = f"{name}: {error}" if str(error) else name
+    if isinstance(error, ImportError) and (absent := _absent(error, folder)):
+        text = f"{name}: there is no {absent} beside {CHECKS}"
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
     missing = getattr(error, "name", None) if isinstance(error, ModuleNotFoundError) else None
     if missing and (folder / f"{missing}.py").is_file():
         text += f". A file beside {CHECKS} is imported by `from . import {missing}`"
     if not own:
-        return text
+        return f"{file}: {text}" if file else text
     return f"{_shown(own[-1].filename, folder)}, line {own[-1].lineno}: {text}"
+
+
+def _absent(error: ImportError, folder: Path) -> str:
+    """The file beside checks.py that was imported from there and is not; '' for other errors."""
+    package, _, module = (error.name or "").partition(".")
+    if not package.startswith(_PACKAGE):
+        return ""
+    named = re.match(r"cannot import name '(\w+)'", str(error))  # `name_from` is new in 3.12
+    module = module or (named[1] if named else "")
+    is_there = (folder / f"{module}.py").is_file() or (folder / module).is_dir()
+    return "" if not module or "." in module or is_there else f"{module}.py"
 
 
 def _shown(file: str, folder: Path) -> str:

@@ -148,6 +148,10 @@ class Scene(Protocol):
     def plane(self) -> Plane:
         """How places become pixels."""
 
+    @property
+    def farthest_start_m(self) -> float:
+        """So far from the usual place something can start and still has room on every side."""
+
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Where varied runs start, so far from the usual place; the same for the same seed."""
 

@@ -24,11 +24,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-import yaml
-
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.loading import Exercise
+from grader.exercise.yaml_file import Mistake, read_yaml
 
 FILE_NAME = "mutants.yaml"
 
@@ -91,8 +90,11 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
     """
     path = path or exercise.folder / FILE_NAME
     try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        found = _solutions(data, path.parent, exercise)
+        file = read_yaml(path)
+        try:
+            found = _solutions(file.data, path.parent, exercise)
+        except Mistake as mistake:
+            raise ExerciseError(file.told(mistake)) from None
         for solution in found:
             if solution.changes:
                 solution.text()
@@ -101,16 +103,17 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
             f"cannot read the solutions of {exercise.name!r}, {path}: {error.strerror}. "
             f"Expected a {FILE_NAME} in the exercise's folder, or --mutants FILE."
         ) from None
-    except yaml.YAMLError as error:
-        raise ExerciseError(f"{path} is no YAML: {error}") from None
     except (ExerciseError, ValueError) as error:
-        raise ExerciseError(f"{path}: {error}") from None
+        raise ExerciseError(f"{path} cannot be used: {error}") from None
     return found
 
 
 def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]:
     if not isinstance(data, dict) or not isinstance(data.get("right"), dict) or not data["right"]:
         raise ExerciseError("right: expected names with paths of right solutions")
+    unknown = [key for key in data if key not in ("right", "mutants")]
+    if unknown:
+        raise Mistake((str(unknown[0]),), "unknown; there are right, mutants")
     right = [
         Solution(str(name), places.locate(folder, str(where)), is_right=True)
         for name, where in data["right"].items()

@@ -41,6 +41,7 @@ class Turtlesim:
     )
     thing: Final = "turtle"
     plane: Final = view.PLANE
+    farthest_start_m: Final = starts.FARTHEST_M
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Places round the centre of the window."""

@@ -8,6 +8,9 @@ import random
 from grader.scenes.scene import Start
 from turtlesim_py.world.turtle import SIZE_M
 
+#: From the centre to half a metre before a wall [m]; rounded, because authors read it.
+FARTHEST_M = round(SIZE_M / 2 - 0.5, 2)
+
 
 def starts(count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
     """Places at a distance from the centre; the same for the same seed."""

@@ -74,3 +74,50 @@ def test_a_syntax_error_is_named_with_its_line(tmp_path):
 def test_an_unknown_name_lists_the_known_ones():
     with pytest.raises(ExerciseError, match=NAME):
         load_exercise("chess")
+
+
+def said_of(tmp_path, text):
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(ExerciseError) as error:
+        load_exercise(path)
+    prefix = f"{path} is not an exercise: "
+    assert error.value.message.startswith(prefix)
+    assert "\n" not in error.value.message
+    return error.value.message.removeprefix(prefix)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("limits:\n  rest_s: 1\n  rest_s: 2", "line 4: the key 'rest_s' stands here twice"),
+        ("title: a\ntitle: b", "line 3: the key 'title' stands here twice"),
+        ("limits: {total_s: 0}", "line 2: limits: total_s: expected a number above 0"),
+        ("limits: {first_motion_s: 0}", "line 2: limits: first_motion_s: expected a number above"),
+        ("varied_runs:\n  nearest_m: 4", "line 3: varied_runs: nearest_m: expected at most"),
+        ("varied_runs: {farthest_m: 5.5}", "line 2: varied_runs: farthest_m: expected at most"),
+        ("varied_runs: {count: 1000000}", "line 2: varied_runs: count: expected at most 100"),
+        ("points: {moves: 0, spiral: 0}", "line 2: points: all are 0"),
+        ("points:\n  spiral: x", "line 3: points: spiral: expected a number from 0, found 'x'"),
+        ("starter: nowhere", "line 2: starter: there is no 'nowhere'"),
+        (b"title: caf\xe9", "line 2: it is not UTF-8"),
+        ("title: a\0", "line 2: the character"),
+        ("points: " + "[" * 5000, "it is nested too deeply"),
+        ("points: " + "{a: " * 5000, "it is nested too deeply"),
+    ],
+)
+def test_a_slip_is_told_with_file_and_line(tmp_path, text, words):
+    head = text if isinstance(text, bytes) else text.encode()
+    said = said_of(tmp_path, f"exercise: {NAME}\n".encode() + head)
+    assert said.startswith("mine.yaml")
+    assert words in said
+
+
+def test_an_alias_is_read_as_yaml_says(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"exercise: {NAME}\npoints: &p {{moves: 3}}\ntolerances: {{}}\n")
+    assert load_exercise(path).points == {"moves": 3}
+
+
+def test_a_copy_of_an_exercise_in_a_folder_must_lie_there(tmp_path):
+    assert "must lie in that exercise's own folder" in said_of(tmp_path, "exercise: corner\n")

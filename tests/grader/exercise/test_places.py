@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 import pytest
 import yaml
 
@@ -183,10 +186,63 @@ def test_an_installed_exercise_replaces_none_of_the_same_name(tmp_path, monkeypa
     [
         ("not_there_at_all", "is not there"),
         ("not_there.at_all", "cannot be imported"),
-        ("json", "is no exercise"),
+        ("json", "is not an exercise"),
     ],
 )
 def test_an_entry_point_that_leads_nowhere_is_told(tmp_path, monkeypatch, value, words):
     install(monkeypatch, tmp_path, "corner", value)
     with pytest.raises(ExerciseError, match=words):
         load_exercise("corner")
+
+
+@pytest.mark.parametrize(
+    ("checks", "words"),
+    [
+        ("x = 1\nraise KeyboardInterrupt\n", "checks.py, line 2: KeyboardInterrupt"),
+        ("raise BaseException('no')\n", "checks.py, line 1: BaseException: no"),
+        ("import sys\nsys.exit(0)\n", "checks.py, line 2: SystemExit: 0"),
+        ("from . import helper\n", "line 1: ImportError: there is no helper.py beside checks.py"),
+        ("from .helper import x\n", "ModuleNotFoundError: there is no helper.py beside checks.py"),
+        ("from .shape import other\n", "cannot import name 'other'"),
+        ("x = 1\0\n", "checks.py: SyntaxError: source code string cannot contain null bytes"),
+        ("x = '\udce9'\n", "checks.py"),
+        (CHECKS.replace("@checks()", "@checks"), "checks.py, line 7: TypeError: write @checks()"),
+    ],
+)
+def test_what_goes_wrong_in_its_files_is_told_with_the_file(tmp_path, checks, words):
+    folder = write(tmp_path)
+    (folder / "checks.py").write_text(checks, errors="surrogateescape")
+    with pytest.raises(ExerciseError) as error:
+        load_exercise(folder)
+    assert words in error.value.message
+
+
+def test_a_key_on_the_keyboard_is_not_the_exercise_s(tmp_path):
+    checks = "import signal\nsignal.raise_signal(signal.SIGINT)\n"
+    with pytest.raises(KeyboardInterrupt):
+        load_exercise(write(tmp_path, checks=checks))
+
+
+def test_importing_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_path, capsys):
+    before = Path.cwd()
+    wandering = f"import os\nos.chdir({str(tmp_path)!r})\nprint('so far')\n"
+    load_exercise(write(tmp_path, checks=wandering + CHECKS))
+    assert Path.cwd() == before
+    assert capsys.readouterr() == ("", "so far\n")
+
+
+@pytest.mark.parametrize(
+    ("lay", "words"),
+    [
+        (lambda file: file.symlink_to("gone.py"), "checks.py is a link to gone.py, which is not"),
+        (lambda file: file.mkdir(), "checks.py is a folder, not a file"),
+        (os.mkfifo, "checks.py is not a regular file"),
+        (lambda file: None, "it has no checks.py"),
+    ],
+)
+def test_what_lies_in_place_of_its_checks_is_told(tmp_path, lay, words):
+    folder = write(tmp_path)
+    (folder / "checks.py").unlink()
+    lay(folder / "checks.py")
+    with pytest.raises(ExerciseError, match=f"is not an exercise: {words}"):
+        load_exercise(folder)
