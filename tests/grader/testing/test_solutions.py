@@ -77,12 +77,12 @@ def test_a_mistake_is_named(tmp_path, mutants, words):
 def test_what_is_no_yaml_is_told(tmp_path):
     exercise = load_exercise(exercises.write(tmp_path))
     (tmp_path / "mutants.yaml").write_text("right: [1\n")
-    with pytest.raises(ExerciseError, match="mutants.yaml, line 2: "):
+    with pytest.raises(ExerciseError, match=r"mutants\.yaml, line 2: "):
         read_solutions(exercise)
 
 
 def test_an_unknown_key_is_told_with_its_line(tmp_path):
     exercise = load_exercise(exercises.write(tmp_path))
     (tmp_path / "mutants.yaml").write_text("right: {a: solution.py}\nmutant: {}\n")
-    with pytest.raises(ExerciseError, match="mutants.yaml, line 2: mutant: unknown"):
+    with pytest.raises(ExerciseError, match=r"mutants\.yaml, line 2: mutant: unknown"):
         read_solutions(exercise)
