@@ -22,13 +22,14 @@ def contained() -> Iterator[None]:
     relative.
     """
     with _one_at_a_time, contextlib.redirect_stdout(sys.stderr):
+        before: Path | None
         try:
-            before = str(Path.cwd())
+            before = Path.cwd()
         except OSError:  # it was deleted
-            before = ""
+            before = None
         try:
             yield
         finally:
-            if before:
+            if before is not None:
                 with contextlib.suppress(OSError):
                     os.chdir(before)

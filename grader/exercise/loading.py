@@ -213,7 +213,7 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
             raise Mistake((part,), f"expected names with numbers, found {given!r}")
         for key, value in given.items():
             if key not in known:
-                raise Mistake((part,), f"unknown {key!r}; there are {', '.join(known)}")
+                raise Mistake((part,), f"unknown {key!r}; there are {', '.join(map(str, known))}")
             if not _alike(value, known[key]):
                 raise Mistake((part, key), f"expected e.g. {known[key]!r}, found {value!r}")
         merged[part] = {**known, **given}

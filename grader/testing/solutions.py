@@ -110,7 +110,7 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
 
 def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]:
     if not isinstance(data, dict) or not isinstance(data.get("right"), dict) or not data["right"]:
-        raise ExerciseError("right: expected names with paths of right solutions")
+        raise Mistake(("right",), "expected names with paths of right solutions")
     unknown = [key for key in data if key not in ("right", "mutants")]
     if unknown:
         raise Mistake((str(unknown[0]),), "unknown; there are right, mutants")
@@ -120,7 +120,7 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
     ]
     mutants = data.get("mutants") or {}
     if not isinstance(mutants, dict):
-        raise ExerciseError("mutants: expected names with what is changed")
+        raise Mistake(("mutants",), "expected names with what is changed")
     both = {solution.name for solution in right} & set(mutants)
     if both:
         raise ExerciseError(f"{min(both)!r} is both a right solution and a mutant")
@@ -131,11 +131,12 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
 
 
 def _mutant(name: str, words: Any, of: Solution, folder: Path, exercise: Exercise) -> Solution:
+    keys: Keys = ("mutants", name)
     if not isinstance(words, dict) or ("file" in words) == ("replace" in words):
-        raise ExerciseError(f"mutants: {name}: expected either `replace` or `file`")
+        raise Mistake(keys, "expected either `replace` or `file`")
     unknown = words.keys() - {"file", "replace", "leaves"}
     if unknown:
-        raise ExerciseError(f"mutants: {name}: unknown {min(unknown)!r}")
+        raise Mistake(keys, f"unknown {min(map(str, unknown))!r}")
     leaves = _leaves(name, words.get("leaves"), exercise)
     if "file" in words:
         path = places.locate(folder, str(words["file"]))
@@ -143,26 +144,24 @@ def _mutant(name: str, words: Any, of: Solution, folder: Path, exercise: Exercis
     try:
         changes = tuple((str(each["old"]), str(each["new"])) for each in words["replace"])
     except (TypeError, KeyError):
-        raise ExerciseError(f"mutants: {name}: replace: expected a list of old and new") from None
+        raise Mistake((*keys, "replace"), "expected a list of old and new") from None
     if not changes or not of.path.is_file():
-        raise ExerciseError(f"mutants: {name}: there is nothing to replace in {of.path}")
+        raise Mistake(keys, f"there is nothing to replace in {of.path}")
     return Solution(name, of.path, is_right=False, changes=changes, leaves=leaves)
 
 
 def _leaves(name: str, words: object, exercise: Exercise) -> Mapping[str, Left] | None:
     if words is None:
         return None
+    keys: Keys = ("mutants", name, "leaves")
     if words == "nothing":
         return dict.fromkeys(exercise.points, 0.0)
     if not isinstance(words, dict) or not words:
-        raise ExerciseError(f"mutants: {name}: leaves: expected 'nothing', or checks with shares")
+        raise Mistake(keys, "expected 'nothing', or checks with shares")
     for check, left in words.items():
         if check not in {known.name for known in exercise.checks}:
-            raise ExerciseError(f"mutants: {name}: leaves: no check is named {check!r}")
+            raise Mistake(keys, f"no check is named {check!r}")
         is_share = isinstance(left, int | float) and not isinstance(left, bool) and 0 <= left < 1
         if left != "some" and not is_share:
-            raise ExerciseError(
-                f"mutants: {name}: leaves: {check}: expected a share below 1, or some; "
-                f"found {left!r}"
-            )
+            raise Mistake((*keys, check), f"expected a share below 1, or some; found {left!r}")
     return words

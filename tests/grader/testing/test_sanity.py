@@ -48,6 +48,7 @@ def test_a_finding_that_is_in_order_has_no_fault(tmp_path, result):
     ("result", "words"),
     [
         ("1 / 0", "raises checks.py, line 10: ZeroDivisionError"),
+        ("exit(0)", "raises checks.py, line 10: SystemExit: 0"),
         ("None", "returns a NoneType; expected a Finding"),
         ("Finding(2, 'seen')", "share: expected a number from 0 to 1, found 2"),
         ("Finding(float('nan'), 'seen')", "share: expected"),

@@ -86,3 +86,7 @@ def test_an_unknown_key_is_told_with_its_line(tmp_path):
     (tmp_path / "mutants.yaml").write_text("right: {a: solution.py}\nmutant: {}\n")
     with pytest.raises(ExerciseError, match=r"mutants\.yaml, line 2: mutant: unknown"):
         read_solutions(exercise)
+    text = "right: {a: solution.py}\nmutants:\n  m:\n    file: silent.py\n    leaves: {fly: 0}\n"
+    (tmp_path / "mutants.yaml").write_text(text)
+    with pytest.raises(ExerciseError, match=r"mutants\.yaml, line 5: mutants: m: leaves: no check"):
+        read_solutions(exercise)
