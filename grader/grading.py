@@ -66,6 +66,7 @@ def grade(
             another thread.
 
     Raises:
+        UsageError: there is no such submission, or `time`, `seed` or `executable` is none.
         SubmissionError: there is nothing to start, no way to tell what, or no ROS to run it in.
         ExerciseError: there is no such exercise, or it cannot be used.
         GraderFailure: the grader itself failed, twice; never the submission's fault.

@@ -28,7 +28,8 @@ class Beside:
     @cached_property
     def canvas_path(self) -> Path | None:
         """The picture of the window at the end; None where there is none."""
-        return self._artifact("canvas")
+        path = self._artifact("canvas")
+        return path if path is not None and path.is_file() else None  # a pipe would be waited for
 
     @property
     def canvas_file(self) -> Path | None:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ import pytest
 from grader.errors import UsageError
 from grader.recording.recording import Recordings
 from grader.reports import FORMATS, Report, render
+from grader.reports.beside import Beside
 from grader.result.result import Result
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
@@ -130,3 +132,9 @@ def test_one_format_takes_several_results_and_the_others_say_so():
     assert [name for name, form in FORMATS.items() if form.takes_several] == ["csv"]
     with pytest.raises(UsageError, match=r"markdown shows one result, found 2; .*: csv"):
         render("markdown", [samples.report(), samples.report()])
+
+
+def test_a_pipe_in_place_of_the_picture_is_not_read(tmp_path):
+    os.mkfifo(tmp_path / "canvas.png")
+    result = Result.from_json(samples.result() | {"artifacts": {"canvas": "canvas.png"}})
+    assert Beside(result, tmp_path).canvas_path is None
