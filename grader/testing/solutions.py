@@ -27,7 +27,7 @@ from typing import Any, Literal
 from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.loading import Exercise
-from grader.exercise.yaml_file import Mistake, read_yaml
+from grader.exercise.yaml_file import Keys, Mistake, read_yaml
 
 FILE_NAME = "mutants.yaml"
 
