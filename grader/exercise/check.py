@@ -186,11 +186,11 @@ def _wrong_with_evidence(item: object, runs: int) -> str:
         value = getattr(item, name)
         if type(value) is not int or value < 0:
             return f"evidence: {name}: expected a whole number from 0, found {value!r}"
-    for name in ("time_s", "x", "y"):  # a place may be nowhere, a time may not
+    for name in ("time_s", "x", "y"):  # JSON has no other numbers than finite ones
         value = getattr(item, name)
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or (name == "time_s" and not 0 <= value < math.inf):
-            return f"evidence: {name}: expected a number, found {value!r}"
+        if not is_number or not math.isfinite(value) or (name == "time_s" and value < 0):
+            return f"evidence: {name}: expected a finite number, found {value!r}"
     if not isinstance(item.note, str):
         return f"evidence: note: expected a text, found {item.note!r}"
     if item.run >= runs:

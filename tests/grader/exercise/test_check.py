@@ -133,6 +133,7 @@ HERE = Evidence(1, 0.016, 5.5, 5.5, "here")
         (Finding(1, "seen", evidence=("x",)), "evidence: expected Evidence, found a str"),
         (Finding(1, "s", evidence=(replace(HERE, tick=1.5),)), "evidence: tick: expected"),
         (Finding(1, "s", evidence=(replace(HERE, time_s="1"),)), "evidence: time_s: expected"),
+        (Finding(1, "s", evidence=(replace(HERE, x=float("nan")),)), "evidence: x: expected a fin"),
         (Finding(1, "s", evidence=(replace(HERE, note=None),)), "evidence: note: expected"),
         (Finding(1, "s", evidence=(replace(HERE, run=1),)), "evidence: there is no run 1"),
     ],
@@ -142,11 +143,6 @@ def test_what_is_no_finding_is_told_with_its_check_and_file(result, words):
         verdicts(returning(result), {"returns": 1})
     assert "'returns'" in error.value.message
     assert f"test_check.py: {words}" in error.value.message
-
-
-def test_a_finding_that_points_nowhere_is_one():
-    nowhere = replace(HERE, x=float("nan"))
-    assert verdicts(returning(Finding(1, "seen", evidence=(nowhere,))), {"returns": 1})
 
 
 def test_a_check_must_take_recordings_and_tolerances():

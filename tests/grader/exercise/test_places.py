@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -217,6 +218,15 @@ def test_what_goes_wrong_in_its_files_is_told_with_the_file(tmp_path, checks, wo
     assert words in error.value.message
 
 
+@pytest.fixture
+def plain_interrupts():
+    """Python's own handler of Ctrl-C, not that of a command line that ran in this process."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("plain_interrupts")
 def test_a_key_on_the_keyboard_is_not_the_exercise_s(tmp_path):
     checks = "import signal\nsignal.raise_signal(signal.SIGINT)\n"
     with pytest.raises(KeyboardInterrupt):

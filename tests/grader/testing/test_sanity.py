@@ -62,7 +62,7 @@ def test_a_finding_that_is_in_order_has_no_fault(tmp_path, result):
         ("Finding(1, 's', '', (Evidence(6, 0.096, 1, 1, 'n'),))", "tick 6 is outside"),
         ("Finding(1, 's', '', (Evidence(5, 0.5, 1, 1, 'n'),))", "time_s is not that of the tick"),
         ("Finding(1, 's', '', (Evidence(5, 0.08, 1, 12, 'n'),))", "outside the picture"),
-        ("Finding(1, 's', '', (Evidence(5, 0.08, 1, float('nan'), 'n'),))", "outside the picture"),
+        ("Finding(1, 's', '', (Evidence(5, 0.08, 1, float('nan'), 'n'),))", "a finite number"),
         ("Finding(1, 's', '', (Evidence(5, 0.08, 1, 1, 'n', 1),))", "there is no run 1"),
         ("Finding(1, 's', '', (Evidence(5, 0.08, 1, 1, ''),))", "empty note"),
     ],

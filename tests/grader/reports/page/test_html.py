@@ -3,6 +3,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import math
 import re
 from dataclasses import replace
 from itertools import pairwise
@@ -12,6 +13,7 @@ import pytest
 
 from grader.reports import Report
 from grader.reports.page import html
+from grader.result.result import Result
 from tests.grader.driving import Spiral, drive, pen
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import evidence, verdict
@@ -140,9 +142,14 @@ def test_a_turtle_that_is_not_a_number_is_left_out(tmp_path, good):
     rows[100:, 1:6] = np.nan
     trajectories = {"turtle1": Trajectory.of_rows(rows)}
     broken = replace(good, trace=replace(good.trace, trajectories=trajectories))
-    nowhere = evidence("lost", x=float("nan"))
-    path = samples.graded(tmp_path, broken, verdict("a", "failed", 0, evidence=[nowhere]))
-    content = html.render(Report.read(path))
+    lost = verdict("a", "failed", 0, evidence=[evidence("lost")])
+    read = Report.read(samples.graded(tmp_path, broken, lost))
+    # only in memory: no result file holds what is no number
+    result = Result.read(read.folder / "result.json")
+    (judged,) = result.verdicts
+    nowhere = replace(judged.evidence[0], x=math.nan)
+    result = replace(result, verdicts=(replace(judged, evidence=(nowhere,)),))
+    content = html.render(Report(result, read.beside))
     readers.html(content)
     assert "an unknown place: lost" in content
     assert not elements(content, "circle")  # no pin, no place of rest
