@@ -143,8 +143,17 @@ while bytes(student._head).count(b"\\n") < 2:
 family = [psutil.Process(int(pid)) for pid in student.output().split()]
 assert all(process.is_running() for process in family)
 student.end(gently=sys.argv[1] == "gently")
-gone, alive = psutil.wait_procs([*family], timeout=20)
-print(type(student).__name__, len(gone), len(alive), student.poll() is not None)
+def is_over(process):
+    # whoever has adopted it may not ask how it ended: then a zombie is all that there is
+    try:
+        return process.status() == psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return True
+deadline = time.monotonic() + 20
+while not all(map(is_over, family)) and time.monotonic() < deadline:
+    student.wait(0.02)
+over = [is_over(process) for process in family]
+print(type(student).__name__, over.count(True), over.count(False), student.poll() is not None)
 """
 
 
