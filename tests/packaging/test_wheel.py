@@ -59,11 +59,20 @@ def ros_sourced(shell: Environment) -> Environment:
     return shell | {"ROS_DISTRO": "jazzy"}
 
 
-def test_without_ros_it_comes_from_pypi(checkout: Path, shell: Environment) -> None:
+@pytest.mark.parametrize(
+    ("ros", "rclpy", "generator"),
+    [
+        ("jazzy", "ros-jazzy-rclpy[fastrtps]==7.1.6", "ros-rosidl-generator-py==0.22.2"),
+        ("kilted", "ros-kilted-rclpy[fastrtps]==9.1.2", "ros-rosidl-generator-py==0.24.2"),
+    ],
+)
+def test_without_ros_it_comes_from_pypi(
+    checkout: Path, shell: Environment, ros: str, rclpy: str, generator: str
+) -> None:
     shell.pop("ROS_DISTRO", None)
-    asked = requirements(checkout, shell)
-    assert "ros-jazzy-rclpy[fastrtps]==7.1.6" in asked["run"]
-    assert "ros-rosidl-generator-py==0.22.2" in asked["build"]
+    asked = requirements(checkout, shell | {"ROS": ros})
+    assert rclpy in asked["run"]
+    assert generator in asked["build"]
     ros = [name for name in asked["run"] + asked["build"] if name.startswith("ros-")]
     assert [name for name in ros if "==" not in name] == []  # later ROS releases share the names
 
