@@ -33,6 +33,11 @@ class Simulator:
         self._socket = ours
         self._text = b""
 
+    @property
+    def pid(self) -> int:
+        """The process id."""
+        return self._process.pid
+
     def expect(self, what: str) -> None:
         """Wait for a message.
 

@@ -18,7 +18,7 @@ from grader.run import handover, real_time, stage
 from grader.run.finish import Ending, outcome, record
 from grader.run.lockstep import contract
 from grader.run.plan import Plan
-from grader.run.processes import cores
+from grader.run.processes import cores, usage
 from grader.run.real_time import Progress
 from grader.run.simulator.link import Patience
 from grader.run.simulator_process import SIMULATOR_PATIENCE_S, Message, Simulator, start_simulator
@@ -85,7 +85,7 @@ def _try(
             more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
             with start_simulator(MODULE, place, plan, theirs, *more) as simulator:
                 theirs.close()
-                message = _watch(simulator, patience.run_s)
+                message = _watch(simulator, student.pid)
                 exit_code = student.wait(2.0) if message.get("silence") == "gone" else None
         finally:
             student.end(gently=False)
@@ -116,11 +116,14 @@ def command(
     return [sys.executable, main, *words]
 
 
-def _watch(simulator: Simulator, run_s: float) -> Message:
-    """Wait for the end of the run."""
-    deadline = time.monotonic() + run_s + SIMULATOR_PATIENCE_S
+def _watch(simulator: Simulator, student_pid: int) -> Message:
+    """Wait for the end of the run, for as long as one of its processes does something."""
+    used_s, since = -1.0, 0.0
     while (message := simulator.next(0.2)) is None:
-        if time.monotonic() > deadline:
+        now_used_s = usage.cpu_s(simulator.pid) + usage.cpu_s(student_pid)
+        if now_used_s != used_s:
+            used_s, since = now_used_s, time.monotonic()
+        if time.monotonic() > since + SIMULATOR_PATIENCE_S:
             raise simulator.failure("did not come to an end")
     return message
 
@@ -136,7 +139,9 @@ def _judge(ending: Message, exit_code: int | None, patience: Patience) -> tuple[
         why = f"the node used {used_s:.0f} s of processor time without waiting for ROS"
         return ("finished" if at_rest else "stalled"), [why]
     if silence == "slow":
-        return "time_limit", [f"the run took more than {patience.run_s:.0f} s"]
+        return "time_limit", [
+            f"the node used more than {patience.run_cpu_s:.0f} s of processor time"
+        ]
     if silence == "broken":
         return "killed", []
     return outcome(ending["reason"], exit_code), []

@@ -78,11 +78,22 @@ class Hooks:
 
     Attributes:
         has_unread: whether anything has arrived; while nothing has, a node need not be served.
-        after_serving: called when the nodes have been served, before the tick goes on.
     """
 
     has_unread: Callable[[], bool] = lambda: True
-    after_serving: Callable[[], None] = lambda: None
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What will be published in the next ticks if nothing arrives.
+
+    Attributes:
+        publishers: rclpy's, each of which publishes once in each of these ticks.
+        ticks: for each, what they publish, in their order, in CDR.
+    """
+
+    publishers: tuple[Any, ...]
+    ticks: list[tuple[bytes, ...]]
 
 
 class Simulation(Protocol):
@@ -105,8 +116,22 @@ class Simulation(Protocol):
     def follow_wall_clock(self, step: Callable[[], bool]) -> None:
         """Call `step` at the rate of the scene's ticks, until it returns False."""
 
-    def tick(self) -> Reason:
-        """Serve what has arrived, let a tick pass; why the run is over, or ''."""
+    def tick(self, now_ns: int | None = None) -> Reason:
+        """Serve what has arrived, let a tick pass; why the run is over, or ''.
+
+        Args:
+            now_ns: the time on the clock of the run [ns], where somebody knows; else a node's
+                clock is asked.
+        """
+
+    def foresee(self, most: int) -> Forecast:
+        """The next ticks, so many at most: as far as they are certain if nothing arrives.
+
+        None where the run might end, or where something other than publishing would happen.
+        """
+
+    def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
+        """As `tick`, in a tick that was foreseen: publishes nothing, returns what it would have."""
 
     @property
     def recorded_s(self) -> float:

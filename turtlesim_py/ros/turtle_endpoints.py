@@ -12,7 +12,7 @@ from turtlesim_py.ros.interfaces import Interfaces
 from turtlesim_py.ros.rclcpp_node import RclcppNode
 from turtlesim_py.ros.rotate_action import RotateAction
 from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.turtle import Reading
+from turtlesim_py.world.turtle import Pose, Reading
 
 #: Reliable and volatile, the last 7 messages: the original's choice for every topic.
 TOPIC_QOS = QoSProfile(depth=7)
@@ -23,10 +23,16 @@ POSE_BYTES = Struct("<4s5f")
 COLOR_BYTES = Struct("<4s3Bx")
 
 
+def pose_bytes(pose: Pose) -> bytes:
+    """A pose in CDR."""
+    return POSE_BYTES.pack(CDR, *pose)
+
+
 class TurtleEndpoints:
     """What the graph sees of the turtle `name`, below the topic prefix of the same name.
 
     Attributes:
+        pose_publisher: of `pose`.
         action: `rotate_absolute`.
     """
 
@@ -34,7 +40,7 @@ class TurtleEndpoints:
         self._node = node
         self._arena = arena
         self._name = name
-        self._pose_publisher = self._publisher(interfaces.Pose, f"{name}/pose")
+        self.pose_publisher = self._publisher(interfaces.Pose, f"{name}/pose")
         self._color_publisher = self._publisher(interfaces.Color, f"{name}/color_sensor")
         cmd_vel = f"{name}/cmd_vel"
         self._subscription = node.create_subscription(
@@ -56,7 +62,7 @@ class TurtleEndpoints:
 
     def publish(self, reading: Reading) -> None:
         """Send a tick's pose and colour."""
-        self._pose_publisher.publish(POSE_BYTES.pack(CDR, *reading.pose))
+        self.pose_publisher.publish(pose_bytes(reading.pose))
         self._color_publisher.publish(COLOR_BYTES.pack(CDR, *reading.color))
 
     def destroy(self) -> None:
@@ -65,7 +71,7 @@ class TurtleEndpoints:
         for service in self._services:
             self._node.destroy_service(service)
         self._node.destroy_subscription(self._subscription)
-        self._node.destroy_publisher(self._pose_publisher)
+        self._node.destroy_publisher(self.pose_publisher)
         self._node.destroy_publisher(self._color_publisher)
 
     def _publisher(self, message_type: type, topic: str) -> Any:

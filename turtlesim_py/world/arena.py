@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
+from copy import copy
 
 from turtlesim_py.world.canvas import Canvas
 from turtlesim_py.world.events import (
@@ -179,6 +180,14 @@ class Arena:
         self.ticks += 1
         self.now_ns += TICK_NS
         return readings
+
+    def twins(self) -> list[Turtle] | None:
+        """Copies of the turtles, in the order of the updates, to be asked where they will be.
+
+        None where one of them will do more than move.
+        """
+        turtles = [self.turtles[name] for name in sorted(self.turtles)]
+        return None if any(t.is_busy for t in turtles) else list(map(copy, turtles))
 
     def sprites(self) -> list[Sprite]:
         """Where each turtle's picture belongs on the canvas, later ones on top."""

@@ -158,6 +158,23 @@ class Turtle:
             self._draw_from(old_x, old_y, canvas)
         return reading
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether a jump or a rotation goal waits for the next update."""
+        return bool(self._teleports) or self.goal is not None
+
+    def foresee(self, now_ns: int) -> Pose | None:
+        """Live through a tick without drawing; None where the turtle hits a wall.
+
+        For a copy of a turtle that is not busy.
+        """
+        if now_ns - self._last_command_ns > COMMAND_TIMEOUT_NS:
+            self._halt()
+        self._move()
+        if self.x_m < 0.0 or self.x_m > SIZE_M or self.y_down_m < 0.0 or self.y_down_m > SIZE_M:
+            return None
+        return self._pose()
+
     def _jump(self, teleport: Teleport, canvas: Canvas) -> None:
         old_x, old_y = self.x_m, self.y_down_m
         if teleport.relative:

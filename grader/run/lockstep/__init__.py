@@ -5,8 +5,9 @@ Each of the two processes has these put into its rclpy; neither side is imported
 | module | what it does |
 |---|---|
 | `protocol` | what goes over the link between the two processes |
-| `registry` | the readers and writers of a process, and how much each has sent and received |
-| `endpoints`, `actions` | rclpy's publishers, subscriptions, clients, services, actions: counted |
+| `link` | how that goes through a socket |
+| `registry` | the readers and writers of a process, and what has arrived |
+| `endpoints`, `actions` | rclpy's publishers, subscriptions, clients, services, actions |
 | `waitsets` | rclpy's wait sets, timers and guard conditions: they wait in virtual time |
 | `rclpy_clocks` | rclpy's clocks |
 | `contract` | what is assumed of rclpy's inside, and whether it holds |

@@ -1,41 +1,46 @@
-"""rclpy's action clients and servers, counted and served by us (see `endpoints`)."""
+"""rclpy's action clients and servers, whose messages go by our registry (see `endpoints`)."""
 
 from __future__ import annotations
 
+import weakref
 from typing import Any
 
+from action_msgs.msg import GoalStatus, GoalStatusArray
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep import endpoints, waitsets
 from grader.run.lockstep.endpoints import (
+    Node,
     Registered,
-    deepened,
-    matching,
+    deserialized,
     profile,
+    request_id,
     ros_type,
-    some,
-    weakly,
+    serialized,
 )
-from grader.run.lockstep.faults import pass_on
+from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.registry import Reader, Writer
 from grader.run.lockstep.times import NEVER
 
 _ActionClient, _ActionServer = _rclpy.ActionClient, _rclpy.ActionServer
-_LIBRARY = "librcl_action.so"
+_GoalHandle = _rclpy.ActionGoalHandle
+STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
 
 
 def install() -> None:
     """Put the classes of this module into rclpy's extension module; after `endpoints`."""
     _rclpy.ActionClient = ActionClient
     _rclpy.ActionServer = ActionServer
+    _rclpy.ActionGoalHandle = ActionGoalHandle
 
 
 class _Action(Registered):
     """Makes the endpoints of an action."""
 
-    def prepare(self, node: Any, action_type: type, name: str) -> None:
+    def prepare(self, node: Node, action_type: Any, name: str) -> None:
         """Remember what every endpoint needs; before any other method."""
         self._node, self._name, self._type = node, name, ros_type(action_type)
+        self._feedback_type = ros_type(action_type.Impl.FeedbackMessage)
 
     def channel(self, kind: str, part: str) -> str:
         """The channel of a part of the action; a part's name can be remapped like any other."""
@@ -43,107 +48,95 @@ class _Action(Registered):
         is_service = kind != "topic"
         return f"{kind} {_rclpy.rclpy_resolve_name(self._node, name, False, is_service)}"
 
-    def writer(self, kind: str, part: str, c_qos: Any, matches: Any = None) -> Writer:
+    def writer(self, kind: str, part: str, c_qos: Any, message_type: str = "") -> Writer:
         """A writer."""
-        return Writer(self.channel(kind, part), self._type, profile(c_qos), matches)
+        return Writer(self.channel(kind, part), self._type, profile(c_qos), message_type)
 
-    def reader(self, kind: str, part: str, c_qos: Any, take: Any, matches: Any = None) -> Reader:
+    def reader(self, kind: str, part: str, c_qos: Any, message: Any) -> Reader:
         """A reader."""
-        channel = self.channel(kind, part)
-        reader = Reader(channel, self._type, profile(c_qos), matches, take)
-        if kind == "response":
-            reader.arrivals = endpoints.REGISTRY.shared_arrivals(channel)
-        return reader
+        return Reader(self.channel(kind, part), self._type, profile(c_qos), message=message)
 
-    def send(self, writer: Writer, method: Any, *args: Any) -> Any:
-        """Send and count."""
-        endpoints.REGISTRY.before_send(writer)
-        result = pass_on(method, self, *args)
-        endpoints.REGISTRY.after_send(writer)
-        return result
 
-    def count(self, question: str, channel: str) -> Any:
-        """Whether the graph knows exactly so many others on a channel."""
-        ask = getattr(type(self._node), question)
-        return matching(self._node, ask, channel.partition(" ")[2])
+def _take(reader: Reader) -> Any:
+    """The oldest message; None if there is none."""
+    item = reader.pop()
+    return None if item is None else deserialized(item.data, reader.message)
 
 
 class ActionClient(_Action, _rclpy.ActionClient):
-    """An action client that counts, and takes from readers."""
+    """An action client that takes from readers."""
 
     def __init__(
-        self, node: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
+        self, node: Node, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
         feedback: Any, status: Any, *more: Any,
     ) -> None:  # fmt: skip
-        deep = (deepened(c_qos) for c_qos in (goal, result, cancel, feedback, status))
-        pass_on(_ActionClient.__init__, self, node, kind, name, *deep, *more)
+        profiles = (goal, result, cancel, feedback, status)
+        pass_on(_ActionClient.__init__, self, node, kind, name, *profiles, *more)
         self.prepare(node, kind, name)
         impl = kind.Impl
-        matches = matching(self, _ActionClient.is_action_server_available)
-
-        def taking(method: Any, what: type) -> Any:
-            return weakly(self, some(method), what)
-
-        self.goal = self.writer("request", "send_goal", goal, matches)
+        self.goal = self.writer("request", "send_goal", goal)
         self.cancel = self.writer("request", "cancel_goal", cancel)
         self.result = self.writer("request", "get_result", result)
-        take_goal = taking(_ActionClient.take_goal_response, impl.SendGoalService.Response)
-        take_cancel = taking(_ActionClient.take_cancel_response, impl.CancelGoalService.Response)
-        take_result = taking(_ActionClient.take_result_response, impl.GetResultService.Response)
-        self.goals = self.reader("response", "send_goal", goal, take_goal)
-        self.cancels = self.reader("response", "cancel_goal", cancel, take_cancel)
-        self.results = self.reader("response", "get_result", result, take_result)
-        take_feedback = weakly(self, _ActionClient.take_feedback, impl.FeedbackMessage)
-        take_status = weakly(self, _ActionClient.take_status, impl.GoalStatusMessage)
-        self.feedback = self.reader("topic", "feedback", feedback, take_feedback)
-        self.status = self.reader("topic", "status", status, take_status)
-        for part in ("goal_client", "cancel_client", "result_client"):
-            self._signal_arrivals(part)
-        for part in ("feedback_subscription", "status_subscription"):
-            self._signal_arrivals(part)
+        self.goals = self.reader("response", "send_goal", goal, impl.SendGoalService.Response)
+        self.cancels = self.reader(
+            "response", "cancel_goal", cancel, impl.CancelGoalService.Response
+        )
+        self.results = self.reader("response", "get_result", result, impl.GetResultService.Response)
+        self.feedback = self.reader("topic", "feedback", feedback, impl.FeedbackMessage)
+        self.status = self.reader("topic", "status", status, impl.GoalStatusMessage)
         self.readers = [self.feedback, self.status, self.goals, self.cancels, self.results]
-        self.register(self.goal, self.cancel, self.result, *self.readers)
-
-    def _signal_arrivals(self, part: str) -> None:
-        function = f"rcl_action_client_set_{part}_callback"
-        endpoints.REGISTRY.arrival_signal.attach(function, self.pointer, _LIBRARY)
+        self.register(node, self.goal, self.cancel, self.result, *self.readers)
 
     def is_action_server_available(self) -> bool:
         """As in rclpy."""
-        endpoints.REGISTRY.before_question()
-        return bool(_ActionClient.is_action_server_available(self))
+        if not self.is_valid():
+            return bool(pass_on(_ActionClient.is_action_server_available, self))
+        registry = endpoints.REGISTRY
+        registry.before_question()
+        return all(map(registry.count_readers, (self.goal, self.cancel, self.result))) and all(
+            map(registry.count_writers, (self.feedback, self.status))
+        )
 
-    def send_goal_request(self, request: Any) -> Any:
-        """Send and count."""
-        return self.send(self.goal, _ActionClient.send_goal_request, request)
+    def send_goal_request(self, request: Any) -> int:
+        """As in rclpy."""
+        endpoints.REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_ActionClient.send_goal_request, self, request)
+        return endpoints.REGISTRY.ask(self.goal, self.goals, serialized(request))
 
-    def send_cancel_request(self, request: Any) -> Any:
-        """Send and count."""
-        return self.send(self.cancel, _ActionClient.send_cancel_request, request)
+    def send_cancel_request(self, request: Any) -> int:
+        """As in rclpy."""
+        endpoints.REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_ActionClient.send_cancel_request, self, request)
+        return endpoints.REGISTRY.ask(self.cancel, self.cancels, serialized(request))
 
-    def send_result_request(self, request: Any) -> Any:
-        """Send and count."""
-        return self.send(self.result, _ActionClient.send_result_request, request)
+    def send_result_request(self, request: Any) -> int:
+        """As in rclpy."""
+        endpoints.REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_ActionClient.send_result_request, self, request)
+        return endpoints.REGISTRY.ask(self.result, self.results, serialized(request))
 
     def take_goal_response(self, _: type) -> Any:
-        """The oldest, or (None, None)."""
-        return self.goals.pop() or (None, None)
+        """The oldest with its number, or (None, None)."""
+        return _take_response(self.goals)
 
     def take_cancel_response(self, _: type) -> Any:
-        """The oldest, or (None, None)."""
-        return self.cancels.pop() or (None, None)
+        """The oldest with its number, or (None, None)."""
+        return _take_response(self.cancels)
 
     def take_result_response(self, _: type) -> Any:
-        """The oldest, or (None, None)."""
-        return self.results.pop() or (None, None)
+        """The oldest with its number, or (None, None)."""
+        return _take_response(self.results)
 
     def take_feedback(self, _: type) -> Any:
         """The oldest, or None."""
-        return self.feedback.pop()
+        return _take(self.feedback)
 
     def take_status(self, _: type) -> Any:
         """The oldest, or None."""
-        return self.status.pop()
+        return _take(self.status)
 
     def add_to_waitset(self, wait_set: Any) -> None:
         """Have a wait set look at our readers."""
@@ -154,79 +147,96 @@ class ActionClient(_Action, _rclpy.ActionClient):
         return tuple(bool(reader.items) for reader in self.readers)
 
 
+def _take_response(reader: Reader) -> Any:
+    item = reader.pop()
+    if item is None:
+        return None, None
+    return item.number, deserialized(item.data, reader.message)
+
+
 class ActionServer(_Action, _rclpy.ActionServer):
-    """An action server that takes from readers, and counts."""
+    """An action server that takes from readers."""
 
     def __init__(
-        self, node: Any, clock: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
+        self, node: Node, clock: Any, kind: Any, name: str, goal: Any, result: Any, cancel: Any,
         feedback: Any, status: Any, result_timeout: float, *more: Any,
     ) -> None:  # fmt: skip
-        deep = (deepened(c_qos) for c_qos in (goal, result, cancel))
         waitsets.WAITER.tell_time(clock)
         self._timeout_ns = int(result_timeout * 1e9)
         self._first_expiry_ns = NEVER
-        rest = (*deep, feedback, status, result_timeout, *more)
+        self._goals: list[weakref.ref[ActionGoalHandle]] = []
+        rest = (goal, result, cancel, feedback, status, result_timeout, *more)
         pass_on(_ActionServer.__init__, self, node, clock, kind, name, *rest)
         self.prepare(node, kind, name)
         parts = (
-            ("send_goal", goal, _ActionServer.take_goal_request, kind.Impl.SendGoalService),
-            ("cancel_goal", cancel, _ActionServer.take_cancel_request, kind.Impl.CancelGoalService),
-            ("get_result", result, _ActionServer.take_result_request, kind.Impl.GetResultService),
+            ("send_goal", goal, kind.Impl.SendGoalService),
+            ("cancel_goal", cancel, kind.Impl.CancelGoalService),
+            ("get_result", result, kind.Impl.GetResultService),
         )
         self.readers, self.answers = [], []
-        for part, c_qos, method, service in parts:
-            channel = self.channel("request", part)
-            take = weakly(self, some(method), service.Request)
-            matches = self.count("get_count_clients", channel)
-            self.readers.append(self.reader("request", part, c_qos, take, matches))
+        for part, c_qos, service in parts:
+            self.readers.append(self.reader("request", part, c_qos, service.Request))
             self.answers.append(self.writer("response", part, c_qos))
-        self.feedback = self._topic("feedback", feedback)
-        self.status = self._topic("status", status)
-        for part in ("goal", "cancel", "result"):
-            function = f"rcl_action_server_set_{part}_service_callback"
-            endpoints.REGISTRY.arrival_signal.attach(function, self.pointer, _LIBRARY)
-        self.register(*self.readers, *self.answers, self.feedback, self.status)
-
-    def _topic(self, part: str, c_qos: Any) -> Writer:
-        channel = self.channel("topic", part)
-        return self.writer("topic", part, c_qos, self.count("get_count_subscribers", channel))
+        self.feedback = self.writer("topic", "feedback", feedback, self._feedback_type)
+        self.status = self.writer("topic", "status", status, STATUS_TYPE)
+        self.register(node, *self.readers, *self.answers, self.feedback, self.status)
 
     def take_goal_request(self, _: type) -> Any:
-        """The oldest, or (None, None)."""
-        return self.readers[0].pop() or (None, None)
+        """The oldest with its header, or (None, None)."""
+        return _take_request(self.readers[0])
 
     def take_cancel_request(self, _: type) -> Any:
-        """The oldest, or (None, None)."""
-        return self.readers[1].pop() or (None, None)
+        """The oldest with its header, or (None, None)."""
+        return _take_request(self.readers[1])
 
     def take_result_request(self, _: type) -> Any:
-        """The oldest, or (None, None)."""
-        return self.readers[2].pop() or (None, None)
+        """The oldest with its header, or (None, None)."""
+        return _take_request(self.readers[2])
 
-    def send_goal_response(self, *args: Any) -> Any:
-        """Send and count."""
-        return self.send(self.answers[0], _ActionServer.send_goal_response, *args)
+    def send_goal_response(self, to: Any, response: Any) -> None:
+        """As in rclpy."""
+        self._respond(self.answers[0], to, response)
 
-    def send_cancel_response(self, *args: Any) -> Any:
-        """Send and count."""
-        return self.send(self.answers[1], _ActionServer.send_cancel_response, *args)
+    def send_cancel_response(self, to: Any, response: Any) -> None:
+        """As in rclpy."""
+        self._respond(self.answers[1], to, response)
 
-    def send_result_response(self, *args: Any) -> Any:
-        """Send and count."""
-        return self.send(self.answers[2], _ActionServer.send_result_response, *args)
+    def send_result_response(self, to: Any, response: Any) -> None:
+        """As in rclpy."""
+        self._respond(self.answers[2], to, response)
+
+    def _respond(self, writer: Writer, to: Any, response: Any) -> None:
+        if not self.is_valid():
+            as_python_does(_rclpy.RCLError("failed to send response: rclpy is shut down"))
+        endpoints.REGISTRY.respond(writer, to.request, serialized(response))
 
     def publish_feedback(self, message: Any) -> None:
-        """Publish and count."""
-        self.send(self.feedback, _ActionServer.publish_feedback, message)
+        """As in rclpy."""
+        endpoints.REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_ActionServer.publish_feedback, self, message)
+        endpoints.REGISTRY.publish(self.feedback, serialized(message))
 
     def publish_status(self) -> None:
-        """Publish and count."""
-        self.send(self.status, _ActionServer.publish_status)
+        """As in rclpy: the states of all goals that have not expired."""
+        endpoints.REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_ActionServer.publish_status, self)
+        goals = [goal for reference in self._goals if (goal := reference()) is not None]
+        states = [
+            GoalStatus(goal_info=goal.goal_info, status=int(goal.get_status())) for goal in goals
+        ]
+        message = GoalStatusArray(status_list=states)
+        endpoints.REGISTRY.publish(self.status, serialized(message))
+
+    def add_goal(self, goal: ActionGoalHandle) -> None:
+        """A goal was accepted."""
+        self._goals.append(weakref.ref(goal, self._goals.remove))
 
     def notify_goal_done(self) -> None:
         """As in rclpy; its result will expire."""
         _ActionServer.notify_goal_done(self)
-        expiry_ns = endpoints.NOW_NS() + self._timeout_ns
+        expiry_ns = endpoints.REGISTRY.now_ns() + self._timeout_ns
         self._first_expiry_ns = min(self._first_expiry_ns, expiry_ns)
 
     def expire_goals(self, most: int) -> Any:
@@ -240,5 +250,21 @@ class ActionServer(_Action, _rclpy.ActionServer):
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:
         """Whether there is a goal, a cancel request, a result request, an expired goal."""
-        has_expired = endpoints.NOW_NS() > self._first_expiry_ns
+        has_expired = endpoints.REGISTRY.now_ns() > self._first_expiry_ns
         return (*(bool(reader.items) for reader in self.readers), has_expired)
+
+
+def _take_request(reader: Reader) -> Any:
+    item = reader.pop()
+    if item is None:
+        return None, None
+    return request_id(item), deserialized(item.data, reader.message)
+
+
+class ActionGoalHandle(_rclpy.ActionGoalHandle):
+    """A goal that its server knows."""
+
+    def __init__(self, server: ActionServer, goal_info: Any) -> None:
+        pass_on(_GoalHandle.__init__, self, server, goal_info)
+        self.goal_info = goal_info
+        server.add_goal(self)

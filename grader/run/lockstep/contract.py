@@ -15,7 +15,6 @@ time; a node, without which there is no entity, takes ten times as much, and wou
 
 from __future__ import annotations
 
-import ctypes
 import importlib
 import re
 from collections.abc import Callable, Iterable
@@ -156,7 +155,7 @@ def _arguments(doc: str) -> tuple[int, int]:
 
 
 def _quality_of_service() -> str:
-    """A C profile goes into Python and back: readers are deepened so."""
+    """A C profile goes into Python: what a program asks for is known there."""
     from rclpy.qos import QoSProfile, qos_check_compatible
 
     fields = QoSProfile(depth=3).get_c_qos_profile().to_dict()
@@ -167,6 +166,18 @@ def _quality_of_service() -> str:
     return "" if profile.get_c_qos_profile().to_dict()["depth"] == 5 else "QoS profiles lose depth"
 
 
+def _request_headers() -> str:
+    """There can be ones of ours, which rclpy's Python hands on."""
+    cpp = _module(CPP)
+    for name in ("rmw_service_info_t", "rmw_request_id_t"):
+        kind: Any = type(name, (getattr(cpp, name),), {})
+        header = kind.__new__(kind)
+        header.number = 5
+        if header.number != 5:
+            return f"{name} takes nothing of ours"
+    return ""
+
+
 def _overridden_clock() -> str:
     """A ROS clock shows the time that it is told; all our clocks are such."""
     cpp = _module(CPP)
@@ -175,18 +186,6 @@ def _overridden_clock() -> str:
     clock.set_ros_time_override_is_enabled(True)
     clock.set_ros_time_override(cpp.rcl_time_point_t(5, ros_time))
     return "" if clock.get_now().nanoseconds == 5 else "a clock does not show the time it is told"
-
-
-def _arrival_callbacks(library: str, *functions: str) -> list[Assumption]:
-    """Functions of rcl with which DDS's threads tell of arrivals."""
-
-    def look(name: str) -> Callable[[], str]:
-        def check() -> str:
-            return "" if hasattr(ctypes.CDLL(library), name) else f"{library} has no {name}"
-
-        return check
-
-    return [Assumption(name, look(name)) for name in functions]
 
 
 # What is assumed ------------------------------------------------------------------------------
@@ -205,15 +204,14 @@ ENTITIES: tuple[Assumption, ...] = (
     *_has(CPP, "Client", "service_name", "pointer"),
     *_has(CPP, "Service", "name", "pointer"),
     *_has(CPP, "Subscription", "pointer"),
+    # name, namespace, context, and whatever follows
+    *_takes("Node", __init__=3),
+    *_takes("Context", ok=0),
+    *_has(CPP, "", "rclpy_serialize", "rclpy_deserialize"),
+    Assumption("request headers", _request_headers),
     *_takes("Node", get_count_clients=1, get_count_services=1),
     *_takes("Node", get_count_publishers=1, get_count_subscribers=1),
     Assumption("quality of service", _quality_of_service),
-    *_arrival_callbacks(
-        "librcl.so",
-        "rcl_subscription_set_on_new_message_callback",
-        "rcl_client_set_on_new_response_callback",
-        "rcl_service_set_on_new_request_callback",
-    ),
     # node, type, name, quality of service of goal, result, cancel, feedback, status
     *_takes("ActionClient", __init__=8, is_action_server_available=0, send_goal_request=1),
     *_takes("ActionClient", send_cancel_request=1, send_result_request=1, take_goal_response=1),
@@ -224,19 +222,7 @@ ENTITIES: tuple[Assumption, ...] = (
     *_takes("ActionServer", take_result_request=1, send_goal_response=2, send_cancel_response=2),
     *_takes("ActionServer", send_result_response=2, publish_feedback=1, publish_status=0),
     *_takes("ActionServer", notify_goal_done=0, expire_goals=1, add_to_waitset=1, is_ready=1),
-    *_has(CPP, "ActionClient", "pointer"),
-    *_has(CPP, "ActionServer", "pointer"),
-    *_arrival_callbacks(
-        "librcl_action.so",
-        "rcl_action_client_set_goal_client_callback",
-        "rcl_action_client_set_cancel_client_callback",
-        "rcl_action_client_set_result_client_callback",
-        "rcl_action_client_set_feedback_subscription_callback",
-        "rcl_action_client_set_status_subscription_callback",
-        "rcl_action_server_set_goal_service_callback",
-        "rcl_action_server_set_cancel_service_callback",
-        "rcl_action_server_set_result_service_callback",
-    ),
+    *_takes("ActionGoalHandle", __init__=2, get_status=0),
     *_takes("WaitSet", __init__=7, clear_entities=0, wait=1, get_ready_entities=1, is_ready=2),
     *_takes("WaitSet", add_subscription=1, add_client=1, add_service=1, add_guard_condition=1),
     *_takes("WaitSet", add_timer=1, add_event=1),

@@ -1,7 +1,8 @@
-"""rclpy's publishers, subscriptions, clients and services, counted and served by us.
+"""rclpy's publishers, subscriptions, clients and services, whose messages go by our registry.
 
 Each is a subclass of rclpy's own class in C++, put into its place in rclpy's extension module, so
-that the Python of rclpy stays as it is. Used by both sides of the link.
+that the Python of rclpy stays as it is. The entity in DDS is there as ever: the graph shows it, and
+events of its quality of service come from it. Used by both sides of the link.
 """
 
 from __future__ import annotations
@@ -12,24 +13,22 @@ from typing import Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
-from rclpy.serialization import serialize_message
 
-from grader.run.lockstep.faults import pass_on
-from grader.run.lockstep.registry import DEPTH, Endpoint, EndpointRegistry, Reader, Writer
+from grader.run.lockstep.faults import as_python_does, pass_on
+from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
 
 _Publisher, _Subscription = _rclpy.Publisher, _rclpy.Subscription
 _Client, _Service = _rclpy.Client, _rclpy.Service
+_serialize, _deserialize = _rclpy.rclpy_serialize, _rclpy.rclpy_deserialize
 
 REGISTRY: EndpointRegistry
-#: The time [ns] that messages are stamped with, instead of real ones.
-NOW_NS: Callable[[], int]
 
 
-def install(registry: EndpointRegistry, now_ns: Callable[[], int]) -> None:
+def install(registry: EndpointRegistry) -> None:
     """Put the classes of this module into rclpy's extension module."""
-    global REGISTRY, NOW_NS
-    REGISTRY, NOW_NS = registry, now_ns
-    for name in ("Publisher", "Subscription", "Client", "Service"):
+    global REGISTRY
+    REGISTRY = registry
+    for name in ("Node", "Publisher", "Subscription", "Client", "Service"):
         setattr(_rclpy, name, globals()[name])
 
 
@@ -38,114 +37,112 @@ def profile(c_qos: Any) -> QoSProfile:
     return QoSProfile(**c_qos.to_dict())
 
 
-def deepened(c_qos: Any) -> Any:
-    """The same C profile for a reader that loses nothing while we look away."""
-    fields = c_qos.to_dict()
-    return QoSProfile(**{**fields, "depth": max(fields["depth"], DEPTH)}).get_c_qos_profile()
-
-
 def ros_type(python_type: type) -> str:
     """A message or service class's ROS name: "geometry_msgs/msg/Twist"."""
     package, kind, *_ = python_type.__module__.split(".")
     return f"{package}/{kind}/{python_type.__name__}"
 
 
-def weakly(handle: Any, method: Callable[..., Any], *args: Any) -> Callable[[], Any]:
-    """A call of `method(handle, *args)` that does not keep the handle alive."""
-    reference = weakref.ref(handle)
-
-    def call() -> Any:
-        alive = reference()
-        return None if alive is None else method(alive, *args)
-
-    return call
+def serialized(message: Any) -> bytes:
+    """A message in CDR; what is wrong with it, rclpy says as it does when it publishes."""
+    kind = type(message)
+    if kind._TYPE_SUPPORT is None:
+        pass_on(kind.__import_type_support__)
+    data: bytes = pass_on(_serialize, message, kind)
+    return data
 
 
-def matching(handle: Any, method: Callable[..., Any], *args: Any) -> Callable[[int], bool]:
-    """Whether DDS knows so many counterparts: `method` counts them, or tells if there is one."""
-    ask = weakly(handle, method, *args)
+def deserialized(data: bytes, kind: Any) -> Any:
+    """The message of a class that bytes in CDR mean.
 
-    def matches(number: int) -> bool:
-        try:
-            known = ask()
-        except _rclpy.RCLError:
-            return True  # after rclpy.shutdown() nobody gets connected any more
-        return bool(known == (bool(number) if isinstance(known, bool) else number))
+    Raises:
+        RMWError (of rclpy): they mean none.
+    """
+    if kind._TYPE_SUPPORT is None:
+        kind.__import_type_support__()
+    return pass_on(_deserialize, data, kind)
 
-    return matches
+
+class Node(_rclpy.Node):
+    """A node that knows its context."""
+
+    def __init__(self, name: str, namespace: str, context: Any, *more: Any) -> None:
+        pass_on(super().__init__, name, namespace, context, *more)
+        self.is_valid: Callable[[], bool] = context.ok
 
 
 class Registered:
-    """What our endpoint classes have in common."""
+    """What our endpoint classes have in common.
+
+    Attributes:
+        is_valid: whether rclpy is up; where it is not, rclpy's own methods say so.
+    """
 
     endpoints: list[Endpoint]
+    is_valid: Callable[[], bool]
 
-    def register(self, *endpoints: Endpoint) -> None:
+    def register(self, node: Node, *endpoints: Endpoint) -> None:
         """Have the registry know the endpoints for as long as this object lives."""
+        self.is_valid = node.is_valid
         self.endpoints = list(endpoints)
         for endpoint in endpoints:
             REGISTRY.add(endpoint)
         weakref.finalize(self, REGISTRY.remove, self.endpoints).atexit = False
 
     def destroy_when_not_in_use(self) -> None:
-        """As in rclpy, when the registry agrees."""
-        destroy = super().destroy_when_not_in_use  # type: ignore[misc]
-        REGISTRY.request_destroy(self.endpoints, destroy)
+        """As in rclpy."""
+        REGISTRY.remove(self.endpoints)
+        super().destroy_when_not_in_use()  # type: ignore[misc]
 
 
 class Publisher(Registered, _rclpy.Publisher):
-    """A publisher that counts."""
+    """A publisher."""
 
-    def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any, *more: Any) -> None:
+    def __init__(self, node: Node, msg_type: type, topic: str, c_qos: Any, *more: Any) -> None:
         pass_on(_Publisher.__init__, self, node, msg_type, topic, c_qos, *more)
-        self.writer = Writer(
-            f"topic {self.get_topic_name()}",
-            ros_type(msg_type),
-            profile(c_qos),
-            matching(self, _Publisher.get_subscription_count),
-            is_stream=True,
-        )
-        self.register(self.writer)
+        channel = f"topic {self.get_topic_name()}"
+        self.writer = Writer(channel, ros_type(msg_type), profile(c_qos), is_stream=True)
+        self.register(node, self.writer)
 
     def get_subscription_count(self) -> int:
         """As in rclpy."""
+        if not self.is_valid():
+            return int(pass_on(_Publisher.get_subscription_count, self))
         REGISTRY.before_question()
-        return int(_Publisher.get_subscription_count(self))
+        return REGISTRY.count_readers(self.writer)
 
     def publish(self, message: Any) -> None:
-        """Publish and count."""
-        REGISTRY.before_send(self.writer)
-        pass_on(_Publisher.publish, self, message)
-        REGISTRY.after_send(self.writer)
+        """As in rclpy."""
+        REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_Publisher.publish, self, message)
+        REGISTRY.publish(self.writer, serialized(message))
 
     def publish_raw(self, message: bytes) -> None:
-        """Publish serialized bytes and count."""
-        REGISTRY.before_send(self.writer)
-        pass_on(_Publisher.publish_raw, self, message)
-        REGISTRY.after_send(self.writer)
+        """Publish serialized bytes."""
+        REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_Publisher.publish_raw, self, message)
+        REGISTRY.publish(self.writer, message)
 
 
 class Subscription(Registered, _rclpy.Subscription):
-    """A subscription that takes from an reader."""
+    """A subscription that takes from a reader."""
 
-    def __init__(self, node: Any, msg_type: type, topic: str, c_qos: Any, *more: Any) -> None:
+    def __init__(self, node: Node, msg_type: type, topic: str, c_qos: Any, *more: Any) -> None:
         if more and more[0] is not None:  # a content filter, since rclpy 7.1.8
             self._refuse_filter()
-        pass_on(_Subscription.__init__, self, node, msg_type, topic, deepened(c_qos), *more)
-        self.reader = Reader(
-            f"topic {self.get_topic_name()}",
-            ros_type(msg_type),
-            profile(c_qos),
-            matching(self, _Subscription.get_publisher_count),
-            weakly(self, _take_message, msg_type),
-        )
-        REGISTRY.arrival_signal.attach("rcl_subscription_set_on_new_message_callback", self.pointer)
-        self.register(self.reader)
+        pass_on(_Subscription.__init__, self, node, msg_type, topic, c_qos, *more)
+        channel = f"topic {self.get_topic_name()}"
+        self.reader = Reader(channel, ros_type(msg_type), profile(c_qos), message=msg_type)
+        self.register(node, self.reader)
 
     def get_publisher_count(self) -> int:
         """As in rclpy."""
+        if not self.is_valid():
+            return int(pass_on(_Subscription.get_publisher_count, self))
         REGISTRY.before_question()
-        return int(_Subscription.get_publisher_count(self))
+        return REGISTRY.count_writers(self.reader)
 
     def set_content_filter(self, *args: Any) -> None:
         """As in rclpy, since 7.1.8."""
@@ -153,85 +150,102 @@ class Subscription(Registered, _rclpy.Subscription):
         pass_on(_Subscription.set_content_filter, self, *args)
 
     def _refuse_filter(self) -> None:
-        """Nobody would know how many messages are to come."""
+        """We do not filter."""
         REGISTRY.refuse("subscribes with a content filter")
 
     def take_message(self, _: type, raw: bool) -> Any:
-        """The oldest message in the reader, or None."""
+        """The oldest message in the reader with what is known of it, or None."""
         item = self.reader.pop()
-        if item is not None and raw:
-            return serialize_message(item[0]), item[1]
-        return item
+        if item is None:
+            return None
+        message = item.data if raw else deserialized(item.data, self.reader.message)
+        return message, {
+            "source_timestamp": item.time_ns,
+            "received_timestamp": item.time_ns,
+            "publication_sequence_number": item.number,
+            "reception_sequence_number": None,
+        }
 
 
-def _take_message(handle: Any, msg_type: type) -> Any:
-    item = _Subscription.take_message(handle, msg_type, False)
-    if item is not None:
-        item[1]["source_timestamp"] = item[1]["received_timestamp"] = NOW_NS()
-    return item
+class RequestId(_rclpy.rmw_request_id_t):
+    """What tells a request, or the response to it, from others; made by `request_id`."""
+
+    sequence_number = 0  # rclpy's cannot be set
+    request: Arrived
+
+
+class RequestHeader(_rclpy.rmw_service_info_t):
+    """What comes with a request or a response of a service; made by `header`."""
+
+    request_id: RequestId | None = None  # rclpy's cannot be set
+
+
+def request_id(item: Arrived) -> RequestId:
+    """The identity of what has arrived."""
+    # rclpy's classes have no constructor
+    made = RequestId.__new__(RequestId)
+    made.sequence_number, made.request = item.number, item
+    return made
+
+
+def header(item: Arrived) -> RequestHeader:
+    """The header of what has arrived."""
+    made = RequestHeader.__new__(RequestHeader)
+    made.request_id = request_id(item)
+    return made
 
 
 class Client(Registered, _rclpy.Client):
-    """A service client that counts, and takes from an reader."""
+    """A service client that takes from a reader."""
 
-    def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
-        pass_on(_Client.__init__, self, node, srv_type, name, deepened(c_qos), *more)
-        matches = matching(self, _Client.service_server_is_available)
+    def __init__(self, node: Node, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
+        pass_on(_Client.__init__, self, node, srv_type, name, c_qos, *more)
         qos, kind, name = profile(c_qos), ros_type(srv_type), self.service_name
-        self.writer = Writer(f"request {name}", kind, qos, matches)
-        take = weakly(self, some(_Client.take_response), srv_type.Response)
-        channel = f"response {name}"
-        self.reader = Reader(channel, kind, qos, None, take, REGISTRY.shared_arrivals(channel))
-        REGISTRY.arrival_signal.attach("rcl_client_set_on_new_response_callback", self.pointer)
-        self.register(self.writer, self.reader)
+        self.writer = Writer(f"request {name}", kind, qos)
+        self.reader = Reader(f"response {name}", kind, qos, message=srv_type.Response)
+        self.register(node, self.writer, self.reader)
 
     def service_server_is_available(self) -> bool:
         """As in rclpy."""
+        if not self.is_valid():
+            return bool(pass_on(_Client.service_server_is_available, self))
         REGISTRY.before_question()
-        return bool(_Client.service_server_is_available(self))
+        return REGISTRY.count_readers(self.writer) > 0
 
     def send_request(self, request: Any) -> int:
-        """Send and count."""
-        REGISTRY.before_send(self.writer)
-        number: int = pass_on(_Client.send_request, self, request)
-        REGISTRY.after_send(self.writer)
-        return number
+        """As in rclpy."""
+        REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(_Client.send_request, self, request)
+        return REGISTRY.ask(self.writer, self.reader, serialized(request))
 
     def take_response(self, _: type) -> Any:
         """The oldest response in the reader, or (None, None)."""
-        return self.reader.pop() or (None, None)
+        item = self.reader.pop()
+        if item is None:
+            return None, None
+        return header(item), deserialized(item.data, self.reader.message)
 
 
 class Service(Registered, _rclpy.Service):
-    """A service that takes from an reader, and counts."""
+    """A service that takes from a reader."""
 
-    def __init__(self, node: Any, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
-        pass_on(_Service.__init__, self, node, srv_type, name, deepened(c_qos), *more)
+    def __init__(self, node: Node, srv_type: Any, name: str, c_qos: Any, *more: Any) -> None:
+        pass_on(_Service.__init__, self, node, srv_type, name, c_qos, *more)
         qos, kind, name = profile(c_qos), ros_type(srv_type), self.name
-        matches = matching(node, type(node).get_count_clients, name)
-        take = weakly(self, some(_Service.service_take_request), srv_type.Request)
-        channel = f"request {name}"
-        self.reader = Reader(channel, kind, qos, matches, take)
-        self.writer = Writer(f"response {name}", kind, qos, None)
-        REGISTRY.arrival_signal.attach("rcl_service_set_on_new_request_callback", self.pointer)
-        self.register(self.writer, self.reader)
+        self.reader = Reader(f"request {name}", kind, qos, message=srv_type.Request)
+        self.writer = Writer(f"response {name}", kind, qos)
+        self.register(node, self.reader, self.writer)
 
     def service_take_request(self, _: type) -> Any:
         """The oldest request in the reader, or (None, None)."""
-        return self.reader.pop() or (None, None)
+        item = self.reader.pop()
+        if item is None:
+            return None, None
+        return deserialized(item.data, self.reader.message), header(item)
 
-    def service_send_response(self, response: Any, header: Any) -> None:
-        """Send and count."""
-        REGISTRY.before_send(self.writer)
-        pass_on(_Service.service_send_response, self, response, header)
-        REGISTRY.after_send(self.writer)
-
-
-def some(take: Callable[..., Any]) -> Callable[..., Any]:
-    """Rclpy takes a pair, of two Nones if there is nothing; an reader wants None then."""
-
-    def taken(handle: Any, kind: type) -> Any:
-        pair = take(handle, kind)
-        return None if pair is None or pair[0] is None else pair
-
-    return taken
+    def service_send_response(self, response: Any, to: Any) -> None:
+        """As in rclpy."""
+        if not self.is_valid():
+            as_python_does(_rclpy.RCLError("failed to send response: rclpy is shut down"))
+        REGISTRY.respond(self.writer, to.request, serialized(response))

@@ -1,14 +1,22 @@
 """The link between a submission's process and the simulator: what each side says, as bytes.
 
-One packet a message, over a SOCK_SEQPACKET socket pair. The student's process drives:
+The student's process drives, over a SOCK_SEQPACKET socket pair:
 
 | from | packet | meaning |
 |---|---|---|
 | simulator | `Table` | these endpoints of mine are new, these are gone; first of all packets |
-| student | `Hello` | so many of my endpoints match each of yours; `Hello` answers when both agree |
-| student | `Advance` | I have sent so many messages; run until this tick, at most so many ticks |
-| simulator | `Reply` | this tick is over; I have sent so many messages |
+| student | `Interests` | this is what I read and publish |
+| student | `Advance` | run until this tick, but not more than so many ticks |
+| simulator | `Reply` | this tick is over; here are messages, some of ticks to come |
 | student | `Note` | something about the student's process; not answered |
+
+With the first table the simulator hands out two more things: the end of a second socket pair, on
+which `Mail` goes to the simulator, and a page in which the student's side writes the tick that it
+has reached (`PROGRESS`). The simulator looks at both when it is asked to advance, and when the
+student's process ends or stalls without a word: what that has sent before counts.
+
+Messages travel here and not by DDS, in the bytes that DDS would have carried (CDR): DDS delivers
+when it likes, and a message that it has delivered late would change the run.
 
 Everything that comes from the student's process is untrusted: `decode` checks its form, and the
 simulator checks the numbers. It can distort its own pace, nothing else.
@@ -17,21 +25,27 @@ simulator checks the numbers. It can distort its own pace, nothing else.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, field
 from enum import IntEnum
 from struct import Struct
-from typing import Any
+from typing import Any, NamedTuple
 
 #: A tick's length [ns]. As in turtlesim_py.world.arena, whose import would cost a student's
 #: process numpy and Pillow.
 TICK_NS = 16_000_000
 #: More ticks than any run has; "until something happens".
 FOREVER = 1 << 40
-#: The longest packet.
-LIMIT_BYTES = 200_000
 
-_HEAD = Struct("<cQI")
-_COUNT = Struct("<IQ")
+#: The tick that the student's side has reached, at the start of a page that both see: it is known
+#: there when that side ends without a word.
+PROGRESS = Struct("<Q")
+
+_HEAD = Struct("<cQIQ?")
+_PARCEL = Struct("<IIQQI")
+_CHANNEL = re.compile(r"[a-z]+ /[\w/]{0,300}", re.ASCII)
+_TOPIC = re.compile(r"/[\w/]{0,300}", re.ASCII)
+_TYPE = re.compile(r"\w{1,100}/\w{1,10}/\w{1,200}", re.ASCII)
 
 
 class ProtocolError(Exception):
@@ -42,22 +56,38 @@ class State(IntEnum):
     """What a `Reply` says about the run."""
 
     RUNNING = 0
-    CHANGED = 1  # the simulator's endpoints; a `Table` follows, and the tick waits for a `Hello`
-    OVER = 2
+    OVER = 1
 
 
 class Kind(IntEnum):
     """What a `Note` is about."""
 
-    LEAVING = 0  # the student's program has ended, everything sent has been announced
+    LEAVING = 0  # the student's program has ended, and has told all that it sent
     STUCK = 1  # its threads wait for something that can no longer happen, in a callback
     WAITING = 2  # its threads wait for something that will not come, as a program may at its end
     UNSUPPORTED = 3  # it did what virtual time cannot follow: `text` says what
-    WARNING = 4  # DDS did not deliver or match in time; `text` says what
-    FAILED = 5  # virtual time does not work here; `text` says why, as a clause
+    FAILED = 4  # virtual time does not work here; `text` says why, as a clause
 
 
-Counts = list[tuple[int, int]]  # (id of a simulator's endpoint, number)
+class Parcel(NamedTuple):
+    """A message on its way.
+
+    Attributes:
+        endpoint: the simulator's end of its way, by its number in the tables.
+        client: which of the student's clients asked for it, or asks; 0 for a topic.
+        number: of a request, by which its response is known; on a topic, which of its messages.
+        tick: in which it was sent.
+        data: the message in CDR, as DDS would carry it.
+    """
+
+    endpoint: int
+    client: int
+    number: int
+    tick: int
+    data: bytes
+
+
+Parcels = list[Parcel]
 
 
 @dataclass(frozen=True)
@@ -70,43 +100,64 @@ class EndpointInfo:
     writes: bool
     reliability: int
     durability: int
+    depth: int
 
 
 @dataclass(frozen=True)
 class Table:
-    """Endpoints that appeared and disappeared since the last table."""
+    """Endpoints that appeared and disappeared since the last table.
+
+    What is gone may still have sent something that comes with the next `Reply`.
+    """
 
     added: tuple[EndpointInfo, ...]
     removed: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
-class Hello:
-    """How many endpoints of the student match each of the simulator's (absent: none).
+class Interests:
+    """The channels that the student's process reads, and (topic, type) of what it publishes."""
 
-    `publishers`: how many it has in all; some publish where nobody listens.
-    """
-
-    matched: Counts
-    publishers: int = 0
+    reads: tuple[str, ...]
+    publishes: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
 class Advance:
-    """Run until `target`, but not more than `most` ticks; `sent`: totals, where they changed."""
+    """Run until `target`, but not more than `most` ticks.
+
+    Attributes:
+        reached: the tick up to which the student's side has used what was foreseen.
+        has_mailed: there is mail since the last one.
+    """
 
     target: int
     most: int
-    sent: Counts
+    reached: int
+    has_mailed: bool = False
 
 
 @dataclass(frozen=True)
 class Reply:
-    """Where the simulator stands; `sent`: totals, where they changed."""
+    """Where the simulator stands.
+
+    Attributes:
+        foreseen: the tick up to which the messages are those that will be sent, if the student's
+            side sends nothing meanwhile.
+        parcels: by tick.
+    """
 
     tick: int
     state: State
-    sent: Counts
+    foreseen: int
+    parcels: Parcels = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Mail:
+    """Messages from the student's process, sent when the program sent them."""
+
+    parcels: Parcels
 
 
 @dataclass(frozen=True)
@@ -117,20 +168,22 @@ class Note:
     text: str = ""
 
 
-Packet = Table | Hello | Advance | Reply | Note
+Packet = Table | Interests | Advance | Reply | Mail | Note
 
 
 def encode(packet: Packet) -> bytes:
     """A packet's bytes."""
     match packet:
-        case Advance(target, most, sent):
-            return _encode(b"A", target, most, sent)
-        case Reply(tick, state, sent):
-            return _encode(b"R", tick, state, sent)
-        case Hello(matched, publishers):
-            return _encode(b"H", publishers, 0, matched)
+        case Advance(target, most, reached, has_mailed):
+            return _HEAD.pack(b"A", target, most, reached, has_mailed)
+        case Reply(tick, state, foreseen, parcels):
+            return _HEAD.pack(b"R", tick, state, foreseen, False) + _parcels(parcels)
+        case Mail(parcels):
+            return _HEAD.pack(b"M", 0, 0, 0, False) + _parcels(parcels)
         case Note(kind, text):
-            return _HEAD.pack(b"N", 0, kind) + text.encode("utf-8", "replace")[:1000]
+            return _HEAD.pack(b"N", 0, kind, 0, False) + text.encode("utf-8", "replace")[:1000]
+        case Interests(reads, publishes):
+            return b"I" + json.dumps([reads, publishes]).encode()
         case Table(added, removed):
             data = {"added": [vars(endpoint) for endpoint in added], "removed": removed}
             return b"T" + json.dumps(data).encode()
@@ -143,27 +196,59 @@ def decode(data: bytes) -> Packet:
         ProtocolError: they mean none.
     """
     try:
-        if data[:1] == b"T":
-            return _table(json.loads(data[1:]))
-        name, number, other = _HEAD.unpack_from(data)
-        if name == b"N":
-            return Note(Kind(other), data[_HEAD.size :].decode("utf-8", "replace"))
-        counts: Counts = list(_COUNT.iter_unpack(data[_HEAD.size :]))
-        if name == b"A":
-            return Advance(number, other, counts)
-        if name == b"R":
-            return Reply(number, State(other), counts)
-        if name == b"H":
-            return Hello(counts, number)
+        match data[:1]:
+            case b"T":
+                return _table(json.loads(data[1:]))
+            case b"I":
+                return _interests(json.loads(data[1:]))
+        name, number, other, further, flag = _HEAD.unpack_from(data)
+        match name:
+            case b"N":
+                return Note(Kind(other), data[_HEAD.size :].decode("utf-8", "replace"))
+            case b"A":
+                return Advance(number, other, further, flag)
+            case b"R":
+                return Reply(number, State(other), further, _read_parcels(data))
+            case b"M":
+                return Mail(_read_parcels(data))
     except Exception as error:
         raise ProtocolError(f"{data[:32]!r}: {error!r}") from None
     raise ProtocolError(f"{data[:32]!r}: no such packet")
 
 
-def _encode(name: bytes, number: int, other: int, counts: Counts) -> bytes:
-    head = _HEAD.pack(name, number, other)
-    return head + b"".join([_COUNT.pack(*count) for count in counts]) if counts else head
+def _parcels(parcels: Parcels) -> bytes:
+    pack = _PARCEL.pack
+    return b"".join(
+        [
+            pack(endpoint, client, number, tick, len(data)) + data
+            for endpoint, client, number, tick, data in parcels
+        ]
+    )
+
+
+def _read_parcels(data: bytes) -> Parcels:
+    found = []
+    at, end, size, unpack = _HEAD.size, len(data), _PARCEL.size, _PARCEL.unpack_from
+    while at < end:
+        endpoint, client, number, tick, length = unpack(data, at)
+        at += size
+        if at + length > end:
+            raise ValueError("cut off")
+        found.append(Parcel(endpoint, client, number, tick, data[at : at + length]))
+        at += length
+    return found
 
 
 def _table(data: dict[str, Any]) -> Table:
     return Table(tuple(EndpointInfo(**entry) for entry in data["added"]), tuple(data["removed"]))
+
+
+def _interests(data: Any) -> Interests:
+    reads, publishes = data
+    for channel in reads:
+        if not _CHANNEL.fullmatch(channel):
+            raise ValueError(f"no channel: {channel!r:.100}")
+    for topic, kind in publishes:
+        if not _TOPIC.fullmatch(topic) or not _TYPE.fullmatch(kind):
+            raise ValueError(f"no topic: {topic!r:.100} {kind!r:.100}")
+    return Interests(tuple(reads), tuple((topic, kind) for topic, kind in publishes))

@@ -1,18 +1,15 @@
-"""What this process sends and receives over DDS, counted; what has arrived waits here.
+"""What this process sends and receives: its readers and writers, and what has arrived in them.
 
-DDS delivers when it likes. So whatever arrives is taken at once into a reader of ours, as deep as
-the one that the program asked for, and rclpy is served from there. Each side of the link says how
-much it has sent, the other waits until it has received as much: then what a program sees depends
-on virtual time alone. Used by both sides.
+rclpy makes its entities in DDS as ever, but no message goes that way: DDS delivers when it likes.
+A message goes, in the bytes that DDS would carry, to the readers of this process at once, and over
+the link to those of the other (`protocol`). So what a program sees depends on virtual time alone.
+Used by both sides.
 
 A channel is what in DDS is a topic: "topic /chatter", "request /clear", "response /clear".
 """
 
 from __future__ import annotations
 
-import ctypes
-import os
-import select
 from collections import defaultdict, deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -27,12 +24,23 @@ from rclpy.qos import (
     qos_check_compatible,
 )
 
-from grader.run.lockstep import real
 
-#: How deep the readers underneath really are; more is never on its way (see IN_FLIGHT).
-DEPTH = 128
-#: After so many messages without an answer the receiver is asked to take them.
-IN_FLIGHT = 64
+@dataclass(eq=False, slots=True)
+class Arrived:
+    """A message in a reader.
+
+    Attributes:
+        data: in CDR.
+        time_ns: when it was sent, on the clock of the run.
+        number: of a request, or which of a topic's messages it is.
+        client: who has asked: the reader for responses in this process, or the number by which the
+            other process knows one of its clients; None for a topic.
+    """
+
+    data: bytes
+    time_ns: int
+    number: int
+    client: Reader | int | None = None
 
 
 @dataclass(eq=False)
@@ -41,92 +49,99 @@ class Endpoint:
 
     Attributes:
         channel: what it is connected to.
-        type: the ROS type, "geometry_msgs/msg/Twist".
+        type: the ROS type, "geometry_msgs/msg/Twist"; of a service or action, that of the whole.
         qos: its quality of service.
-        matches: asks DDS whether exactly so many counterparts are known; None: nobody can tell.
+        message_type: of a part of an action that is a topic, the type of its messages.
+        matches, unfit: how many counterparts it has had in all, here and in the simulator: those
+            that DDS connects, and those whose quality of service does not fit. Counted on the
+            student's side.
     """
 
     channel: str
     type: str
     qos: QoSProfile
-    matches: Callable[[int], bool] | None
+    message_type: str = ""
+    matches: int = 0
+    unfit: int = 0
 
     @property
     def name(self) -> str:
         """The ROS name, without the kind of channel."""
         return self.channel.partition(" ")[2]
 
+    @property
+    def kind(self) -> str:
+        """The kind of channel: topic, request, response."""
+        return self.channel.partition(" ")[0]
 
-@dataclass(eq=False)
-class Writer(Endpoint):
-    """A writer; `sent` counts its messages."""
-
-    sent: int = 0
-    #: topics without an answer, as pose, are no reason to stop ticking
-    is_stream: bool = False
-    #: set by the student's side: counterparts in the simulator and in this process
-    remote: list[Any] = field(default_factory=list)
-    local: list[Reader] = field(default_factory=list)
-
-
-@dataclass(eq=False)
-class Arrivals:
-    """How much should have arrived and how much has; the readers of one response share it."""
-
-    expected: int = 0
-    received: int = 0
+    @property
+    def is_lasting(self) -> bool:
+        """Whether late readers get a writer's last messages, or a reader wants them."""
+        return bool(self.qos.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @dataclass(eq=False)
 class Reader(Endpoint):
-    """A reader; `items` have arrived and not been taken by the program, as `take` gives them."""
+    """A reader; `items` have arrived and not been taken by the program.
 
-    take: Callable[[], Any] = lambda: None
-    arrivals: Arrivals = field(default_factory=Arrivals)
-    items: deque[Any] = field(default_factory=deque)
-    #: of the arrivals, those that this reader received
-    received: int = 0
-    #: set by the student's side: counterparts in the simulator
+    Attributes:
+        message: the class of its messages.
+        awaited: of a client's, how many responses from the other process are still to come.
+        remote: set by the student's side: the simulator's writers that it hears.
+    """
+
+    message: Any = None
+    items: deque[Arrived] = field(default_factory=deque)
+    awaited: int = 0
     remote: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         if self.qos.history != QoSHistoryPolicy.KEEP_ALL:
             self.items = deque(maxlen=max(1, self.qos.depth))
 
-    def drain(self) -> None:
-        """Take everything that DDS has."""
-        while (item := self.take()) is not None:
-            self.items.append(item)
-            self.arrivals.received += 1
-            self.received += 1
-
-    def pop(self) -> Any:
+    def pop(self) -> Arrived | None:
         """The oldest item, or None."""
         return self.items.popleft() if self.items else None
 
-    @property
-    def is_late(self) -> bool:
-        """Whether something that was sent has not arrived."""
-        return self.arrivals.received < self.arrivals.expected
+
+@dataclass(eq=False)
+class Writer(Endpoint):
+    """A writer.
+
+    Attributes:
+        sent: how many messages it has sent.
+        is_stream: a topic without an answer, as pose, is no reason to stop ticking.
+        history: what late readers get.
+        local: the readers of this process that hear it.
+        remote: set by the student's side: the simulator's readers that hear it.
+    """
+
+    sent: int = 0
+    is_stream: bool = False
+    history: deque[Arrived] = field(default_factory=deque)
+    local: list[Reader] = field(default_factory=list)
+    remote: list[Any] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        if self.qos.history != QoSHistoryPolicy.KEEP_ALL:
+            self.history = deque(maxlen=max(1, self.qos.depth))
 
 
 class EndpointRegistry:
     """All endpoints of this process. The two sides of the link derive from it."""
 
-    def __init__(self) -> None:
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        """`now_ns` tells the time that messages are stamped with."""
         self.writers: list[Writer] = []
         self.readers: list[Reader] = []
         #: endpoints were added or removed, and the other side of the link does not know
         self.changed = False
-        self._is_unpaired = False
-        self.arrival_signal = ArrivalSignal()
         #: called with what the program does that virtual time cannot follow: "the submission ..."
         self.refuse: Callable[[str], None] = lambda what: None
-        self._shared_arrivals: dict[str, Arrivals] = {}
+        self.now_ns = now_ns
+        self._is_unpaired = False
 
-    def shared_arrivals(self, channel: str) -> Arrivals:
-        """What all readers on this channel count together."""
-        return self._shared_arrivals.setdefault(channel, Arrivals())
+    # Which there are --------------------------------------------------------------------------
 
     def add(self, endpoint: Endpoint) -> None:
         """A reader or writer was made."""
@@ -153,90 +168,72 @@ class EndpointRegistry:
         for reader in self.readers:
             readers[reader.channel].append(reader)
         for writer in self.writers:
+            before = writer.local
             writer.local = [i for i in readers.get(writer.channel, ()) if compatible(writer, i)]
+            if writer.is_lasting:
+                for reader in writer.local:
+                    if reader not in before and reader.is_lasting:
+                        reader.items.extend(writer.history)
 
-    def local_writers(self, reader: Reader) -> int:
-        """How many writers of this process a reader is connected with."""
-        return sum(reader in writer.local for writer in self.writers)
-
-    def before_question(self) -> None:
-        """The program is about to ask DDS for its counterparts."""
-
-    def before_send(self, writer: Writer) -> None:
-        """A message is about to be sent."""
+    def connect(self) -> None:
+        """Connect what belongs together; before anything is sent."""
         self.pair_locally()
 
-    def after_send(self, writer: Writer) -> None:
-        """A message has been sent; DDS has already brought it to readers in this process."""
+    def before_question(self) -> None:
+        """The program is about to ask for its counterparts."""
+        self.pair_locally()
+
+    def count_readers(self, writer: Writer) -> int:
+        """How many readers hear a writer."""
+        return len(writer.local) + len(writer.remote)
+
+    def count_writers(self, reader: Reader) -> int:
+        """How many writers a reader hears."""
+        return sum(reader in writer.local for writer in self.writers) + len(reader.remote)
+
+    # Messages ---------------------------------------------------------------------------------
+
+    def publish(self, writer: Writer, data: bytes) -> None:
+        """Send a message to all who read the topic, after `connect`."""
         writer.sent += 1
-        for arrivals in distinct_arrivals(writer.local):
-            arrivals.expected += 1
+        arrived = Arrived(data, self.now_ns(), writer.sent)
+        if writer.is_lasting:
+            writer.history.append(arrived)
+        for reader in writer.local:
+            reader.items.append(arrived)
 
-    def request_destroy(self, endpoints: list[Endpoint], destroy: Callable[[], None]) -> None:
-        """The program wants to destroy these endpoints."""
-        self.remove(endpoints)
-        destroy()
+    def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
+        """Send a client's request, after `connect`; returns its number.
 
-    def await_arrivals(self, readers: Iterable[Reader], patience_s: float) -> list[Reader]:
-        """Really wait until everything expected is here; returns those where it is not."""
-        for reader in readers:
-            reader.drain()
-        late = [reader for reader in readers if reader.is_late]
-        deadline = real.monotonic() + patience_s if late else 0.0
-        while late:
-            left = deadline - real.monotonic()
-            if left <= 0:
-                return late
-            self.arrival_signal.wait(left)
-            for reader in late:
-                reader.drain()
-            late = [reader for reader in late if reader.is_late]
-        return []
+        The response comes into `client`.
+        """
+        writer.sent += 1
+        for reader in writer.local:
+            reader.items.append(Arrived(data, self.now_ns(), writer.sent, client))
+        return writer.sent
 
-
-def distinct_arrivals(readers: Iterable[Reader]) -> Iterable[Arrivals]:
-    """The different ones: a response counts once, for whichever client it is."""
-    return {id(reader.arrivals): reader.arrivals for reader in readers}.values()
-
-
-class ArrivalSignal:
-    """Given by DDS's own threads when something arrives.
-
-    They call libc's eventfd_write(fd, number) directly, with the arguments that they have for a
-    callback anyway. A Python callback would need the GIL while DDS holds a lock: a deadlock.
-    """
-
-    def __init__(self) -> None:
-        self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
-        self._poll = select.poll()
-        self._poll.register(self._fd, select.POLLIN)
-        self._signal = ctypes.cast(ctypes.CDLL(None).eventfd_write, ctypes.c_void_p)
-
-    def attach(self, function: str, pointer: int, library: str = "librcl.so") -> None:
-        """Have rcl's `function` give the signal for the reader at `pointer`."""
-        setter = getattr(ctypes.CDLL(library), function)
-        setter.argtypes = [ctypes.c_void_p] * 3
-        if setter(pointer, self._signal, self._fd) != 0:
-            raise RuntimeError(f"{function} failed")
-
-    def wait(self, patience_s: float) -> None:
-        """Really wait for a signal."""
-        if self._poll.poll(max(1, int(patience_s * 1000))):
-            os.eventfd_read(self._fd)
+    def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
+        """Send the response to a request."""
+        writer.sent += 1
+        if isinstance(to.client, Reader):
+            to.client.items.append(Arrived(data, self.now_ns(), to.number))
 
 
 def compatible(writer: Endpoint, reader: Endpoint) -> bool:
-    """Whether DDS will connect the two, which are on the same channel."""
-    if writer.type != reader.type:
-        return False
+    """Whether DDS connects the two, which are on the same channel."""
+    return writer.type == reader.type and suits(writer, reader)
+
+
+def suits(writer: Endpoint, reader: Endpoint) -> bool:
+    """Whether a writer offers the quality of service that a reader requests."""
     compatibility, _ = qos_check_compatible(writer.qos, reader.qos)
     return bool(compatibility != QoSCompatibility.ERROR)
 
 
-def policies(reliability: int, durability: int) -> QoSProfile:
+def policies(reliability: int, durability: int, depth: int) -> QoSProfile:
     """The quality of service of a simulator's endpoint, from what a table says about it."""
     return QoSProfile(
-        depth=DEPTH,
+        depth=depth,
         reliability=QoSReliabilityPolicy(reliability),
         durability=QoSDurabilityPolicy(durability),
     )

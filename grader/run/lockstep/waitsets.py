@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep.faults import pass_on
-from grader.run.lockstep.registry import Reader
+from grader.run.lockstep.registry import Endpoint, Reader
 from grader.run.lockstep.times import NEVER
 
 _WaitSet, _GuardCondition, _Timer = _rclpy.WaitSet, _rclpy.GuardCondition, _rclpy.Timer
@@ -22,8 +22,11 @@ class Waiter(Protocol):
     """Whoever knows how to wait."""
 
     @property
-    def graph_epoch(self) -> int:
-        """Counts what changes in the graph: afterwards DDS may have events for us."""
+    def asks_for_events(self) -> bool:
+        """Whether anybody wants to hear of events of DDS."""
+
+    def await_dds(self, what: str) -> None:
+        """Really wait a little for DDS; where that is in vain, the run cannot be made."""
 
     def look_first(self) -> None:
         """A wait set is about to look whether something is ready."""
@@ -101,22 +104,30 @@ class Timer(_rclpy.Timer):
 
 
 class EventHandle(_rclpy.EventHandle):
-    """A QoS event; DDS has one only after the graph has changed, so only then it is asked."""
+    """An event of DDS: it has found counterparts, or ones whose quality of service does not fit.
 
-    #: how often to ask after each change: events come a little later than matches
-    TIMES = 20
+    DDS finds them when it likes. We know them already, so whoever looks waits until DDS does too.
+    Other events tell of real time or of real networks, and never come.
+    """
 
-    def __init__(self, *args: Any) -> None:
-        pass_on(_EventHandle.__init__, self, *args)
-        self._epoch = -1
-        self._left = 0
+    def __init__(self, parent: Any, kind: Any) -> None:
+        pass_on(_EventHandle.__init__, self, parent, kind)
+        self._endpoint: Endpoint = parent.endpoints[0]
+        self._counts_matches = kind.name.endswith("_MATCHED")
+        self._counts_unfit = kind.name.endswith("_INCOMPATIBLE_QOS")
+        self._told = 0
 
-    def may_be_ready(self) -> bool:
-        """Whether it is worth while to ask DDS."""
-        if self._epoch != WAITER.graph_epoch:
-            self._epoch, self._left = WAITER.graph_epoch, self.TIMES
-        self._left -= 1
-        return self._left >= 0
+    def is_due(self) -> bool:
+        """Whether DDS has something to tell, now or soon."""
+        if self._counts_unfit:
+            return self._endpoint.unfit > self._told
+        return self._counts_matches and self._endpoint.matches > self._told
+
+    def take_event(self) -> Any:
+        """As in rclpy."""
+        status = pass_on(_EventHandle.take_event, self)
+        self._told = getattr(status, "total_count", self._told)
+        return status
 
 
 class WaitSet:
@@ -145,7 +156,6 @@ class WaitSet:
         self._kinds: dict[Any, str] = {}
         self._ready: list[Any] = []
         self._ready_events: list[bool] = []
-        self._quiet_epoch = -1
         self._has_work = False
 
     def _add(self, kind: str, handle: Any) -> int:
@@ -245,13 +255,17 @@ class WaitSet:
         return self._has_work or bool(self.ready_guards)
 
     def _ask_for_events(self) -> list[bool]:
-        epoch = WAITER.graph_epoch
-        if not self._events or self._quiet_epoch == epoch:
+        """Of which events DDS has to tell."""
+        if not WAITER.asks_for_events or not any(event.is_due() for event in self._events):
             return []
-        wanted = [event.may_be_ready() for event in self._events]
-        if not any(wanted):
-            self._quiet_epoch = epoch
-            return []
+        due = [event.is_due() for event in self._events]
+        ready = self._look_for_events()
+        while any(is_due and not is_ready for is_due, is_ready in zip(due, ready, strict=True)):
+            WAITER.await_dds("event")
+            ready = self._look_for_events()
+        return [is_due and is_ready for is_due, is_ready in zip(due, ready, strict=True)]
+
+    def _look_for_events(self) -> list[bool]:
         real = _WaitSet(0, 0, 0, 0, 0, len(self._events), self._context)
         real.clear_entities()
         for event in self._events:

@@ -1,73 +1,51 @@
-"""The simulator's readers and writers in virtual time: numbered, and their messages counted."""
+"""The simulator's readers and writers in virtual time: numbered, and what goes out through them."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
-from grader.run.lockstep.protocol import Counts, EndpointInfo, Table
-from grader.run.lockstep.registry import (
-    Endpoint,
-    EndpointRegistry,
-    Reader,
-    Writer,
-    distinct_arrivals,
-)
-
-#: How long DDS may take to deliver a message that was announced [s].
-ARRIVAL_PATIENCE_S = 1.0
-#: A channel on which so often something announced did not come is not waited for any more.
-MOST_MISSED = 3
-#: More messages between two handshakes than any submission's process of ours announces.
-MOST_ANNOUNCED = 1_000
+from grader.recording.recording import PublishedTopic
+from grader.run.lockstep.endpoints import deserialized
+from grader.run.lockstep.protocol import EndpointInfo, Interests, Parcel, Parcels, Table
+from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
+from grader.run.simulator.published_topics import USUAL
 
 
 class SimulatorEndpoints(EndpointRegistry):
     """All of them, with the numbers by which the student's side knows them."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self.by_number: dict[int, Endpoint] = {}
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        super().__init__(now_ns)
+        self.tick = 0
+        #: since the last call of `take_outgoing` something was sent that may be waited for
         self.answered = False
         self._numbers: dict[Endpoint, int] = {}
-        self._announced: dict[Endpoint, int] = {}
-        self._missed: dict[Endpoint, int] = {}
-        self._unannounced: dict[Writer, None] = {}
+        self._by_number: dict[int, Endpoint] = {}
         self._added: list[EndpointInfo] = []
         self._removed: list[int] = []
-        self._pending_destroys: list[Callable[[], None]] = []
+        self._outgoing: Parcels = []
+        self._read = frozenset[str]()
+        self._published: dict[str, str] = {}
+        self._may_have_unread = True
 
     def add(self, endpoint: Endpoint) -> None:
         """Number a new endpoint."""
         super().add(endpoint)
         number = self._numbers[endpoint] = len(self._numbers) + 1
-        self.by_number[number] = endpoint
-        self._announced[endpoint] = 0
-        policies = (int(endpoint.qos.reliability), int(endpoint.qos.durability))
+        self._by_number[number] = endpoint
+        qos = endpoint.qos
+        policies = (int(qos.reliability), int(qos.durability), max(1, qos.depth))
         writes = isinstance(endpoint, Writer)
         self._added.append(EndpointInfo(number, endpoint.channel, endpoint.type, writes, *policies))
 
-    def remove(self, endpoints: Any) -> None:
-        """Strike out endpoints; their last messages may still be announced."""
-        gone = [
-            endpoint for endpoint in endpoints if self.by_number.pop(self._numbers[endpoint], None)
-        ]
+    def remove(self, endpoints: Iterable[Endpoint]) -> None:
+        """Strike out endpoints."""
+        gone = [e for e in endpoints if self._by_number.pop(self._numbers[e], None)]
         super().remove(gone)
         self._removed += [self._numbers[endpoint] for endpoint in gone]
 
-    def request_destroy(self, endpoints: list[Endpoint], destroy: Callable[[], None]) -> None:
-        """Destroy only after the other side has received what was sent."""
-        self.remove(endpoints)
-        self._pending_destroys.append(destroy)
-
-    def destroy_pending(self) -> None:
-        """Destroy what was retired."""
-        for destroy in self._pending_destroys:
-            destroy()
-        self._pending_destroys.clear()
-
-    def table(self) -> Table:
+    def take_table(self) -> Table:
         """What has changed since the last table."""
         self.changed = False
         gone = set(self._removed)
@@ -76,54 +54,94 @@ class SimulatorEndpoints(EndpointRegistry):
         self._added, self._removed = [], []
         return table
 
-    def after_send(self, writer: Writer) -> None:
-        """Remember to announce it."""
-        super().after_send(writer)
-        self._unannounced[writer] = None
+    # What the student's side reads and publishes ----------------------------------------------
+
+    def note(self, interests: Interests) -> None:
+        """Note what the student's side reads and publishes."""
+        self._read = frozenset(interests.reads)
+        types: dict[str, set[str]] = {}
+        for topic, kind in interests.publishes:
+            types.setdefault(topic, set()).add(kind)
+        for endpoint in (*self.writers, *self.readers):
+            if endpoint.name in types and endpoint.kind == "topic":
+                types[endpoint.name].add(endpoint.message_type or endpoint.type)
+        # as the graph shows it: of several types on a topic, ours too, the first
+        self._published |= {topic: min(kinds) for topic, kinds in types.items()}
+
+    def is_read(self, writer: Writer) -> bool:
+        """Whether the student's side reads what this writer writes."""
+        return writer.channel in self._read
+
+    def others_are_read(self, writers: Iterable[Writer]) -> bool:
+        """Whether the student's side reads a topic of ours that is not one of these."""
+        known = {writer.channel for writer in writers}
+        return any(
+            writer.is_stream and writer.channel in self._read and writer.channel not in known
+            for writer in self.writers
+        )
+
+    def published(self) -> tuple[PublishedTopic, ...]:
+        """On which topics the student's side has published, but for those of every node."""
+        return tuple(
+            PublishedTopic(topic, kind)
+            for topic, kind in sorted(self._published.items())
+            if topic not in USUAL
+        )
+
+    # Messages ---------------------------------------------------------------------------------
+
+    def number(self, endpoint: Endpoint) -> int:
+        """The number of an endpoint."""
+        return self._numbers[endpoint]
+
+    def publish(self, writer: Writer, data: bytes) -> None:
+        """To readers in this process at once, to the student's side with the next reply."""
+        super().publish(writer, data)
+        self._may_have_unread = self._may_have_unread or bool(writer.local)
+        if self.is_read(writer) or writer.is_lasting:
+            self._send(writer, 0, writer.sent, data)
+
+    def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
+        """The same with a response."""
+        super().respond(writer, to, data)
+        if isinstance(to.client, int):
+            self._send(writer, to.client, to.number, data)
+
+    def _send(self, writer: Writer, client: int, number: int, data: bytes) -> None:
+        self._outgoing.append(Parcel(self._numbers[writer], client, number, self.tick, data))
         self.answered = self.answered or not writer.is_stream
 
-    def take_sent_counts(self) -> Counts:
-        """The totals of what was sent since the last call."""
-        counts = [(self._numbers[writer], writer.sent) for writer in self._unannounced]
-        self._unannounced.clear()
+    def take_outgoing(self) -> Parcels:
+        """What was sent to the student's side since the last call."""
+        parcels, self._outgoing = self._outgoing, []
         self.answered = False
-        return counts
+        return parcels
 
-    def await_announced(self, sent: Counts) -> list[Reader]:
-        """Wait for what was announced; returns where it did not come."""
-        awaited = []
-        for number, total in sent:
-            endpoint = self.by_number.get(number)
-            if (
-                not isinstance(endpoint, Reader)
-                or not 0 <= total - self._announced[endpoint] <= MOST_ANNOUNCED
-            ):
+    def receive(self, parcels: Parcels) -> list[str]:
+        """Take what the student's side has sent; the channels on which it was unreadable."""
+        unreadable = []
+        self._may_have_unread = True
+        for endpoint, client, number, _, data in parcels:
+            reader = self._by_number.get(endpoint)
+            if not isinstance(reader, Reader):
+                continue  # gone meanwhile
+            try:
+                deserialized(data, reader.message)
+            except Exception:  # of rclpy's C++
+                unreadable.append(reader.channel)
                 continue
-            for arrivals in distinct_arrivals([endpoint]):
-                arrivals.expected += total - self._announced[endpoint]
-            self._announced[endpoint] = total
-            awaited.append(endpoint)
-        patience = [endpoint for endpoint in awaited if self._missed.get(endpoint, 0) < MOST_MISSED]
-        late = self.await_arrivals(patience, ARRIVAL_PATIENCE_S)
-        for reader in late:
-            self._missed[reader] = self._missed.get(reader, 0) + 1
-            reader.arrivals.expected = reader.arrivals.received
-        return late
+            asked_by = client if reader.kind == "request" else None
+            reader.items.append(Arrived(data, self.now_ns(), number, asked_by))
+        return unreadable
 
     def has_unread(self) -> bool:
         """Whether something waits to be served."""
-        return any(reader.items for reader in self.readers)
+        if self._may_have_unread:
+            self._may_have_unread = any(reader.items for reader in self.readers)
+        return self._may_have_unread
 
-    def await_matches(self, matched: Counts, deadline: float) -> bool:
-        """Wait until DDS knows as many counterparts as the other side says; False if in vain."""
-        counts = dict(matched)
-        wanted = []
-        for number, endpoint in self.by_number.items():
-            local = self.local_writers(endpoint) if isinstance(endpoint, Reader) else 0
-            local = len(endpoint.local) if isinstance(endpoint, Writer) else local
-            wanted.append((endpoint, counts.get(number, 0) + local))
-        while wanted := [(e, n) for e, n in wanted if e.matches and not e.matches(n)]:
-            if time.monotonic() > deadline:
-                return False
-            time.sleep(0.0002)
-        return True
+
+def writer_of(publisher: Any) -> Writer:
+    """The writer of one of rclpy's publishers."""
+    writer: Writer = publisher.handle.writer
+    return writer

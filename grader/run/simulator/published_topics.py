@@ -1,4 +1,4 @@
-"""On which topics the submission publishes: the usual mistake is a wrong name."""
+"""On which topics the submission publishes in real time: the usual mistake is a wrong name."""
 
 from __future__ import annotations
 
@@ -7,32 +7,27 @@ from typing import Any
 from grader.recording.recording import PublishedTopic
 
 EVENTS = "/parameter_events"
+#: Every node has these, and ROS publishes on them by itself.
+USUAL = ("/rosout", EVENTS)
 
 
 class PublishedTopics:
     """Looks at the graph through a node of the scene, whose own publishers do not count."""
 
-    #: every node has these, and ROS publishes on them by itself
-    USUAL = ("/rosout", EVENTS)
-
     def __init__(self, node: Any) -> None:
         self._node = node
         self._types: dict[str, str] = {}
 
-    def look(self) -> int:
-        """Note what the graph shows now; returns how many publishers others have, but of rosout."""
+    def look(self) -> None:
+        """Note what the graph shows now."""
         node = self._node
         own = dict(
             node.get_publisher_names_and_types_by_node(node.get_name(), node.get_namespace())
         )
-        total = 0
         for topic, types in node.get_topic_names_and_types():
             others = node.count_publishers(topic) - (topic in own)
-            if others > 0 and topic != "/rosout":
-                total += others
-                if topic not in self.USUAL:
-                    self._types[topic] = types[0]
-        return total
+            if others > 0 and topic not in USUAL:
+                self._types[topic] = types[0]
 
     def found(self) -> tuple[PublishedTopic, ...]:
         """What was noted."""

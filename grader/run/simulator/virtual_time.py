@@ -6,9 +6,9 @@ The first three as in `grader.run.simulator.real_time`; LINK is the socket to th
 process PID, CORE the processor core to share with it (-1: any), PATIENCE a
 `grader.run.simulator.link.Patience` as JSON.
 
-Before a tick, everything that was announced as sent to us has arrived here; what is answered and
-published is announced in turn (`grader.run.lockstep.protocol`). What happens in a tick is the
-node's own business, as in real time.
+What the submission has sent comes with its request for time, what is answered and published goes
+with the reply (`grader.run.lockstep.protocol`). What happens in a tick is the node's own business,
+as in real time.
 """
 
 from __future__ import annotations
@@ -27,19 +27,16 @@ from rclpy.signals import SignalHandlerOptions
 
 from grader.run import handover
 from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
-from grader.run.lockstep.protocol import TICK_NS, Advance, Hello, Reply, State
+from grader.run.lockstep.protocol import TICK_NS, Advance, Interests, Reply, State
 from grader.run.lockstep.times import EPOCH_NS
 from grader.run.plan import Plan
 from grader.run.processes import cores
 from grader.run.processes.parent import die_with_parent
 from grader.run.simulator.endpoints import SimulatorEndpoints
+from grader.run.simulator.foresight import Foresight
 from grader.run.simulator.link import Patience, Refused, StudentLink
-from grader.run.simulator.published_topics import PublishedTopics
 from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
-
-#: How long DDS may take to connect two ends [s].
-MATCH_PATIENCE_S = 3.0
 
 
 class Lockstep:
@@ -51,39 +48,43 @@ class Lockstep:
         self.now_ns = 0
         self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
         waitsets.install(_NoWaiting(self._clocks))
-        self._registry = SimulatorEndpoints()
-        endpoints.install(self._registry, lambda: EPOCH_NS + self.now_ns)
+        self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns)
+        endpoints.install(self._registry)
         actions.install()
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
         assert self._scene.tick_ns == TICK_NS
-        hooks = Hooks(has_unread=self._registry.has_unread, after_serving=self._introduce_changes)
+        hooks = Hooks(has_unread=self._registry.has_unread)
         self._simulation = self._scene.simulate(plan.limits, plan.start, hooks, plan.interfaces)
         self._simulation.record()
-        self._topics = PublishedTopics(self._simulation.node)
+        self._foresight = Foresight(self._simulation, self._registry)
         self._tick = 0
         self._reason: Reason = ""
-        self._request: Advance | None = None
         #: when the run reached which stage, on the machine's monotonic clock [s]
         self._marks: dict[str, float] = {}
         self._was_at_rest: bool | None = None  # when the submission stopped responding
 
     def run(self) -> dict[str, Any]:
         """To the end; how it came."""
-        self._link.send(self._registry.table())
-        self._request = self._next_request()
+        self._link.introduce(self._registry.take_table())
+        request = self._next_request()
         self._mark("connected")
         cores.pin(self._core)
-        while self._request and not self._reason:
+        while request and not self._reason:
             self._link.has_started()
+            self._catch_up(request.reached)
+            if request.has_mailed:
+                self._take_mail()
             if self._link.waits:
                 self._note_rest()
-            self._advance(self._request)
-            state = State.OVER if self._reason else State.RUNNING
-            self._link.send(Reply(self._tick, state, self._registry.take_sent_counts()))
+            self._advance(request)
+            self._reply(request)
             if not self._reason:
-                self._request = self._next_request()
-        self._note_rest()
+                request = self._next_request()
+        if not self._reason:
+            self._catch_up(self._link.reached())
+            self._note_rest()
+            self._take_mail()
         self._finish_alone()
         self._mark("over")
         return {
@@ -105,86 +106,79 @@ class Lockstep:
 
     def save(self, file: Path) -> None:
         """Write the recording where the grader finds it."""
-        handover.leave(file, self._scene, self._simulation.trace(), self._topics.found())
+        topics = self._registry.published()
+        handover.leave(file, self._scene, self._simulation.trace(), topics)
 
     def _next_request(self) -> Advance | None:
-        """The next `Advance`, after all `Hello`s before it."""
-        while isinstance(request := self._link.receive(), Hello):
+        """The next `Advance`, after all that comes before it."""
+        while (packet := self._link.receive()) is not None:
             self._mark("met")
-            self._registry.pair_locally()
-            self._registry.destroy_pending()
-            if not self._introduced(request):
-                self._link.flag(f"DDS did not connect everything at tick {self._tick}")
-            self._link.send(Hello([]))
-        assert request is None or isinstance(request, Advance)
-        return request
+            match packet:
+                case Interests():
+                    self._registry.note(packet)
+                    self._foresight.forget()
+                case Advance():
+                    return packet
+        return None
 
-    def _introduced(self, hello: Hello) -> bool:
-        """Wait until DDS knows all that the other side says that it has; False if in vain."""
-        deadline = time.monotonic() + MATCH_PATIENCE_S
-        if not self._registry.await_matches(hello.matched, deadline):
-            return False
-        while self._topics.look() < hello.publishers:
-            if time.monotonic() > deadline:
-                return False
-            time.sleep(0.001)
-        return True
+    def _take_mail(self) -> None:
+        for channel in self._registry.receive(self._link.mail()):
+            self._link.flag(f"a message on {channel} could not be read")
+
+    def _catch_up(self, reached: int) -> None:
+        """Live through the ticks that the student's side was told of before they were."""
+        while self._tick < min(reached, self._foresight.end) and not self._reason:
+            self._begin_tick()
+            self._reason = self._foresight.live_through(EPOCH_NS + self.now_ns)
+        self._foresight.forget()
 
     def _advance(self, request: Advance) -> None:
-        self._collect(request)
         last = min(request.target, self._tick + request.most)
         while self._tick < last and not self._reason:
-            self._tick_once()
+            self._begin_tick()
+            self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
             if self._registry.answered:
                 return
 
-    def _collect(self, request: Advance) -> None:
-        for reader in self._registry.await_announced(request.sent):
-            self._link.flag(f"announced messages on {reader.channel} did not come")
-
-    def _tick_once(self) -> None:
+    def _begin_tick(self) -> None:
         self._tick += 1
+        self._registry.tick = self._tick
         self.now_ns = self._tick * TICK_NS
         self._clocks.set_now(self.now_ns)
-        self._reason = self._simulation.tick()
 
-    def _introduce_changes(self) -> None:
-        """In the middle of a tick: have the other side find our new endpoints, and ours its."""
-        if not self._registry.changed:
-            return
-        if self._request is None:
-            self._registry.table()
-            self._registry.destroy_pending()
-            return
-        self._link.send(Reply(self._tick - 1, State.CHANGED, self._registry.take_sent_counts()))
-        self._link.send(self._registry.table())
-        self._request = self._next_request()
+    def _reply(self, request: Advance) -> None:
+        state = State.OVER if self._reason else State.RUNNING
+        parcels = self._registry.take_outgoing()
+        if self._registry.changed:
+            self._link.send(self._registry.take_table())
+        elif state == State.RUNNING:
+            self._foresight.look_ahead(self._tick, request)
+            parcels += self._foresight.parcels
+        self._link.send(Reply(self._tick, state, max(self._tick, self._foresight.end), parcels))
 
     def _finish_alone(self) -> None:
         """The submission says nothing more; the scene goes on."""
         if self._reason:
             return
-        self._request = None
-        if not self._link.has_left:
-            time.sleep(0.05)  # its last messages were not announced, but may have been sent
-        for reader in self._registry.readers:
-            reader.drain()
         if self._link.silence == "gone":
             self._simulation.submission_gone()
         while not self._reason:
-            self._tick_once()
+            self._begin_tick()
+            self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
 
 
 class _NoWaiting:
     """The simulator's wait sets only look."""
 
-    graph_epoch = 0
+    #: its warnings of others' quality of service go nowhere
+    asks_for_events = False
 
     def __init__(self, clocks: rclpy_clocks.RclpyClocks) -> None:
         self.tell_time = clocks.tell
 
-    def look_first(self) -> None:
-        self.graph_epoch += 1  # QoS events may come at any time, and cost little when served
+    def await_dds(self, what: str) -> None: ...
+
+    def look_first(self) -> None: ...
 
     def found_work(self) -> None: ...
 

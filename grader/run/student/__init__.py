@@ -11,7 +11,7 @@ In real time that is `main` alone, which imports nothing else of ours. In virtua
 | `install` | puts rclpy into virtual time |
 | `waiting`, `executor` | how rclpy's wait sets wait; its executors, faster |
 | `graph` | questions about the ROS graph |
-| `simulator_link` | this end of the link to the simulator: asks for time, waits for messages |
+| `simulator_link` | this end of the link to the simulator: asks for time, sends and receives |
 | `deadlock`, `refusal` | what waits for ever, and where; what virtual time cannot follow |
 
 Both sides of the link share `grader.run.lockstep`.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import functools
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from grader.run.lockstep import real
 from grader.run.lockstep.faults import pass_on
-from grader.run.student.simulator_link import MATCH_PATIENCE_S, SimulatorLink
+from grader.run.student.simulator_link import SimulatorLink
 
 QUESTIONS = (
     "count_clients",
@@ -59,25 +59,31 @@ def install(link: SimulatorLink, node_class: Any, nodes: Sequence[Name]) -> None
 
 
 def _await_graph(link: SimulatorLink, node: Any, nodes: Sequence[Name]) -> None:
-    deadline = real.monotonic() + MATCH_PATIENCE_S
-    while not _is_complete(link, node, nodes) and real.monotonic() < deadline:
-        real.sleep(0.001)
+    while not _is_complete(link, node, nodes):
+        link.await_dds("graph")
 
 
 def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[Name]) -> bool:
+    """Whether DDS shows the simulator's nodes, and each of its endpoints with those of ours."""
     from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
     if not set(nodes) <= set(node.get_node_names_and_namespaces()):
         return False
-    for remote in link.remotes.values():
-        if remote.channel.startswith("topic"):
-            count = node.get_count_publishers if remote.writes else node.get_count_subscribers
-        elif remote.channel.startswith("request"):
+    expected = Counter(
+        [(r.channel, r.writes) for r in link.remotes.values()]
+        + [(reader.channel, False) for reader in link.readers]
+        + [(writer.channel, True) for writer in link.writers]
+    )
+    for (channel, writes), number in expected.items():
+        kind, _, name = channel.partition(" ")
+        if kind == "topic":
+            count = node.get_count_publishers if writes else node.get_count_subscribers
+        elif kind == "request" and not writes:
             count = node.get_count_services
         else:
             continue
-        if count(remote.name) == 0:
+        if count(name) != number:
             return False
-    topics = {r.name for r in link.remotes.values() if r.writes and r.channel.startswith("topic")}
+    topics = {r.name for r in link.remotes.values() if r.writes and r.kind == "topic"}
     ask = _rclpy.rclpy_get_publisher_names_and_types_by_node
     return topics <= {topic for name in nodes for topic, _ in ask(node, False, *name)}

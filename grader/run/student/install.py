@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import socket
 import sys
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -20,7 +19,6 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep import actions, endpoints, faults, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import Kind
-from grader.run.lockstep.times import EPOCH_NS
 from grader.run.student import chance, deadlock, executor, graph
 from grader.run.student.scheduler import Scheduler
 from grader.run.student.simulator_link import SimulatorLink
@@ -29,11 +27,10 @@ from grader.run.student.waiting import VirtualWaiter, clock_event_class
 
 def install(
     scheduler: Scheduler,
-    connection: socket.socket,
     nodes: Sequence[graph.Name],
     refuse: Callable[[str], None],
 ) -> SimulatorLink:
-    """Replace what tells or waits for time in rclpy; returns the link to the simulator.
+    """Replace what tells or waits for time in rclpy; returns the link, which is to be connected.
 
     Args:
         nodes: the simulator's.
@@ -42,7 +39,7 @@ def install(
     # first: it looks at what is replaced below
     executor.install()
     executor.allow_nested_spins()
-    link = SimulatorLink(scheduler, connection, refuse)
+    link = SimulatorLink(scheduler, refuse)
 
     def now_ns() -> int:
         return scheduler.now_ns
@@ -53,7 +50,7 @@ def install(
     _rclpy.ClockEvent = clock_event_class(scheduler)
     waiter = VirtualWaiter(scheduler, link, clocks)
     waitsets.install(waiter)
-    endpoints.install(link, lambda: EPOCH_NS + scheduler.now_ns)
+    endpoints.install(link)
     actions.install()
     _guard_entities()
     graph.install(link, rclpy.node.Node, nodes)
@@ -79,7 +76,8 @@ def _guard_entities() -> None:
     """A mistake of ours must not become the submission's, whatever it catches."""
     for kind in (
         *(endpoints.Publisher, endpoints.Subscription, endpoints.Client, endpoints.Service),
-        *(endpoints.Registered, actions.ActionClient, actions.ActionServer),
+        *(endpoints.Registered, endpoints.Node),
+        *(actions.ActionClient, actions.ActionServer, actions.ActionGoalHandle),
         *(waitsets.Timer, waitsets.EventHandle),
     ):
         faults.guard_methods(kind)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field
 
-from rclpy.qos import QoSDurabilityPolicy
-
-from grader.run.lockstep.registry import Endpoint, Reader
+from grader.run.lockstep.registry import Arrived, Endpoint, Reader
 
 
 @dataclass(eq=False)
@@ -16,17 +15,14 @@ class RemoteEndpoint(Endpoint):
     Attributes:
         id: as in the tables.
         writes: which of the two it is.
-        sent: how much we have sent to it; it has sent so much.
         readers: ours that it writes to.
+        history: what late readers get, if it is lasting.
     """
 
     id: int = 0
     writes: bool = False
-    sent: int = 0
     readers: list[Reader] = field(default_factory=list)
+    history: deque[Arrived] = field(default_factory=deque)
 
-
-def remembers(writer: Endpoint, reader: Endpoint) -> bool:
-    """Whether a new reader still gets the writer's last message."""
-    lasting = QoSDurabilityPolicy.TRANSIENT_LOCAL
-    return bool(writer.qos.durability == lasting and reader.qos.durability == lasting)
+    def __post_init__(self) -> None:
+        self.history = deque(maxlen=self.qos.depth)

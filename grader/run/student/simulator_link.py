@@ -1,27 +1,31 @@
-"""The student's end of the link to the simulator, and DDS between the two.
+"""The student's end of the link to the simulator: messages, and time.
 
-Before time moves, the simulator hears how much has been sent to it; afterwards we really wait
-until everything that it has sent is here. Where readers or writers are new, both sides first wait
-until DDS has connected them, in no virtual time.
+Whatever the program sends goes out at once, and counts from the next request for time; whatever
+the simulator sends comes with its reply to that. Of the ticks to come the simulator says in advance
+what they will bring, if nothing is sent meanwhile; these pass without a word to it.
 """
 
 from __future__ import annotations
 
+import mmap
+import os
 import socket
-from collections import defaultdict
-from collections.abc import Callable
-from typing import Any
+from collections import defaultdict, deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NoReturn
 
-from grader.run.lockstep import real
+from grader.run.lockstep import link, real
 from grader.run.lockstep.protocol import (
     FOREVER,
-    LIMIT_BYTES,
+    PROGRESS,
     TICK_NS,
     Advance,
-    Hello,
+    Interests,
     Kind,
+    Mail,
     Note,
     Packet,
+    Parcel,
     ProtocolError,
     Reply,
     State,
@@ -30,38 +34,37 @@ from grader.run.lockstep.protocol import (
     encode,
 )
 from grader.run.lockstep.registry import (
-    IN_FLIGHT,
+    Arrived,
     Endpoint,
     EndpointRegistry,
     Reader,
     Writer,
     compatible,
-    distinct_arrivals,
     policies,
+    suits,
 )
-from grader.run.lockstep.times import NEVER
+from grader.run.lockstep.times import EPOCH_NS, NEVER
 from grader.run.processes import cores
-from grader.run.student.remotes import RemoteEndpoint, remembers
+from grader.run.student.remotes import RemoteEndpoint
 from grader.run.student.scheduler import Scheduler
 
-#: How long DDS may take to connect two endpoints, or to deliver a message [s].
-MATCH_PATIENCE_S = 3.0
-ARRIVAL_PATIENCE_S = 2.0
-#: How many ticks may pass at once where poses come but nobody waits for them.
-BATCH_TICKS = 16
 UNBOUNDED = 0xFFFFFFFF
 #: What sending a message costs: 20 us. What counting the endpoints of a channel costs.
 SEND_UNITS = 4
 QUESTION_UNITS = 4
+#: How long we may go on without a word to the simulator, in real time [s]: it would think that the
+#: program hangs.
+LONGEST_ALONE_S = 0.25
+#: How long DDS may take to find what is there, where the program asks for it, in real time [s]. A
+#: run in which it takes longer is made again, in real time.
+DDS_PATIENCE_S = 60.0
 
 
 class SimulatorLink(EndpointRegistry):
     """The student's side of the link, and all endpoints of its process."""
 
-    def __init__(
-        self, scheduler: Scheduler, connection: socket.socket, refuse: Callable[[str], None]
-    ) -> None:
-        super().__init__()
+    def __init__(self, scheduler: Scheduler, refuse: Callable[[str], None]) -> None:
+        super().__init__(lambda: EPOCH_NS + scheduler.now_ns)
         self.refuse = refuse
         self.tick = 0
         #: counts how often the endpoints were connected anew
@@ -74,12 +77,33 @@ class SimulatorLink(EndpointRegistry):
         self.on_standstill: Callable[[], None] = lambda: None
         self.remotes: dict[int, RemoteEndpoint] = {}
         self._scheduler = scheduler
-        self._connection = connection
+        self._connection: socket.socket
+        self._packets: link.PacketReader
         #: the processor core to share with the simulator from the first tick on; -1: any
-        self.core = -1
+        self._core = -1
+        self._progress: Any = bytearray(PROGRESS.size)
         self._is_connected = self._has_started = False
-        self._unannounced: dict[int, RemoteEndpoint] = {}
-        self._flying = 0
+        self._mailbox: socket.socket
+        #: since the simulator was told last
+        self._has_mailed = False
+        #: the readers for responses, by the numbers that requests carry
+        self._clients: dict[int, Reader] = {}
+        self._client_numbers: dict[Reader, int] = {}
+        self._interests = Interests(())
+        #: messages not delivered yet, by tick: those of ticks that the simulator has foreseen
+        self._incoming: deque[Parcel] = deque()
+        self._foreseen_to = 0
+        #: the simulator does not know that we have got as far as we have
+        self._is_ahead = False
+        self._spoken_s = 0.0
+        self._waited_for = (0, "")
+        self._waits_until_s = 0.0
+        self._met: set[tuple[Endpoint, Endpoint]] = set()
+
+    def take_up(self, connection: socket.socket, core: int) -> None:
+        """Take up the link, before anything else; `core` is to be shared from the first tick on."""
+        self._connection, self._core = connection, core
+        self._packets = link.PacketReader(connection)
 
     # Time -------------------------------------------------------------------------------------
 
@@ -89,134 +113,170 @@ class SimulatorLink(EndpointRegistry):
         if deadline_ns < (self.tick + 1) * TICK_NS:
             scheduler.set_now(max(deadline_ns, scheduler.now_ns))
             return
-        self.settle()
+        self.connect()
         if not self._has_started:
             self._has_started = True
-            cores.pin(self.core)
+            cores.pin(self._core)
         if deadline_ns == NEVER:
             self.on_standstill()
-        self._exchange(min(deadline_ns // TICK_NS, FOREVER), self._most())
+        target = min(deadline_ns // TICK_NS, FOREVER)
+        most = 1 if self.is_listening() else UNBOUNDED
+        if self._has_mailed or not self._live_through_foreseen(target, most):
+            self._exchange(target, most)
         scheduler.set_now(max(scheduler.now_ns, self.tick * TICK_NS))
         self.on_arrival()
 
-    def _most(self) -> int:
-        if self.is_listening():
-            return 1
-        return BATCH_TICKS if any(reader.remote for reader in self.readers) else UNBOUNDED
+    def _live_through_foreseen(self, target: int, most: int) -> bool:
+        """Let ticks pass that the simulator has told in advance; whether any has."""
+        last = min(target, self.tick + most, self._foreseen_to)
+        if self.tick >= last or real.monotonic() > self._spoken_s + LONGEST_ALONE_S:
+            return False
+        self._is_ahead = True
+        self._live_to(last)
+        return True
+
+    def _live_to(self, tick: int) -> None:
+        """Let time pass to a tick, with the messages up to it."""
+        self.tick = tick
+        PROGRESS.pack_into(self._progress, 0, tick)
+        incoming = self._incoming
+        while incoming and incoming[0].tick <= tick:
+            self._deliver(incoming.popleft())
 
     def synchronise(self) -> None:
         """Have the simulator take everything that we have sent, in no time."""
-        if self._unannounced:
+        self.connect()
+        if self._has_mailed or self._is_ahead:
             self._exchange(self.tick, 0)
 
     def _exchange(self, target: int, most: int) -> None:
-        while True:
-            counts = [(remote.id, remote.sent) for remote in self._unannounced.values()]
-            self._unannounced.clear()
-            self._flying = 0
-            self._send(Advance(target, most, counts))
-            reply = self._receive(Reply)
-            self._await(reply)
-            self.tick = reply.tick
-            if reply.state == State.RUNNING:
-                return
-            if reply.state == State.OVER:
-                real.leave(0)
-            # the simulator's endpoints have changed in the middle of a tick
-            self._update(self._receive(Table))
-            self.settle()
-
-    def _await(self, reply: Reply) -> None:
-        """Really wait for what the simulator says that it has sent."""
-        awaited: list[Reader] = []
-        for number, total in reply.sent:
-            remote = self.remotes.get(number)
-            if remote is None:
-                self._break(ProtocolError(f"no endpoint has number {number}"))
-                continue
-            news, remote.sent = total - remote.sent, total
-            for arrivals in distinct_arrivals(remote.readers):
-                arrivals.expected += news
-            awaited += remote.readers
-        self._complain(self.await_arrivals(awaited, ARRIVAL_PATIENCE_S))
-
-    def _complain(self, late: list[Reader]) -> None:
-        for reader in late:
-            missing = reader.arrivals.expected - reader.arrivals.received
-            reader.arrivals.received = reader.arrivals.expected
-            if missing > 0:
-                self.note(Kind.WARNING, f"{missing} messages on {reader.channel} did not arrive")
+        self._incoming.clear()
+        self._is_ahead = False
+        has_mailed, self._has_mailed = self._has_mailed, False
+        self._send(Advance(target, most, self.tick, has_mailed))
+        table = None
+        while not isinstance(packet := self._receive(), Reply):
+            match packet:
+                case Table():
+                    table = packet
+                    self._add(packet)
+                case _:
+                    self._break(ProtocolError(f"{packet!r:.200} where a reply was expected"))
+        self._spoken_s = real.monotonic()
+        self._incoming.extend(packet.parcels)
+        self._foreseen_to = packet.foreseen
+        self._live_to(packet.tick)
+        if table is not None:
+            self._forget(table)
+        if packet.state == State.OVER:
+            real.leave(0)
 
     # Messages ---------------------------------------------------------------------------------
 
     def before_question(self) -> None:
-        """Answers of DDS must not depend on how fast it is."""
-        self.settle()
+        """Who asks for counterparts is to see all that the simulator has."""
+        self.connect()
         self._scheduler.charge(QUESTION_UNITS)
 
-    def before_send(self, writer: Writer) -> None:
-        """Nothing is sent before those who should hear it are connected."""
-        if self.changed:
-            self.settle()
-
-    def after_send(self, writer: Writer) -> None:
-        """Count; deliver within this process; now and then have the simulator take it."""
-        super().after_send(writer)
+    def publish(self, writer: Writer, data: bytes) -> None:
+        """To readers in this process at once, to the simulator with the next request for time."""
+        super().publish(writer, data)
         for remote in writer.remote:
-            remote.sent += 1
-            self._unannounced[remote.id] = remote
-            self._flying += 1
-        if self._flying >= IN_FLIGHT:
-            self.synchronise()
-        if writer.local:
-            self._complain(self.await_arrivals(writer.local, ARRIVAL_PATIENCE_S))
+            self._mail(Parcel(remote.id, 0, writer.sent, self.tick, data))
+        self._has_sent(writer.local)
+
+    def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
+        """The same with a request."""
+        number = super().ask(writer, client, data)
+        for remote in writer.remote:
+            client.awaited += 1
+            self._mail(Parcel(remote.id, self._number(client), number, self.tick, data))
+        self._has_sent(writer.local)
+        return number
+
+    def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
+        """The same with a response; the simulator never asks."""
+        super().respond(writer, to, data)
+        self._has_sent([to.client])
+
+    def _has_sent(self, local: list[Any]) -> None:
+        if local:
             self.on_arrival()
         self._scheduler.charge(SEND_UNITS)
 
-    def request_destroy(self, endpoints: list[Endpoint], destroy: Callable[[], None]) -> None:
-        """Nothing that was sent gets lost with its writer."""
-        self.synchronise()
-        for endpoint in endpoints:
-            if isinstance(endpoint, Reader) and endpoint.channel.startswith("response"):
-                asked = sum(
-                    other.sent
-                    for other in endpoints
-                    if isinstance(other, Writer) and other.name == endpoint.name
-                )
-                endpoint.arrivals.received += (
-                    asked - endpoint.received
-                )  # nobody will take these answers
-        super().request_destroy(endpoints, destroy)
+    def _number(self, client: Reader) -> int:
+        number = self._client_numbers.setdefault(client, len(self._client_numbers) + 1)
+        self._clients[number] = client
+        return number
+
+    def _mail(self, parcel: Parcel) -> None:
+        for piece in link.pieces(encode(Mail([parcel]))):
+            self._has_mailed = True
+            try:
+                self._mailbox.send(piece)
+            except BlockingIOError:  # full
+                self._exchange(self.tick, 0)
+                self._has_mailed = True
+                self._mailbox.send(piece)
+            except OSError:
+                real.leave(1)
+
+    def _deliver(self, parcel: Parcel) -> None:
+        endpoint, client, number, tick, data = parcel
+        arrived = Arrived(data, EPOCH_NS + tick * TICK_NS, number)
+        if client:
+            reader = self._clients[client]
+            reader.awaited -= 1
+            reader.items.append(arrived)
+            return
+        remote = self.remotes[endpoint]
+        if remote.is_lasting:
+            remote.history.append(arrived)
+        for reader in remote.readers:
+            reader.items.append(arrived)
 
     # Connections ------------------------------------------------------------------------------
 
-    def settle(self) -> None:
-        """Really wait until DDS has connected what belongs together."""
+    def connect(self) -> None:
+        """Connect what belongs together, and tell the simulator what we read and publish."""
         if not self._is_connected:
             self._is_connected = True
-            self._update(self._receive(Table))
-        while self.changed:
-            self.changed = False
-            self._pair()
-            matched = [(remote.id, self._partners(remote)) for remote in self.remotes.values()]
-            publishers = sum(writer.is_stream for writer in self.writers)
-            self._send(Hello([count for count in matched if count[1]], publishers))
-            self._receive(Hello)
-            self._await_matches()
-            self.graph_epoch += 1
+            self._add(self._receive_first())
+        if not self.changed:
+            return
+        self.changed = False
+        self._pair()
+        self.graph_epoch += 1
+        topics = {(w.name, w.message_type or w.type) for w in self.writers if w.kind == "topic"}
+        reads = {reader.channel for reader in self.readers if reader.kind != "request"}
+        interests = Interests(tuple(sorted(reads)), tuple(sorted(topics)))
+        if interests != self._interests:
+            self._interests = interests
+            if self._is_ahead:  # foreseen for the readers that there were
+                self._exchange(self.tick, 0)
+            self._incoming.clear()
+            self._foreseen_to = self.tick
+            self._send(interests)
 
-    def _update(self, table: Table) -> None:
+    def _add(self, table: Table) -> None:
+        for entry in table.added:
+            qos = policies(entry.reliability, entry.durability, entry.depth)
+            self.remotes[entry.id] = RemoteEndpoint(
+                entry.channel, entry.type, qos, id=entry.id, writes=entry.writes
+            )
+        self._connect_anew()
+
+    def _forget(self, table: Table) -> None:
         for number in table.removed:
             self.remotes.pop(number, None)
-            self._unannounced.pop(number, None)
-        for entry in table.added:
-            qos = policies(entry.reliability, entry.durability)
-            self.remotes[entry.id] = RemoteEndpoint(
-                entry.channel, entry.type, qos, None, id=entry.id, writes=entry.writes
-            )
-        self.changed = True
+        self._connect_anew()
+
+    def _connect_anew(self) -> None:
+        self._pair()
+        self.graph_epoch += 1
 
     def _pair(self) -> None:
+        self._is_unpaired = True
         self.pair_locally()
         remotes: dict[str, list[RemoteEndpoint]] = defaultdict(list)
         for remote in self.remotes.values():
@@ -228,34 +288,42 @@ class SimulatorLink(EndpointRegistry):
                 if remote.writes and compatible(remote, reader):
                     reader.remote.append(remote)
                     remote.readers.append(reader)
-                    if remote not in before and remote.sent and remembers(remote, reader):
-                        reader.arrivals.expected += 1
+                    if remote not in before and remote.is_lasting and reader.is_lasting:
+                        reader.items.extend(remote.history)
         for writer in self.writers:
             readers = [remote for remote in remotes[writer.channel] if not remote.writes]
             writer.remote = [remote for remote in readers if compatible(writer, remote)]
+        self._count_meetings(remotes)
 
-    def _partners(self, remote: RemoteEndpoint) -> int:
-        if remote.writes:
-            return len(remote.readers)
-        return sum(remote in writer.remote for writer in self.writers)
+    def _count_meetings(self, remotes: Mapping[str, Sequence[RemoteEndpoint]]) -> None:
+        """Count which endpoints of a topic have met for the first time; DDS tells of them."""
+        readers: dict[str, list[Endpoint]] = defaultdict(list)
+        for reader in (*self.readers, *(r for rs in remotes.values() for r in rs if not r.writes)):
+            readers[reader.channel].append(reader)
+        writers = (*self.writers, *(r for rs in remotes.values() for r in rs if r.writes))
+        for writer in writers:
+            for reader in readers.get(writer.channel, ()):
+                if writer.type != reader.type or (writer, reader) in self._met:
+                    continue
+                self._met.add((writer, reader))
+                for endpoint in (writer, reader):
+                    if suits(writer, reader):
+                        endpoint.matches += 1
+                    else:
+                        endpoint.unfit += 1
 
-    def _await_matches(self) -> None:
-        wanted: list[tuple[Endpoint, int]] = []
-        for writer in self.writers:
-            wanted.append((writer, len(writer.remote) + len(writer.local)))
-        for reader in self.readers:
-            wanted.append((reader, len(reader.remote) + self.local_writers(reader)))
-        deadline = real.monotonic() + MATCH_PATIENCE_S
-        while wanted := [(e, n) for e, n in wanted if e.matches and not e.matches(n)]:
-            if real.monotonic() > deadline:
-                for endpoint, number in wanted:
-                    self.note(
-                        Kind.WARNING, f"{endpoint.channel} was not connected to {number} others"
-                    )
-                return
-            real.sleep(0.0002)
-        history = [reader for reader in self.readers if reader.is_late]
-        self._complain(self.await_arrivals(history, ARRIVAL_PATIENCE_S))
+    def await_dds(self, what: str) -> None:
+        """Really wait a little until DDS has found what we know to be there.
+
+        Where that is in vain, the run cannot be made here: DDS has lost something.
+        """
+        if self._waited_for != (self.graph_epoch, what):
+            self._waited_for = (self.graph_epoch, what)
+            self._waits_until_s = real.monotonic() + DDS_PATIENCE_S
+        if real.monotonic() > self._waits_until_s:
+            self.note(Kind.FAILED, f"DDS did not tell of an {what} in {DDS_PATIENCE_S:.0f} s")
+            real.leave(0)
+        real.sleep(0.0005)
 
     # The link ---------------------------------------------------------------------------------
 
@@ -265,25 +333,48 @@ class SimulatorLink(EndpointRegistry):
 
     def _send(self, packet: Packet) -> None:
         try:
-            self._connection.send(encode(packet))
+            for piece in link.pieces(encode(packet)):
+                self._connection.send(piece)
         except OSError:
             real.leave(1)
 
-    def _receive(self, kind: type[Any]) -> Any:
+    def _receive_first(self) -> Table:
+        """The first table, and with it the page that both processes see, and where mail goes."""
         try:
-            data = self._connection.recv(LIMIT_BYTES)
+            data, descriptors, _, _ = socket.recv_fds(self._connection, link.PIECE_BYTES, 2)
         except OSError:
             data = b""
         if not data:
             real.leave(1)
-        try:
-            packet = decode(data)
-        except ProtocolError as error:
-            self._break(error)
-        if not isinstance(packet, kind):
-            self._break(ProtocolError(f"{packet!r} where {kind.__name__} was expected"))
+        packet = self._decode(data)
+        if not isinstance(packet, Table) or len(descriptors) != 2:
+            self._break(ProtocolError(f"{packet!r:.200} where a table was expected"))
+        page, mailbox = descriptors
+        os.set_inheritable(mailbox, False)
+        self._progress = mmap.mmap(page, mmap.PAGESIZE)
+        os.close(page)
+        self._mailbox = socket.socket(fileno=mailbox)
+        self._mailbox.setblocking(False)
         return packet
 
-    def _break(self, error: ProtocolError) -> None:
+    def _receive(self) -> Packet:
+        data: bytes | None = None
+        while data is None:
+            try:
+                data = self._packets.read()
+            except OSError:
+                data = b""
+        if not data:
+            real.leave(1)
+        return self._decode(data)
+
+    def _decode(self, data: bytes) -> Packet:
+        try:
+            return decode(data)
+        except ProtocolError as error:
+            self._break(error)
+
+    def _break(self, error: ProtocolError) -> NoReturn:
         """Somebody else has read or written here, and only the submission can."""
         self.refuse(f"broke our virtual time ({error!r})")
+        raise error

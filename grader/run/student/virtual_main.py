@@ -64,8 +64,8 @@ def main() -> None:
         from grader.run.student import install as inside_rclpy
 
         known = [(name, namespace) for name, namespace in json.loads(nodes)]
-        link = inside_rclpy.install(scheduler, connection, known, refuse)
-        link.core = int(core)
+        link = inside_rclpy.install(scheduler, known, refuse)
+        link.take_up(connection, int(core))
     except refusal.Unsupported as lack:
         give_up(Kind.FAILED, f"virtual time does not work here: {lack}")
     except Exception as error:

@@ -20,6 +20,8 @@ EMPTY_NS = (*(250_000,) * 8, 2_000_000)
 class VirtualWaiter:
     """Blocks the running thread in the scheduler."""
 
+    asks_for_events = True
+
     def __init__(self, scheduler: Scheduler, link: SimulatorLink, clocks: RclpyClocks) -> None:
         self._scheduler = scheduler
         self._link = link
@@ -29,10 +31,9 @@ class VirtualWaiter:
         link.is_listening = self.is_listening
         link.on_arrival = self.on_arrival
 
-    @property
-    def graph_epoch(self) -> int:
-        """Counts the changes of the graph."""
-        return self._link.graph_epoch
+    def await_dds(self, what: str) -> None:
+        """Really wait a little for DDS."""
+        self._link.await_dds(what)
 
     def look_first(self) -> None:
         """Others first, if any can run."""
@@ -82,19 +83,12 @@ class VirtualWaiter:
     def is_hopeful(self) -> bool:
         """Whether anything can still wake somebody."""
         return self.is_listening() or any(
-            reader.arrivals.received < sum(remote.sent for remote in _asked(self._link, reader))
-            for wait_set, _ in self._waiting
-            for reader in wait_set.readers
-            if reader.channel.startswith("response")
+            reader.awaited > 0 for wait_set, _ in self._waiting for reader in wait_set.readers
         )
 
 
 def _hears(wait_set: WaitSet) -> bool:
-    return any(reader.remote and reader.channel.startswith("topic") for reader in wait_set.readers)
-
-
-def _asked(link: SimulatorLink, reader: Any) -> list[Any]:
-    return [r for r in link.remotes.values() if r.channel == f"request {reader.name}"]
+    return any(reader.remote and reader.kind == "topic" for reader in wait_set.readers)
 
 
 def clock_event_class(scheduler: Scheduler) -> type:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
+from itertools import count
 
-from grader.scenes.scene import Hooks, Limits, Reason, Start
+from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Start
 from grader.scenes.turtlesim.end_of_run import EndOfRun
 from grader.scenes.turtlesim.recorder import Recorder
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros import pacer
 from turtlesim_py.ros.node import TurtlesimNode
-from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.turtle import TICK_S
+from turtlesim_py.ros.turtle_endpoints import pose_bytes
+from turtlesim_py.world.arena import TICK_NS, Arena
+from turtlesim_py.world.turtle import TICK_S, Pose, Reading
 
 #: How often the node is served although nothing has come [ticks]: goals expire.
 SERVE_TICKS = 63
@@ -34,9 +37,34 @@ class HookedNode(TurtlesimNode):
         if not self._hooks.has_unread() and self.arena.ticks % SERVE_TICKS:
             self.arena.now_ns = now_ns
             return now_ns
-        super().serve(now_ns)
-        self._hooks.after_serving()
-        return now_ns
+        return super().serve(now_ns)
+
+    def foresee(self, most: int, is_certain: Callable[[dict[str, Pose]], bool]) -> Forecast:
+        """The poses of the next ticks, as far as nothing but driving happens.
+
+        Args:
+            is_certain: told the poses of a tick to come; False where that is not to be foreseen.
+        """
+        twins = self.arena.twins()
+        if twins is None or self.follows_ros_clock:
+            return Forecast((), [])
+        publishers = tuple(self._endpoints[twin.name].pose_publisher for twin in twins)
+        now_ns = self.arena.now_ns
+        ticks: list[tuple[bytes, ...]] = []
+        for ahead in range(most):
+            poses = [twin.foresee(now_ns + ahead * TICK_NS) for twin in twins]
+            known = {twin.name: pose for twin, pose in zip(twins, poses, strict=True) if pose}
+            if len(known) < len(twins) or not is_certain(known):
+                break
+            ticks.append(tuple(map(pose_bytes, known.values())))
+        return Forecast(publishers, ticks)
+
+    def pass_tick(self, now_ns: int) -> dict[str, Reading]:
+        """As `tick`, but nothing of the turtles is published."""
+        self.serve(now_ns)
+        readings = self.arena.tick()
+        self._window.publish_if_due()
+        return readings
 
 
 class TurtlesimSimulation:
@@ -77,14 +105,33 @@ class TurtlesimSimulation:
         """Call `step` every 16 ms, until it returns False."""
         pacer.follow_wall_clock(step)
 
-    def tick(self) -> Reason:
+    def tick(self, now_ns: int | None = None) -> Reason:
         """Serve what has arrived, let a tick pass; why the run is over, or ''."""
-        readings = self.node.tick()
-        if not self._records:
-            return ""
+        if self.node.follows_ros_clock:
+            now_ns = None
+        readings = self.node.tick(now_ns)
+        return self._take(readings) if self._records else ""
+
+    def _take(self, readings: dict[str, Reading]) -> Reason:
         self._recorder.take(readings)
         first = readings.get(FIRST_TURTLE)
         return self._end.after(self._recorder.ticks, first.pose if first else None)
+
+    def foresee(self, most: int) -> Forecast:
+        """The next ticks, so many at most: as far as they are certain if nothing arrives."""
+        end = copy(self._end)
+        ticks = count(self._recorder.ticks + 1)
+
+        def goes_on(poses: dict[str, Pose]) -> bool:
+            return not end.after(next(ticks), poses.get(FIRST_TURTLE))
+
+        return self.node.foresee(most, goes_on)
+
+    def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
+        """As `tick`, in a tick that was foreseen: publishes nothing, returns what it would have."""
+        readings = self.node.pass_tick(now_ns)
+        poses = tuple([pose_bytes(reading.pose) for reading in readings.values()])
+        return self._take(readings), poses
 
     def trace(self) -> TurtleTrace:
         """Everything recorded up to now."""

@@ -186,7 +186,6 @@ def test_a_mistake_of_ours_is_never_the_submission_s_even_where_that_catches_eve
         "misbehaving",
         ("starts_a_program", "starts another program (sleep)"),
         ("blocks_in_c", "waits for something outside of Python's and ROS's own waiting"),
-        ("attacks_link", "broke our virtual time"),
     ),
 )
 def test_what_virtual_time_cannot_follow_runs_in_real_time(
@@ -195,3 +194,10 @@ def test_what_virtual_time_cannot_follow_runs_in_real_time(
     recording = recorded(f"misbehaving/{name}")
     assert recording.run.time == "real"
     assert reason in recording.run.flags[-1]
+
+
+def test_who_lies_to_the_simulator_spoils_his_own_run(recorded: Recorded) -> None:
+    recording = recorded("misbehaving/attacks_link")
+    assert (recording.run.time, recording.run.outcome) == ("virtual", "killed")
+    assert recording.run.flags == ("its process sent what only a simulator says",)
+    assert len(recording.trace.of_kind(CmdVel)) == 1

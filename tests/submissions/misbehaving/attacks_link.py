@@ -23,11 +23,12 @@ for fd in range(3, 100):
             link = socket.socket(fileno=os.dup(fd))
             if link.getsockopt(socket.SOL_SOCKET, socket.SO_TYPE) != socket.SOCK_SEQPACKET:
                 continue
-            lies = b"".join(struct.pack("<IQ", number, 10**15) for number in range(200))
-            link.send(b"H" + struct.pack("<QI", 10**9, 0) + lies)
-            link.send(b"A" + struct.pack("<QI", 2**63, 5) + lies)
-            link.send(b"A" + struct.pack("<QI", 0, 0) + lies[:24] * 3)
-            link.send(b"N" + struct.pack("<QI", 0, 4) + b"\x00\x1b[31mred" * 50)
+            head, parcel = struct.Struct("<cQIQ?"), struct.Struct("<IIQQI")
+            lies = [parcel.pack(number, 0, 10**15, 10**15, 3) + b"lie" for number in range(200)]
+            link.send(head.pack(b"A", 2**63, 0, 2**63, True))
+            link.send(b'I[["topic /turtle1/pose", "topic /turtle1/color_sensor"], []]')
+            link.send(head.pack(b"M", 0, 0, 0, False) + b"".join(lies))
+            link.send(head.pack(b"N", 0, 2, 0, False) + b"\x00\x1b[31mred" * 50)
             time.sleep(0.5)
             link.send(b"T{}")
             link.send(os.urandom(5000))

@@ -17,7 +17,7 @@ def raised(function: Callable[..., Any], *args: Any) -> Exception:
 
 
 def break_ours() -> None:
-    EndpointRegistry().add_up(None)  # type: ignore[attr-defined]
+    EndpointRegistry(lambda: 0).add_up(None)  # type: ignore[attr-defined]
 
 
 def test_an_exception_in_our_code_is_ours() -> None:
@@ -63,7 +63,7 @@ def test_a_fault_is_reported_before_the_program_can_catch_it(
     class Registry(EndpointRegistry): ...
 
     monkeypatch.setattr(Registry, "remove", faults.guarded(EndpointRegistry.remove))
-    raised(Registry().remove, None)
+    raised(Registry(lambda: 0).remove, None)
     raised(faults.guarded(faults.pass_on), int, "x")
     assert [line.rpartition(" ")[0] for line in told] == [
         "virtual time itself failed (TypeError in registry.py, line"

@@ -1,5 +1,6 @@
 from contextlib import suppress
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -7,9 +8,11 @@ from grader.run.lockstep.protocol import (
     TICK_NS,
     Advance,
     EndpointInfo,
-    Hello,
+    Interests,
     Kind,
+    Mail,
     Note,
+    Parcel,
     ProtocolError,
     Reply,
     State,
@@ -20,7 +23,7 @@ from grader.run.lockstep.protocol import (
 from turtlesim_py.world import arena
 
 U32, U64 = st.integers(0, 2**32 - 1), st.integers(0, 2**64 - 1)
-COUNTS = st.lists(st.tuples(U32, U64))
+PARCELS = st.lists(st.builds(Parcel, U32, U32, U64, U64, st.binary(max_size=50)))
 
 
 def test_a_tick_is_as_long_as_the_world_s() -> None:
@@ -29,20 +32,47 @@ def test_a_tick_is_as_long_as_the_world_s() -> None:
 
 @given(
     st.one_of(
-        st.builds(Advance, U64, U32, COUNTS),
-        st.builds(Hello, COUNTS, U64),
-        st.builds(Reply, U64, st.sampled_from(State), COUNTS),
+        st.builds(Advance, U64, U32, U64, st.booleans()),
+        st.builds(Mail, PARCELS),
+        st.builds(Reply, U64, st.sampled_from(State), U64, PARCELS),
         st.builds(Note, st.sampled_from(Kind), st.text(max_size=100)),
     )
 )
-def test_packets_survive_the_link(packet: Advance | Hello | Reply | Note) -> None:
+def test_packets_survive_the_link(packet: Advance | Mail | Reply | Note) -> None:
     assert decode(encode(packet)) == packet
 
 
 def test_tables_survive_the_link() -> None:
-    endpoint = EndpointInfo(3, "topic /turtle1/pose", "turtlesim/msg/Pose", True, 1, 2)
+    endpoint = EndpointInfo(3, "topic /turtle1/pose", "turtlesim/msg/Pose", True, 1, 2, 7)
     table = Table((endpoint,), (1, 2))
     assert decode(encode(table)) == table
+
+
+def test_interests_survive_the_link() -> None:
+    interests = Interests(("topic /turtle1/pose",), (("/chatter", "std_msgs/msg/String"),))
+    assert decode(encode(interests)) == interests
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b'I[["topic /a\\u001b[31m"], []]',
+        b'I[["topic pose"], []]',
+        b"I[[3], []]",
+        b'I[[], [["/chatter", "String"]]]',
+        b'I[[], [["/chat ter", "std_msgs/msg/String"]]]',
+        b"I[[], [[]]]",
+        b"I" + b"[" * 100_000,
+    ],
+)
+def test_names_that_ros_does_not_allow_are_no_interests(data: bytes) -> None:
+    with pytest.raises(ProtocolError):
+        decode(data)
+
+
+def test_a_parcel_that_is_cut_off_is_a_protocol_error() -> None:
+    with pytest.raises(ProtocolError):
+        decode(encode(Mail([Parcel(1, 0, 1, 5, b"12345")]))[:-1])
 
 
 @given(st.binary(max_size=200))

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from grader.run.lockstep.protocol import Advance, Kind, Note, Table, encode
+from grader.run.lockstep.protocol import PROGRESS, Advance, Kind, Mail, Note, Parcel, Table, encode
 from grader.run.simulator import link
 from grader.run.simulator.link import Patience, Refused, StudentLink
 
@@ -35,25 +35,76 @@ def test_requests_come_through_and_notes_are_kept(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
     heard = StudentLink(ends[0], os.getpid(), Patience())
-    for packet in (Note(Kind.WARNING, "late\x1b[31m\n"), Note(Kind.STUCK), Advance(5, 1, [])):
+    for packet in (Note(Kind.STUCK), Advance(5, 1, 0)):
         ends[1].send(encode(packet))
-    assert heard.receive() == Advance(5, 1, [])
-    assert heard.flags == ["late?[31m?"]
+    assert heard.receive() == Advance(5, 1, 0)
     assert heard.waits == "stuck"
 
 
-def test_a_million_warnings_are_few_flags(ends: tuple[socket.socket, socket.socket]) -> None:
+def test_a_million_remarks_are_few_flags(ends: tuple[socket.socket, socket.socket]) -> None:
     heard = StudentLink(ends[0], os.getpid(), Patience())
     for number in range(100):
-        ends[1].send(encode(Note(Kind.WARNING, f"warning {number}")))
+        heard.flag(f"remark {number}")
+    assert len(heard.flags) == link.MOST_FLAGS
+
+
+def test_what_a_dead_process_has_mailed_and_reached_is_known(
+    ends: tuple[socket.socket, socket.socket],
+) -> None:
+    heard = StudentLink(ends[0], os.getpid(), Patience())
+    heard.introduce(Table(()))
+    _, (page, mailbox), _, _ = socket.recv_fds(ends[1], 1000, 2)
+    parcels = [Parcel(3, 0, number, 7, b"command") for number in range(5)]
+    with socket.socket(fileno=mailbox) as mail:
+        for parcel in parcels:
+            mail.send(encode(Mail([parcel])))
+    os.pwrite(page, PROGRESS.pack(41), 0)
+    os.close(page)
     ends[1].close()
     assert heard.receive() is None
-    assert (heard.silence, len(heard.flags)) == ("gone", link.MOST_FLAGS)
+    assert (heard.mail(), heard.reached()) == (parcels, 41)
+    heard.close()
+
+
+def test_a_page_that_was_cut_off_tells_nothing(ends: tuple[socket.socket, socket.socket]) -> None:
+    heard = StudentLink(ends[0], os.getpid(), Patience())
+    heard.introduce(Table(()))
+    _, (page, mailbox), _, _ = socket.recv_fds(ends[1], 1000, 2)
+    os.ftruncate(page, 3)
+    os.close(page)
+    os.close(mailbox)
+    assert (heard.mail(), heard.reached()) == ([], 0)
+    heard.close()
+
+
+def test_nonsense_in_the_mail_ends_the_conversation(
+    ends: tuple[socket.socket, socket.socket],
+) -> None:
+    heard = StudentLink(ends[0], os.getpid(), Patience())
+    heard.introduce(Table(()))
+    _, (page, mailbox), _, _ = socket.recv_fds(ends[1], 1000, 2)
+    os.close(page)
+    with socket.socket(fileno=mailbox) as mail:
+        mail.send(b"?")
+        mail.send(encode(Advance(5, 1, 0)))
+        assert heard.mail() == []
+    assert heard.silence == "broken"
+    heard.close()
+
+
+def test_a_run_that_uses_up_its_processor_time_is_slow(
+    ends: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(link, "CPU_LOOK_S", 0.0)
+    heard = StudentLink(ends[0], os.getpid(), Patience(run_cpu_s=0.0))
+    ends[1].send(encode(Advance(5, 1, 0)))
+    assert heard.receive() is None
+    assert heard.silence == "slow"
 
 
 def test_what_is_not_supported_is_refused(ends: tuple[socket.socket, socket.socket]) -> None:
-    ends[1].send(encode(Note(Kind.UNSUPPORTED, "forks")))
-    with pytest.raises(Refused, match=r"^the submission forks$"):
+    ends[1].send(encode(Note(Kind.UNSUPPORTED, "forks\x1b[31m\n")))
+    with pytest.raises(Refused, match=r"^the submission forks\?\[31m\?$"):
         StudentLink(ends[0], os.getpid(), Patience()).receive()
 
 
