@@ -127,7 +127,8 @@ class Simulation(Protocol):
     def foresee(self, most: int) -> Forecast:
         """The next ticks, so many at most: as far as they are certain if nothing arrives.
 
-        None where the run might end, or where something other than publishing would happen.
+        None where the run might end, a node is to be served, or something other than publishing
+        would happen.
         """
 
     def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:

@@ -88,12 +88,14 @@ class Reader(Endpoint):
         message: the class of its messages.
         awaited: of a client's, how many responses from the other process are still to come.
         remote: set by the student's side: the simulator's writers that it hears.
+        hears: whether it hears any on a topic.
     """
 
     message: Any = None
     items: deque[Arrived] = field(default_factory=deque)
     awaited: int = 0
     remote: list[Any] = field(default_factory=list)
+    hears: bool = False
 
     def __post_init__(self) -> None:
         if self.qos.history != QoSHistoryPolicy.KEEP_ALL:

@@ -22,8 +22,8 @@ class Waiter(Protocol):
     """Whoever knows how to wait."""
 
     @property
-    def asks_for_events(self) -> bool:
-        """Whether anybody wants to hear of events of DDS."""
+    def graph_epoch(self) -> int:
+        """Counts what changes in the graph: afterwards DDS may have events for us."""
 
     def await_dds(self, what: str) -> None:
         """Really wait a little for DDS; where that is in vain, the run cannot be made."""
@@ -156,6 +156,7 @@ class WaitSet:
         self._kinds: dict[Any, str] = {}
         self._ready: list[Any] = []
         self._ready_events: list[bool] = []
+        self._quiet_epoch = -1
         self._has_work = False
 
     def _add(self, kind: str, handle: Any) -> int:
@@ -235,30 +236,38 @@ class WaitSet:
         return any(self._ready_events)
 
     def _collect(self) -> bool:
-        ready = [handle for handle, reader in self._readers if reader.items]
+        ready = self._ready = []
+        for handle, reader in self._readers:
+            if reader.items:
+                ready.append(handle)
         for timer in self.timers:
             if not timer.is_gone and timer.is_timer_ready():
                 ready.append(timer)
-        self._ready = ready
-        self.ready_guards = [guard for guard in self.guards if guard.is_triggered]
-        for guard in self.ready_guards:
-            guard.is_triggered = False
-        self._ready_events = self._ask_for_events()
+        guards = self.ready_guards = []
+        for guard in self.guards:
+            if guard.is_triggered:
+                guard.is_triggered = False
+                guards.append(guard)
+        self._ready_events = self._ask_for_events() if self._events else []
         self.is_out = self.end_ns < NEVER and WAITER.deadline(0) >= self.end_ns
         self._has_work = (
             bool(ready)
             or self.is_out
-            or any(self._ready_events)
+            or True in self._ready_events
             # those of actions
             or (len(self.readers) > len(self._readers) and any(i.items for i in self.readers))
         )
-        return self._has_work or bool(self.ready_guards)
+        return self._has_work or bool(guards)
 
     def _ask_for_events(self) -> list[bool]:
         """Of which events DDS has to tell."""
-        if not WAITER.asks_for_events or not any(event.is_due() for event in self._events):
+        epoch = WAITER.graph_epoch
+        if self._quiet_epoch == epoch:
             return []
         due = [event.is_due() for event in self._events]
+        if not any(due):
+            self._quiet_epoch = epoch
+            return []
         ready = self._look_for_events()
         while any(is_due and not is_ready for is_due, is_ready in zip(due, ready, strict=True)):
             WAITER.await_dds("event")
@@ -275,7 +284,9 @@ class WaitSet:
 
     def _next_timer(self) -> int:
         """When the first timer is due."""
+        first_ns = self.end_ns
         now_ns = WAITER.deadline(0)
-        due = [timer.time_until_next_call() for timer in self.timers if not timer.is_gone]
-        first_ns = min((now_ns + max(0, ns) for ns in due if ns is not None), default=NEVER)
-        return min(first_ns, self.end_ns)
+        for timer in self.timers:
+            if not timer.is_gone and (left_ns := timer.time_until_next_call()) is not None:
+                first_ns = min(first_ns, now_ns + max(0, left_ns))
+        return first_ns

@@ -128,8 +128,9 @@ class Lockstep:
     def _catch_up(self, reached: int) -> None:
         """Live through the ticks that the student's side was told of before they were."""
         while self._tick < min(reached, self._foresight.end) and not self._reason:
-            self._begin_tick()
+            self._count_tick()
             self._reason = self._foresight.live_through(EPOCH_NS + self.now_ns)
+        self._clocks.set_now(self.now_ns)
         self._foresight.forget()
 
     def _advance(self, request: Advance) -> None:
@@ -141,10 +142,13 @@ class Lockstep:
                 return
 
     def _begin_tick(self) -> None:
+        self._count_tick()
+        self._clocks.set_now(self.now_ns)
+
+    def _count_tick(self) -> None:
         self._tick += 1
         self._registry.tick = self._tick
         self.now_ns = self._tick * TICK_NS
-        self._clocks.set_now(self.now_ns)
 
     def _reply(self, request: Advance) -> None:
         state = State.OVER if self._reason else State.RUNNING
@@ -170,8 +174,8 @@ class Lockstep:
 class _NoWaiting:
     """The simulator's wait sets only look."""
 
-    #: its warnings of others' quality of service go nowhere
-    asks_for_events = False
+    #: never quiet, never asked: warnings of others' quality of service would go nowhere
+    graph_epoch = -1
 
     def __init__(self, clocks: rclpy_clocks.RclpyClocks) -> None:
         self.tell_time = clocks.tell

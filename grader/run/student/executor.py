@@ -80,13 +80,18 @@ class Look:
 
     def __init__(self, nodes: list[Any], is_wanted: Callable[[Any], bool], context: Any) -> None:
         self.wait_set = waitsets.WaitSet(context)
-        self.timers = _entered(nodes, "timers", is_wanted, self.wait_set.add_timer)
-        self.subscriptions = _entered(
-            nodes, "subscriptions", is_wanted, self.wait_set.add_subscription
-        )
-        self.clients = _entered(nodes, "clients", is_wanted, self.wait_set.add_client)
-        self.services = _entered(nodes, "services", is_wanted, self.wait_set.add_service)
-        self.guards = _entered(nodes, "guards", is_wanted, self.wait_set.add_guard_condition)
+        #: handle -> its entity, the entity's node, what executors take from it
+        self.by_handle: dict[Any, tuple[Any, Any, str]] = {}
+        for kind, take, add in (
+            ("timers", "_take_timer", self.wait_set.add_timer),
+            ("subscriptions", "_take_subscription", self.wait_set.add_subscription),
+            ("clients", "_take_client", self.wait_set.add_client),
+            ("services", "_take_service", self.wait_set.add_service),
+        ):
+            for entity, node in _entered(nodes, kind, is_wanted, add):
+                self.by_handle[entity.handle] = entity, node, take
+        guards = _entered(nodes, "guards", is_wanted, self.wait_set.add_guard_condition)
+        self.guards = [guard for guard, _ in guards]
         self.waitables = [w for node in nodes for w in node.waitables if is_wanted(w)]
         for waitable in self.waitables:
             try:
@@ -102,11 +107,16 @@ class Look:
         """Whether one of the waitables may be ready after a wait."""
         if not self.waitables:
             return False
-        return (
-            not self.only_events
-            or self.wait_set.has_events()
-            or any(waitable._ready_to_take_data for waitable in self.waitables)
-        )
+        if not self.only_events or self.wait_set.has_events():
+            return True
+        for waitable in self.waitables:
+            if waitable._ready_to_take_data:
+                return True
+        return False
+
+    def may_have_work(self) -> bool:
+        """Whether anything may be ready after a wait: an executor's own guard condition is none."""
+        return bool(self.wait_set.take_ready() or self.guards) or self.may_have_waitables()
 
 
 class View:
@@ -114,7 +124,9 @@ class View:
 
     def __init__(self, nodes: list[Any], context: Any) -> None:
         self._nodes = nodes
-        self._lists = [(node, name, list(getattr(node, name))) for node in nodes for name in LISTS]
+        self._lists = [
+            (vars(node), name, list(getattr(node, name))) for node in nodes for name in LISTS
+        ]
         self._entities = [entity for _, _, entities in self._lists for entity in entities]
         groups = {entity.callback_group for entity in self._entities}
         self._groups = [group for group in groups if type(group) is not ReentrantCallbackGroup]
@@ -125,10 +137,13 @@ class View:
         """Whether these nodes still have these entities."""
         if nodes != self._nodes:
             return False
-        for node, name, entities in self._lists:
-            if getattr(node, name) != entities:
+        for names, name, entities in self._lists:
+            if names[name] != entities:
                 return False
-        return not any(timer.is_gone for timer in self.look.wait_set.timers)
+        for timer in self.look.wait_set.timers:
+            if timer.is_gone:
+                return False
+        return True
 
     def all_can_execute(self) -> bool:
         """What `Executor.can_execute` says of every entity."""
@@ -137,13 +152,16 @@ class View:
         for group in self._groups:
             if group._active_entity is not None:
                 return False
-        return not any(entity._executor_event for entity in self._entities)
+        for entity in self._entities:
+            if entity._executor_event:
+                return False
+        return True
 
 
 def _entered(
     nodes: list[Any], kind: str, is_wanted: Callable[[Any], bool], add: Callable[[Any], int]
-) -> list[Any]:
-    """Add the nodes' entities of a kind to a wait set; returns those that still exist."""
+) -> list[tuple[Any, Any]]:
+    """Add the nodes' entities of a kind to a wait set; those that still exist, with their nodes."""
     found = []
     for node in nodes:
         for entity in getattr(node, kind):
@@ -153,7 +171,7 @@ def _entered(
                         add(entity.handle)
                 except InvalidHandle:
                     continue
-                found.append(entity)
+                found.append((entity, node))
     return found
 
 
@@ -194,18 +212,20 @@ def _work(
     yielded_work = False
     while not yielded_work and not executor._is_shutdown and not condition():
         used = executor.get_nodes() if nodes is None else nodes
-        for work in _tasks(executor, used):
-            yielded_work = True
-            yield work
-        look = _look(executor, used)
-        is_out = _wait(executor, look, timeout_ns, end_ns)
-        look.is_used = True
-        try:
-            for work in _ready(executor, look, used):
+        if executor._tasks:
+            for work in _tasks(executor, used):
                 yielded_work = True
                 yield work
-        finally:
-            look.is_used = False
+        look = _look(executor, used)
+        is_out = _wait(executor, look, timeout_ns, end_ns)
+        if look.may_have_work():
+            look.is_used = True
+            try:
+                for work in _ready(executor, look, used):
+                    yielded_work = True
+                    yield work
+            finally:
+                look.is_used = False
         if timeout_ns == 0 or is_out:
             as_python_does(TimeoutException())
     if executor._is_shutdown:
@@ -218,8 +238,6 @@ def _tasks(executor: Any, nodes: list[Any]) -> Iterable[tuple[Any, Any, Any]]:
     """The tasks in progress."""
     with executor._tasks_lock:
         tasks = list(executor._tasks)
-    if not tasks:
-        return
     for task, entity, node in _in_order(tasks):
         if not task.executing() and not task.done() and (node is None or node in nodes):
             yield task, entity, node
@@ -235,9 +253,9 @@ def _wait(executor: Any, look: Look, timeout_ns: int, end_ns: int) -> bool:
         if guard._executor_triggered:
             guard.trigger()
     wait_set.guards = [guard.handle for guard in look.guards]
-    # None after the executor's shutdown
-    own = (executor._guard, executor._sigint_gc)
-    wait_set.guards += [guard.handle for guard in own if guard is not None]
+    for own in (executor._guard, executor._sigint_gc):
+        if own is not None:  # as after the executor's shutdown
+            wait_set.guards.append(own.handle)
     wait_set.end_ns = end_ns
     with executor._context.handle:
         wait_set.wait(timeout_ns)
@@ -261,8 +279,15 @@ def _ready(executor: Any, look: Look, nodes: list[Any]) -> Iterable[tuple[Any, A
                 is_ready = waitable in look.waitables and waitable.is_ready(look.wait_set)
                 if is_ready and waitable.callback_group.can_execute(waitable):
                     yield make(waitable, node, executor._take_waitable), waitable, node
-    if not ready and not look.guards:
-        return
+    if not look.guards:
+        if not ready:
+            return
+        if len(ready) == 1:  # as below, where mostly nothing else is ready
+            entity, node, take = look.by_handle[ready[0]]
+            is_ready = take != "_take_timer" or ready[0].is_timer_ready()
+            if is_ready and entity.callback_group.can_execute(entity):
+                yield make(entity, node, getattr(executor, take)), entity, node
+            return
     for node in nodes:
         for timer in node.timers:
             is_ready = timer.handle in ready and timer.handle.is_timer_ready()

@@ -290,6 +290,7 @@ class SimulatorLink(EndpointRegistry):
                     remote.readers.append(reader)
                     if remote not in before and remote.is_lasting and reader.is_lasting:
                         reader.items.extend(remote.history)
+            reader.hears = bool(reader.remote) and reader.kind == "topic"
         for writer in self.writers:
             readers = [remote for remote in remotes[writer.channel] if not remote.writes]
             writer.remote = [remote for remote in readers if compatible(writer, remote)]

@@ -14,6 +14,7 @@ from contextlib import suppress
 from typing import Any
 
 from grader.run.lockstep.faults import as_python_does, hide_our_frames, report
+from grader.run.lockstep.real import get_ident
 from grader.run.lockstep.times import NEVER
 from grader.run.student.refusal import Unsupported
 from grader.run.student.scheduler import Runner, Scheduler
@@ -90,6 +91,42 @@ class Lock:
     locked_lock = locked
 
 
+class RLock(threading._PyRLock):  # type: ignore[name-defined]
+    """As Python's own, with a short way where nobody else has it."""
+
+    _block: Lock
+    _owner: int | None
+    _count: int
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock, once more if this thread has it; False if it cannot be had in time."""
+        me = get_ident()
+        if self._owner == me:
+            self._count += 1
+            return True
+        block = self._block
+        if not block._locked and timeout == -1:
+            block._locked = True
+        elif not block.acquire(blocking, timeout):
+            return False
+        self._owner, self._count = me, 1
+        return True
+
+    __enter__ = acquire
+
+    def release(self) -> None:
+        """Give the lock back, if it was taken but once."""
+        if self._owner != get_ident():
+            as_python_does(RuntimeError("cannot release un-acquired lock"))
+        self._count -= 1
+        if not self._count:
+            self._owner = None
+            self._block.release()
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+
 class ThreadHandle:
     """As `_thread._ThreadHandle` of CPython 3.13: what a thread is joined by."""
 
@@ -124,10 +161,11 @@ def install(scheduler: Scheduler) -> None:
     _thread.LockType = Lock  # type: ignore[assignment, misc]
     _thread.start_new_thread = _start_new_thread
     _thread.start_new = _start_new_thread
-    _thread.RLock = threading._PyRLock  # type: ignore[attr-defined, misc]
+    _thread.RLock = RLock  # type: ignore[misc]
     _replace(threading, "_allocate_lock", Lock)
     _replace(threading, "Lock", Lock)
     _replace(threading, "_CRLock", None)
+    _replace(threading, "_PyRLock", RLock)
     if hasattr(threading, "_start_joinable_thread"):  # CPython 3.13
         _replace(threading, "_start_joinable_thread", _start_joinable_thread)
         _replace(threading, "_ThreadHandle", ThreadHandle)

@@ -20,8 +20,6 @@ EMPTY_NS = (*(250_000,) * 8, 2_000_000)
 class VirtualWaiter:
     """Blocks the running thread in the scheduler."""
 
-    asks_for_events = True
-
     def __init__(self, scheduler: Scheduler, link: SimulatorLink, clocks: RclpyClocks) -> None:
         self._scheduler = scheduler
         self._link = link
@@ -30,6 +28,11 @@ class VirtualWaiter:
         self.tell_time = clocks.tell
         link.is_listening = self.is_listening
         link.on_arrival = self.on_arrival
+
+    @property
+    def graph_epoch(self) -> int:
+        """Counts the changes of the graph."""
+        return self._link.graph_epoch
 
     def await_dds(self, what: str) -> None:
         """Really wait a little for DDS."""
@@ -73,22 +76,24 @@ class VirtualWaiter:
     def on_arrival(self) -> None:
         """Wake those for whom something has come."""
         for wait_set, runner in self._waiting:
-            if any(reader.items for reader in wait_set.readers):
-                self._scheduler.wake(runner)
+            for reader in wait_set.readers:
+                if reader.items:
+                    self._scheduler.wake(runner)
+                    break
 
     def is_listening(self) -> bool:
         """Whether a blocked wait set would hear what the simulator publishes."""
-        return any(_hears(wait_set) for wait_set, _ in self._waiting)
+        for wait_set, _ in self._waiting:
+            for reader in wait_set.readers:
+                if reader.hears:
+                    return True
+        return False
 
     def is_hopeful(self) -> bool:
         """Whether anything can still wake somebody."""
         return self.is_listening() or any(
             reader.awaited > 0 for wait_set, _ in self._waiting for reader in wait_set.readers
         )
-
-
-def _hears(wait_set: WaitSet) -> bool:
-    return any(reader.remote and reader.kind == "topic" for reader in wait_set.readers)
 
 
 def clock_event_class(scheduler: Scheduler) -> type:

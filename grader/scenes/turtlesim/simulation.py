@@ -51,7 +51,8 @@ class HookedNode(TurtlesimNode):
         publishers = tuple(self._endpoints[twin.name].pose_publisher for twin in twins)
         now_ns = self.arena.now_ns
         ticks: list[tuple[bytes, ...]] = []
-        for ahead in range(most):
+        until_served = -self.arena.ticks % SERVE_TICKS
+        for ahead in range(min(most, until_served)):
             poses = [twin.foresee(now_ns + ahead * TICK_NS) for twin in twins]
             known = {twin.name: pose for twin, pose in zip(twins, poses, strict=True) if pose}
             if len(known) < len(twins) or not is_certain(known):
@@ -60,8 +61,8 @@ class HookedNode(TurtlesimNode):
         return Forecast(publishers, ticks)
 
     def pass_tick(self, now_ns: int) -> dict[str, Reading]:
-        """As `tick`, but nothing of the turtles is published."""
-        self.serve(now_ns)
+        """As `tick` where there is nothing to serve, but nothing of the turtles is published."""
+        self.arena.now_ns = now_ns
         readings = self.arena.tick()
         self._window.publish_if_due()
         return readings
