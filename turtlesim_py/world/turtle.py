@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from turtlesim_py.world.canvas import Canvas, Pen
-from turtlesim_py.world.floats import cos, float32, fuzzy_equal, normalize_angle, printf_f, sin
+from turtlesim_py.world.floats import cos, float32, float32s, fuzzy_equal, normalize_angle, printf_f, sin
 from turtlesim_py.world.notices import GoalFeedback, GoalResult, GoalStatus, LogLine, Notice
 
 #: Pixels in a metre: the height of the original's turtle pictures.
@@ -229,13 +229,8 @@ class Turtle:
 
     def _pose(self) -> Pose:
         speed = math.sqrt(self.lin_x * self.lin_x + self.lin_y * self.lin_y)
-        return Pose(
-            float32(self.x_m),
-            float32(SIZE_M - self.y_down_m),
-            float32(self.heading_rad),
-            float32(speed),
-            float32(self.ang),
-        )
+        heading, turning = self.heading_rad, self.ang
+        return Pose._make(float32s(self.x_m, SIZE_M - self.y_down_m, heading, speed, turning))
 
     def _draw_from(self, old_x: float, old_y: float, canvas: Canvas) -> None:
         if self.pen_on:
