@@ -89,20 +89,16 @@ class Canvas:
         A coordinate is rounded to a pixel number like the original's, halves up, and counts as 0 if
         it is not a number. White where nothing is painted and outside of the canvas.
         """
-        column, row = _pixel_number(x, self.width), _pixel_number(y, self.height)
-        if column is None or row is None:
+        # Compared before it is rounded, because infinity cannot be rounded.
+        column = x + 0.5 if x == x else 0.0
+        row = y + 0.5 if y == y else 0.0
+        if not (0.0 <= column < self.width and 0.0 <= row < self.height):
             return UNPAINTED[:3]
-        r, g, b, _ = self._pixels[row * self.width + column].to_bytes(4, byteorder)
+        pixel = self._pixels[floor(row) * self.width + floor(column)]
+        r, g, b, _ = pixel.to_bytes(4, byteorder)
         return r, g, b
 
     def rgba(self) -> NDArray[np.uint8]:
         """Return a copy of the pixels, shape (height, width, 4); unpainted is 255, 255, 255, 0."""
         pixels = np.frombuffer(self._pixels, dtype=np.uint8)
         return pixels.reshape(self.height, self.width, 4).copy()
-
-
-def _pixel_number(coordinate: float, size: int) -> int | None:
-    if coordinate != coordinate:
-        return 0
-    # Compared before rounding, because infinity cannot be rounded.
-    return floor(coordinate + 0.5) if 0.0 <= coordinate + 0.5 < size else None

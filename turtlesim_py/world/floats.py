@@ -55,7 +55,8 @@ def fuzzy_equal(p: float, q: float) -> bool:
     """Qt 5's comparison of two coordinates (`operator==` of QPointF), relative 1e-12."""
     if p == 0.0 or q == 0.0:
         return abs(p - q) <= 1e-12
-    return abs(p - q) * 1e12 <= min(abs(p), abs(q))
+    difference = abs(p - q) * 1e12
+    return difference <= abs(p) and difference <= abs(q)
 
 
 def json_number(value: float, digits: int = 9) -> float | int | str:

@@ -310,12 +310,12 @@ def _clamp(value: float, size: int) -> float:
 
 def _first_beyond(edge: float) -> int:
     """Find the first row or column whose centre is beyond the edge."""
-    return _to_int(edge + 0.5)
+    return int(edge + 0.5)
 
 
 def _last_before(edge: float) -> int:
     """Find the last row or column whose centre is before the edge or on it; -1 if there is none."""
-    return _to_int(edge - 0.5) if edge >= 0.5 else -1
+    return floor(edge - 0.5) if edge >= 0.5 else -1
 
 
 def _tilted_rectangle(
@@ -344,8 +344,10 @@ def _fill(
 ) -> list[Span]:
     """Go down row by row and take the pixels from the left side to the right one."""
     first_row = _first_beyond(top[1])
-    last_row = min(_last_before(bottom[1]), image_height - 1)
-    start_row = max(first_row, 0)
+    last_row = _last_before(bottom[1])
+    if last_row >= image_height:
+        last_row = image_height - 1
+    start_row = first_row if first_row > 0 else 0
     x1, step1, turn1, below1, step_below1 = _side(top, left, bottom, 0.5, first_row, start_row)
     x2, step2, turn2, below2, step_below2 = _side(top, right, bottom, -0.5, first_row, start_row)
     last_column = image_width - 1
