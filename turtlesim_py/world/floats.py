@@ -63,5 +63,6 @@ def json_number(value: float, digits: int = 9) -> float | int | str:
     """A value as JSON files hold it: `digits` significant digits, NaN and inf as strings."""
     if not math.isfinite(value):
         return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
-    rounded = float(f"{value:.{digits}g}")
+    # 17 digits tell every double from its neighbours
+    rounded = float(value) if digits >= 17 else float(f"{value:.{digits}g}")
     return int(rounded) if rounded.is_integer() and abs(rounded) < 1e15 else rounded

@@ -13,7 +13,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from turtlesim_py.world.canvas import Canvas, Pen
-from turtlesim_py.world.floats import cos, float32, float32s, fuzzy_equal, normalize_angle, printf_f, sin
+from turtlesim_py.world.floats import (
+    cos,
+    float32,
+    float32s,
+    fuzzy_equal,
+    normalize_angle,
+    printf_f,
+    sin,
+)
 from turtlesim_py.world.notices import GoalFeedback, GoalResult, GoalStatus, LogLine, Notice
 
 #: Pixels in a metre: the height of the original's turtle pictures.

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.floats import PI, float32, float32s, normalize_angle, printf_f
+from turtlesim_py.world.floats import PI, float32, float32s, json_number, normalize_angle, printf_f
 from turtlesim_py.world.turtle import SIZE_M
 
 finite = st.floats(-1e6, 1e6)
@@ -110,3 +110,10 @@ def test_a_speed_beyond_a_single_is_published_as_infinite():
     arena.command("turtle1", (1e200, 0.0, 0.0), (0.0, 0.0, -1e300))
     pose = arena.tick()["turtle1"].pose
     assert (pose.linear_velocity, pose.angular_velocity) == (math.inf, -math.inf)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False) | st.integers(-(2**53), 2**53))
+def test_a_number_of_17_digits_in_json_is_the_number(value):
+    found = json_number(value, 17)
+    assert found == value == float(f"{value:.17g}")
+    assert isinstance(found, int) == (float(value).is_integer() and abs(value) < 1e15)
