@@ -29,7 +29,7 @@ help:
 	@echo "make test-lowest   run them with our dependencies at their lower bounds"
 	@echo "make test-kilted   run them with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
 	@echo "make lint      ruff and mypy"
-	@echo "make bench     what the simulator and a grading cost: tables (minutes)"
+	@echo "make bench     what the simulator and a grading cost: tables (less than five minutes)"
 	@echo "make wheel     a wheel for each Python that is here, in dist/jazzy, each tried where there is no gcc"
 	@echo "make clean     remove everything that was made here"
 	@echo "PYTHON=python3.12 make install   with that Python (3.11, 3.12 or 3.13)"

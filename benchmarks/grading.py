@@ -60,6 +60,11 @@ def row(name: str, samples: list[Sample], units: Yardsticks, *more: object) -> N
     line(name, spread(wall), spread(cpu), *multiples, *more)
 
 
+def mebibytes(peak: float | None) -> str:
+    """A peak of memory in a cell."""
+    return "-" if peak is None else f"{peak:.0f}"
+
+
 def yardstick_rows(
     env: dict[str, str], repetitions: int, more: tuple[str, ...] = (), cpus: float | None = None
 ) -> Yardsticks:
@@ -87,7 +92,7 @@ def table_of_runs(env: dict[str, str], repetitions: int, with_real: bool) -> Non
         split = [
             f"{s.wall_s:.3f} / " + ("-" if s.cpu_s is None else f"{s.cpu_s:.3f}") for s in stages
         ]
-        shown = [f"{runs[0].simulated_s:.1f}", *split, spread([peak.peak_mib], 0).split()[0]]
+        shown = [f"{runs[0].simulated_s:.1f}", *split, mebibytes(peak)]
         real = [f"{real_s(path):.1f}"] if with_real else []
         row(name, [run.whole for run in runs], units, *shown, *real)
 
@@ -117,7 +122,7 @@ def table_of_rates(env: dict[str, str], repetitions: int) -> None:
             Sample(s.wall_s / at_once, None if s.cpu_s is None else s.cpu_s / at_once) for s in jobs
         ]
         rates = spread((60 / sample.wall_s for sample in each), 0)
-        row(f"{at_once} at once", each, units, rates, "-" if peak is None else f"{peak:.0f}")
+        row(f"{at_once} at once", each, units, rates, mebibytes(peak))
 
 
 def table_at_half(env: dict[str, str], repetitions: int) -> None:

@@ -76,8 +76,10 @@ def worker(*words: object, cpus: float | None = None) -> Iterator[Worker]:
             made.end()
 
 
-def runs_of(path: Path, repetitions: int, cpus: float | None = None) -> tuple[list[Run], Sample]:
-    """Warm runs of a submission, one after the other in one process; and the process's peak."""
+def runs_of(
+    path: Path, repetitions: int, cpus: float | None = None
+) -> tuple[list[Run], float | None]:
+    """Warm runs of a submission, one after the other in one process; and the peak [MiB]."""
     made = []
     with worker("runs", path, cpus=cpus) as at_work:
         at_work.do()
@@ -87,7 +89,7 @@ def runs_of(path: Path, repetitions: int, cpus: float | None = None) -> tuple[li
             edges = told["edges"]
             stages = tuple(Sample(b - a, watch.between(a, b)) for a, b in pairwise(edges))
             made.append(Run(whole, stages, told["ticks"] * 0.016))
-        return made, Sample(0.0, None, at_work.group.peak_mib())
+        return made, at_work.group.peak_mib()
 
 
 def command_cold(repetitions: int, cpus: float | None = None) -> list[Sample]:

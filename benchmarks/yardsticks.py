@@ -1,8 +1,8 @@
 """What rclpy itself costs on this machine: two yardsticks, in which gradings can be counted.
 
     start   a bare rclpy process: import, init, a node, shutdown
-    floor   a process that takes and handles as many poses, from itself, as a grading of the
-            reference controller has: what no grading through rclpy's executor can be cheaper than
+    floor   a process that takes and handles as many poses, from itself and by rclpy's own
+            executor, as a run of the reference controller has ticks
 
 Both are whole processes, from their start to their end. `python benchmarks/yardsticks.py start` (or
 `floor`) is one of them.
