@@ -1,4 +1,4 @@
-"""What the simulator costs, beside what the original costs: prints a table, takes less than two minutes.
+"""What the simulator costs, beside what the original costs: prints a table, in under two minutes.
 
     .venv/bin/python benchmarks/node.py
 
