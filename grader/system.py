@@ -9,6 +9,7 @@ without it:
 | `inherits_descriptors` | the simulator calls back over loopback; the recording has a name |
 | `has_supervision` | a submission is a group of processes (Windows: a tree), ended as such |
 | `has_proc` | processes are looked at through psutil |
+| `has_pidfd` | no zygote: each process of a run starts from nothing |
 | `lacks_for_lockstep` | virtual time says what it lacks, and the run goes to real time |
 """
 
@@ -16,6 +17,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import signal
 import socket
 from pathlib import Path
 
@@ -49,6 +51,17 @@ def is_in_libc(function: str) -> bool:
         return hasattr(ctypes.CDLL(None), function)
     except (OSError, TypeError):  # Windows has no libc to ask
         return False
+
+
+def has_pidfd() -> bool:
+    """Whether there are descriptors that stand for processes."""
+    if not (hasattr(os, "pidfd_open") and hasattr(signal, "pidfd_send_signal")):
+        return False
+    try:
+        os.close(os.pidfd_open(os.getpid()))
+    except OSError:  # an old kernel, or one that is not to
+        return False
+    return True
 
 
 def lacks_for_lockstep() -> list[str]:

@@ -6,11 +6,15 @@ cannot be used; 3 the grader itself failed; 130 interrupted, which was the calle
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from argparse import Namespace
 from collections.abc import Sequence
 from typing import Any
+
+# numpy's worker threads would spin a while after its import, and have nothing to do here
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 try:  # this takes half a second, in which somebody may think better of it
     from rich.console import Console

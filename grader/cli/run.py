@@ -22,6 +22,7 @@ from grader.recording.recording import Recordings
 from grader.reports import Report, render, terminal
 from grader.requirements import require
 from grader.result.result import FAMILY, build
+from grader.run import zygotes
 from grader.scenes import load_scene
 from grader.submission.opening import open_submission
 
@@ -66,6 +67,8 @@ def points(text: str) -> float:
 
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
+    if args.time == "virtual":
+        zygotes.warm()  # they import while we do something else
     require("rosbags")  # now, not when a run is to be saved
     if not args.watch:
         return _grade(args)

@@ -17,6 +17,7 @@ from grader.run.environment import simulator_environment
 from grader.run.plan import Plan
 from grader.run.processes.line import Line
 from grader.run.processes.watched import Watched
+from grader.run.processes.zygote import Warm
 from grader.run.stage import Stage
 
 #: How long the simulator may take to come up, and to save the recording [s].
@@ -100,20 +101,22 @@ def start_simulator(
     plan: Plan,
     link: socket.socket | None = None,
     *more: str,
+    warm: Warm | None = None,
 ) -> Iterator[Simulator]:
     """Start `module` as the simulator's process.
 
     Args:
         link: inherited as well; its number follows the first three arguments.
         more: further arguments.
+        warm: where it is to be forked instead, if that can be.
     """
     with Line() as line:
         links = [link.fileno()] if link else []
         words = [line.word, stage.recording_path, plan.to_json(), *map(str, links), *more]
-        command = [*stage.entry, sys.executable, "-m", module, *words]
+        command = [sys.executable, "-m", module, *words]
         env = simulator_environment(stage.env)
         fds = (*line.fds, *links, stage.recording) if system.inherits_descriptors() else ()
-        process = Watched(command, env, stage.folder, fds)
+        process = Watched(command, env, stage.folder, fds, stage.entry, warm)
         try:
             yield Simulator(process, _connect(line, process))
         finally:

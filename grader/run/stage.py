@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader import scratch, system
-from grader.run.environment import environment
+from grader.run import zygotes
+from grader.run.environment import environment, student_environment
 from grader.run.processes import isolation
 from grader.run.processes.watched import Watched, start_student
 from grader.submission.opening import EntryPoint, Submission
@@ -39,6 +40,7 @@ class Stage:
         isolation: for the result.
         env: environment variables of both processes.
         entry: stands before the command of each.
+        namespaces: what a process that is forked enters instead: kind -> descriptor.
     """
 
     folder: Path
@@ -47,17 +49,24 @@ class Stage:
     isolation: str
     env: Mapping[str, str]
     entry: tuple[str, ...]
+    namespaces: Mapping[str, int]
 
     def student(
         self,
         command: Sequence[str],
         submission: Submission,
         pass_fds: tuple[int, ...] = (),
-        more_env: Mapping[str, str] | None = None,
     ) -> Watched:
         """Start the submission's process in its own folder."""
-        env = {**self.env, **(more_env or {})}
-        return start_student(command, env, submission.root, pass_fds, self.entry)
+        return start_student(command, self.env, submission.root, pass_fds, self.entry)
+
+    def virtual_student(
+        self, command: Sequence[str], submission: Submission, pass_fds: tuple[int, ...]
+    ) -> Watched:
+        """The same for virtual time: forked, unless that would make a difference."""
+        env = student_environment(self.env)
+        warm = zygotes.for_student(submission.root, self.namespaces)
+        return start_student(command, env, submission.root, pass_fds, self.entry, warm)
 
 
 @contextmanager
@@ -71,7 +80,10 @@ def open_stage() -> Iterator[Stage]:
         env = environment(folder, isolated.env)
         recording, path = _make_recording(folder)
         try:
-            yield Stage(folder, recording, path, isolated.name, env, isolated.entry)
+            yield Stage(
+                *(folder, recording, path, isolated.name, env),
+                *(isolated.entry, isolated.namespaces),
+            )
         finally:
             os.close(recording)
 

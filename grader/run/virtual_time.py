@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import json
 import socket
-import sys
 import time
 from dataclasses import asdict, replace
-from pathlib import Path
 
 from grader.recording.recording import Outcome, Recording
-from grader.run import handover, real_time, stage
+from grader.run import handover, real_time, stage, zygotes
 from grader.run.finish import Ending, outcome, record
 from grader.run.lockstep import contract
 from grader.run.plan import Plan
@@ -22,7 +20,6 @@ from grader.run.processes import cores, usage
 from grader.run.real_time import Progress
 from grader.run.simulator.link import Patience
 from grader.run.simulator_process import SIMULATOR_PATIENCE_S, Message, Simulator, start_simulator
-from grader.run.student import __path__ as student_folder
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
 from grader.submission.opening import Submission
@@ -31,7 +28,7 @@ WAITS_FOR_EVER = "every thread of the node waits for something that will not com
 STUCK = "the node waits for something that can no longer happen; its output says where"
 PATIENCE = Patience()
 #: What runs as the simulator's process.
-MODULE = "grader.run.simulator.virtual_main"
+MODULE = zygotes.MODULE
 
 
 def run(
@@ -74,16 +71,13 @@ def _try(
         ours,
         theirs,
     ):
-        student = place.student(
-            command(submission, scene.introduction, ours.fileno(), core_id),
-            submission,
-            pass_fds=(ours.fileno(),),
-            more_env={"PYTHONHASHSEED": "0"},
-        )
+        words = command(submission, scene.introduction, ours.fileno(), core_id)
+        student = place.virtual_student(words, submission, pass_fds=(ours.fileno(),))
         ours.close()
         try:
             more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
-            with start_simulator(MODULE, place, plan, theirs, *more) as simulator:
+            warm = zygotes.for_simulator(place.namespaces)
+            with start_simulator(MODULE, place, plan, theirs, *more, warm=warm) as simulator:
                 theirs.close()
                 message = _watch(simulator, student.pid)
                 exit_code = student.wait(2.0) if message.get("silence") == "gone" else None
@@ -110,10 +104,9 @@ def command(
     submission: Submission, introduction: Introduction, link_fd: int, core_id: int
 ) -> list[str]:
     """How the submission's process is started."""
-    main = str(Path(student_folder[0]) / "virtual_main.py")
     nodes = json.dumps(introduction.nodes)
     words = [str(link_fd), str(core_id), nodes, *stage.target(submission)]
-    return [sys.executable, main, *words]
+    return [*zygotes.command(zygotes.STUDENT), *words]
 
 
 def _watch(simulator: Simulator, student_pid: int) -> Message:

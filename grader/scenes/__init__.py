@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 #: The scenes that there are; each is a module of this package with an object `SCENE`.
 NAMES = ("turtlesim",)
+#: Packages whose messages nearly every submission to one of them imports; some may not be there.
+MESSAGES = ("geometry_msgs", "std_msgs", "std_srvs", "turtlesim", "turtlesim_msgs")
 
 
 def load_scene(name: str) -> Scene:

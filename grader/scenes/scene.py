@@ -197,6 +197,9 @@ class Scene(Protocol):
 
     # In the simulator's process ---------------------------------------------------------------
 
+    def preload(self) -> None:
+        """Import and make what is the same in every simulation; nothing of ROS is up."""
+
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str
     ) -> Simulation:

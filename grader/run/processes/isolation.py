@@ -52,11 +52,13 @@ class Isolation:
         name: for the result: "private network", "ROS domain 87"; see `weakness`.
         env: environment variables of both processes.
         entry: stands before a command that is to run inside.
+        namespaces: what a process that is forked has to enter instead: kind -> descriptor.
     """
 
     name: str
     env: Mapping[str, str]
     entry: tuple[str, ...] = ()
+    namespaces: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,8 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
     if namespaces := private_network():
         try:
             env = {**RANGE, "ROS_DOMAIN_ID": "0", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
-            yield Isolation(f"private network{weakness()}", env, namespaces.entry())
+            name = f"private network{weakness()}"
+            yield Isolation(name, env, namespaces.entry(), namespaces.fds)
         finally:
             namespaces.close()
         return

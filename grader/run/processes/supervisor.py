@@ -1,10 +1,11 @@
 """Starts a submission's process, keeps hold of all its descendants, and tells how it ended.
 
-    python -I -S supervisor.py run GRADER_PID REPORT_FD COMMAND...
+    python -I -S supervisor.py run PARENT_PID REPORT_FD COMMAND...
     python -I -S supervisor.py hold
 
 `run` writes two lines to REPORT_FD: the process id of the command, and, when it has ended, its exit
-code (negative for a signal). The descendants may go on until SIGTERM comes, or the grader dies.
+code (negative for a signal). The descendants may go on until SIGTERM comes, or the parent dies: the
+grader, or the zygote that has forked instead of starting this script (`forking.py`).
 Where the system allows it the command gets a process namespace of its own, so that it can neither
 see nor kill the simulator; else the supervisor adopts what its family leaves behind.
 
@@ -82,24 +83,53 @@ def raise_loopback() -> None:
         fcntl.ioctl(any_socket, SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", IFF_UP | IFF_RUNNING))
 
 
+def enter(namespace: int, kind: int) -> None:
+    """Move the calling thread into a namespace, given as an open descriptor.
+
+    Raises:
+        OSError: the system does not allow it.
+    """
+    _call("setns", namespace, kind)
+
+
+def control(option: int, value: int) -> None:
+    """As prctl; what the system does not know is left out."""
+    _libc.prctl(option, ctypes.c_ulong(value), ctypes.c_ulong(0), ctypes.c_ulong(0))
+
+
 def signal_at_parents_death(number: int) -> None:
     """Have the kernel send us a signal when our parent dies."""
     _libc.prctl(PR_SET_PDEATHSIG, number)
 
 
+def confine(*, has_namespace: bool) -> None:
+    """What confines a submission's own process, and nothing else of its run.
+
+    The one place for a sandbox (Landlock, seccomp, further mounts), however the process came to be:
+    it is called in it, after its supervisor has forked and before anything of the submission's
+    runs. Descriptors, network, environment and current folder are settled by then; what is done
+    here survives an exec.
+    """
+    if has_namespace:
+        _see_only_own_processes()
+
+
 class Supervisor:
     """Between the grader and a submission's process."""
 
-    def __init__(self, grader: int, report: int) -> None:
-        self._grader = grader
+    def __init__(self, parent: int, report: int) -> None:
+        self._parent = parent
         self._report = report
         self._init = 0  # the first process of the namespace, whose end is the end of all in it
 
-    def run(self, command: list[str]) -> NoReturn:
-        """Run the command; ends when the grader has had enough."""
+    def run(self, command: list[str] | None) -> None:
+        """Run the command; ends when the grader has had enough.
+
+        Without a command it returns, once and in a process of its own: that goes on as the command.
+        """
         signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM, signal.SIGCHLD])
         signal_at_parents_death(signal.SIGTERM)
-        if os.getppid() != self._grader:
+        if os.getppid() != self._parent:
             os._exit(1)  # it has died before we asked
         for number in NOT_OURS:
             signal.signal(number, signal.SIG_IGN)
@@ -109,7 +139,10 @@ class Supervisor:
         with suppress(OSError):
             unshare(CLONE_NEWPID | CLONE_NEWIPC)
             self._init = os.fork() or self._be_init()
-        child = os.fork() or self._be_command(command)
+        child = os.fork()
+        if not child:
+            self._be_command(command)
+            return
         # The command's sockets are closed when it closes them, not when we do.
         for fd in os.listdir("/proc/self/fd"):
             if int(fd) > 2 and int(fd) != self._report:
@@ -153,17 +186,19 @@ class Supervisor:
         while True:
             signal.pause()
 
-    def _be_command(self, command: list[str]) -> NoReturn:
+    def _be_command(self, command: list[str] | None) -> None:
         try:
             signal_at_parents_death(signal.SIGKILL)
-            if self._init:
-                _see_only_own_processes()
-            os.set_inheritable(self._report, False)
+            confine(has_namespace=bool(self._init))
+            os.close(self._report)
             for number in (*NOT_OURS, signal.SIGCHLD):
                 signal.signal(number, signal.SIG_DFL)
+            if command is None:  # as Python does where it starts
+                signal.signal(signal.SIGINT, signal.default_int_handler)
             signal.pthread_sigmask(signal.SIG_SETMASK, [])
-            os.execvp(command[0], command)
-        finally:
+            if command is not None:
+                os.execvp(command[0], command)
+        except BaseException:
             os._exit(127)
 
 
@@ -214,8 +249,8 @@ def main() -> None:
     if sys.argv[1] == "hold":
         hold()
         return
-    grader, report, *command = sys.argv[2:]
-    Supervisor(int(grader), int(report)).run(command)
+    parent, report, *command = sys.argv[2:]
+    Supervisor(int(parent), int(report)).run(command)
 
 
 if __name__ == "__main__":

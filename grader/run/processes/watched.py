@@ -6,7 +6,6 @@ import ctypes
 import os
 import select
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -21,6 +20,9 @@ import psutil
 from grader import system
 from grader.errors import GraderFailure
 from grader.run.processes import supervisor
+from grader.run.processes.forking import MARK
+from grader.run.processes.process import Process, Spawned
+from grader.run.processes.zygote import Warm, ZygoteLost
 
 
 def _if_there(name: str) -> list[signal.Signals]:
@@ -30,8 +32,6 @@ def _if_there(name: str) -> list[signal.Signals]:
 
 #: How much of a process's output is kept: this many bytes of its start and as many of its end.
 KEEP_BYTES = 32_768
-#: An environment variable that tells the processes of one run from those of others.
-MARK = "TURTLESIM_GRADER_PROCESS"
 #: What asks the grader to end: Ctrl-C, `timeout` or `docker stop`, a closed terminal.
 ENDING = (signal.SIGINT, signal.SIGTERM, *_if_there("SIGHUP"))
 #: What a process is told to end with, ever less gently.
@@ -102,18 +102,18 @@ class Watched:
         env: Mapping[str, str],
         cwd: Path | None = None,
         pass_fds: tuple[int, ...] = (),
+        entry: Sequence[str] = (),
+        warm: Warm | None = None,
     ) -> None:
+        """Start it.
+
+        Args:
+            entry: stands before the command, where that is started; see `.isolation`.
+            warm: where it is to be forked instead, if that can be.
+        """
         self._mark = uuid.uuid4().hex
-        self._process = subprocess.Popen(
-            command,
-            env={**env, MARK: self._mark},
-            cwd=cwd,
-            pass_fds=pass_fds,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # Windows
+        self._process = self._begin(
+            command, {**env, MARK: self._mark}, cwd, pass_fds, tuple(entry), warm
         )
         self._head = bytearray()
         self._tail = bytearray()
@@ -124,6 +124,20 @@ class Watched:
         if _is_ending.is_set():
             self.end(gently=False)
             raise KeyboardInterrupt
+
+    def _begin(
+        self,
+        command: Sequence[str],
+        env: Mapping[str, str],
+        cwd: Path | None,
+        pass_fds: tuple[int, ...],
+        entry: tuple[str, ...],
+        warm: Warm | None,
+    ) -> Process:
+        if warm is not None:
+            with suppress(ZygoteLost):
+                return warm.zygote.fork(command, env, cwd, pass_fds, warm.namespaces)
+        return Spawned([*entry, *command], env, cwd, pass_fds)
 
     @property
     def pid(self) -> int:
@@ -136,9 +150,7 @@ class Watched:
 
     def wait(self, timeout_s: float) -> int | None:
         """Wait for its end; None if it still runs then."""
-        with suppress(subprocess.TimeoutExpired):
-            return self._process.wait(timeout_s)
-        return None
+        return self._process.wait(timeout_s)
 
     def output(self) -> str:
         """What it has printed: all of it, or its start and end with a note between."""
@@ -190,7 +202,6 @@ class Watched:
         return False
 
     def _read(self) -> None:
-        assert self._process.stdout is not None
         with self._process.stdout as output:
             while chunk := os.read(output.fileno(), 65536):
                 self._keep(chunk)
@@ -210,15 +221,12 @@ def start_student(
     cwd: Path | None = None,
     pass_fds: tuple[int, ...] = (),
     entry: Sequence[str] = (),
+    warm: Warm | None = None,
 ) -> Watched:
-    """Start a submission's process, held as well as this system can.
-
-    Args:
-        entry: stands before the command; see `.isolation`.
-    """
+    """Start a submission's process, held as well as this system can; see `Watched`."""
     if system.has_supervision():
-        return Student(command, env, cwd, pass_fds, entry)
-    return Unsupervised([*entry, *command], env, cwd, pass_fds)
+        return Student(command, env, cwd, pass_fds, entry, warm)
+    return Unsupervised(command, env, cwd, pass_fds, entry)
 
 
 class Unsupervised(Watched):
@@ -250,19 +258,35 @@ class Student(Watched):
         cwd: Path | None = None,
         pass_fds: tuple[int, ...] = (),
         entry: Sequence[str] = (),
+        warm: Warm | None = None,
     ) -> None:
         """`entry` stands before the supervisor's own command; see `.isolation`."""
-        self._report, theirs = os.pipe()
+        self._report, self._theirs = os.pipe()
         self._told = b""
         self._is_silent = False
-        words = [*entry, *SUPERVISOR, str(os.getpid()), str(theirs), *command]
         try:
-            super().__init__(words, env, cwd, (*pass_fds, theirs))
+            super().__init__(command, env, cwd, pass_fds, entry, warm)
         except BaseException:
             self._close()
             raise
         finally:
-            os.close(theirs)
+            os.close(self._theirs)
+
+    def _begin(
+        self,
+        command: Sequence[str],
+        env: Mapping[str, str],
+        cwd: Path | None,
+        pass_fds: tuple[int, ...],
+        entry: tuple[str, ...],
+        warm: Warm | None,
+    ) -> Process:
+        if warm is not None:
+            with suppress(ZygoteLost):
+                spaces = warm.namespaces
+                return warm.zygote.fork(command, env, cwd, pass_fds, spaces, self._theirs)
+        words = [*entry, *SUPERVISOR, str(os.getpid()), str(self._theirs), *command]
+        return Spawned(words, env, cwd, (*pass_fds, self._theirs))
 
     @property
     def pid(self) -> int:

@@ -1,23 +1,33 @@
 """Starts the simulator of a run in virtual time; where that cannot work, says so and ends.
 
     python -m grader.run.simulator.virtual_main ...
+    python -m grader.run.simulator.virtual_main --zygote SOCKET GRADER_PID NEEDED
 
 The arguments are those of `grader.run.simulator.virtual_time`. Whatever fails in this process
 fails here: the grader then runs the submission in real time, and the result says why. Should that
 fail as well, it is the grader's failure.
+
+As a zygote it imports packages of messages and scenes (NEEDED: a JSON list of two lists of names),
+and forks for each order; a child goes on with the arguments of the first form.
 """
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import sys
 import traceback
+from collections.abc import Sequence
 from pathlib import Path
+
+ZYGOTE = "--zygote"
 
 
 def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
+    if argv[0] == ZYGOTE:
+        argv = become_one_of_many(argv[1:])
     try:
         from grader.run.lockstep import contract
 
@@ -29,6 +39,32 @@ def main(argv: list[str]) -> int:
     except Exception as error:
         traceback.print_exc()
         return _refuse(argv, f"virtual time itself failed ({_where(error)})")
+
+
+def become_one_of_many(words: Sequence[str]) -> list[str]:
+    """Be a zygote; returns in each child, with the arguments that it would have been started with.
+
+    Args:
+        words: what `forking.serve` wants, and what to import.
+    """
+    from grader.run.lockstep import contract
+
+    if contract.broken():
+        sys.exit(1)  # the run says so, when it has started from nothing
+    from grader.run.lockstep import preloading
+    from grader.run.processes import forking
+    from grader.run.simulator import virtual_time  # noqa: F401
+    from grader.scenes import load_scene
+
+    *serving, needed = words
+    packages, scenes = json.loads(needed)
+    preloading.import_messages(packages)
+    for name in scenes:
+        load_scene(name).preload()
+    gc.collect()
+    gc.freeze()
+    command = forking.serve(serving, ())
+    return command[command.index("-m") + 2 :]
 
 
 def _where(error: Exception) -> str:
@@ -43,4 +79,8 @@ def _refuse(argv: list[str], why: str) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    code = main(sys.argv[1:])
+    # All is said and saved. What ROS and Python would still take apart goes with the process.
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    os._exit(code)

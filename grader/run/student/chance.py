@@ -6,6 +6,7 @@ import functools
 import itertools
 import os
 import random
+from collections.abc import Callable
 from typing import Any
 
 from grader.run.lockstep.faults import pass_on
@@ -14,8 +15,11 @@ from grader.run.lockstep.faults import pass_on
 PROCESSORS = 4
 
 
-def install() -> None:
-    """Seed every source of random numbers, fix the number of processors."""
+def install() -> Callable[[], object]:
+    """Seed every source of random numbers, fix the number of processors.
+
+    Returns what tells their state: equal ones mean that nothing was drawn between.
+    """
     source = random.Random(0)
     seeds = itertools.count(1)
     real_seed = random.Random.seed
@@ -35,6 +39,7 @@ def install() -> None:
     os.sched_getaffinity = lambda _: set(range(PROCESSORS))
     if hasattr(os, "process_cpu_count"):  # CPython 3.13
         os.process_cpu_count = lambda: PROCESSORS
+    return lambda: (source.getstate(), repr(seeds), random.getstate())
 
 
 def order_nodes(node_class: Any) -> None:

@@ -25,20 +25,24 @@ from grader.run.student.simulator_link import SimulatorLink
 from grader.run.student.waiting import VirtualWaiter, clock_event_class
 
 
+def prepare() -> None:
+    """What needs neither the link nor the clocks; it may come long before `install`."""
+    # first: it looks at what is replaced in `install`
+    executor.install()
+    executor.allow_nested_spins()
+
+
 def install(
     scheduler: Scheduler,
     nodes: Sequence[graph.Name],
     refuse: Callable[[str], None],
 ) -> SimulatorLink:
-    """Replace what tells or waits for time in rclpy; returns the link, which is to be connected.
+    """Replace what tells or waits for time in rclpy, after `prepare`; returns the link.
 
     Args:
         nodes: the simulator's.
         refuse: told what virtual time cannot follow; does not return.
     """
-    # first: it looks at what is replaced below
-    executor.install()
-    executor.allow_nested_spins()
     link = SimulatorLink(scheduler, refuse)
 
     def now_ns() -> int:

@@ -2,11 +2,16 @@
 
     python virtual_main.py FD CORE NODES ROOT module:function
     python virtual_main.py FD CORE NODES ROOT path/to/script.py [function]
+    python virtual_main.py --zygote SOCKET GRADER_PID MESSAGES
 
 FD is the link to the simulator, CORE the processor core to share with it (-1: any), NODES a JSON
 list of the names and namespaces of the simulator's nodes. Started by path, like
 `grader.run.student.main`, whose rules for what a submission may import are the same. Everything of
 ours is imported before the submission is, and then forgotten by the import system.
+
+As a zygote it does the same up to where the link comes in, imports what nearly every submission
+needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with the
+arguments of the first two forms, and looks to a submission as if it had been started with them.
 """
 
 import sys
@@ -15,8 +20,11 @@ from pathlib import Path
 sys.path[0] = str(Path(__file__).resolve().parents[3])
 
 import atexit  # noqa: E402
+import gc  # noqa: E402
 import json  # noqa: E402
+import random  # noqa: E402
 import socket  # noqa: E402
+from collections.abc import Callable, Sequence  # noqa: E402
 from contextlib import suppress  # noqa: E402
 
 from grader.run.lockstep import contract, faults, real  # noqa: E402
@@ -35,13 +43,24 @@ from grader.run.student import (  # noqa: E402
 from grader.run.student import main as student_main  # noqa: E402
 from grader.run.student.scheduler import Scheduler  # noqa: E402
 
+ZYGOTE = "--zygote"
+
 
 def main() -> None:
     """Run one submission; does not return."""
-    _, fd, core, nodes, root, target, *more = sys.argv
-    student_main.die_with_parent()
-    connection = socket.socket(fileno=int(fd))
+    words = sys.argv
+    is_zygote = words[1] == ZYGOTE
+    if not is_zygote:
+        student_main.die_with_parent()
     scheduler = Scheduler()
+    fault, state = prepare(scheduler)
+    if is_zygote:
+        if fault:
+            sys.exit(fault)  # the run says so, when it has started from nothing
+        words = become_one_of_many(scheduler, state, words[2:])
+        student_main.die_with_parent()
+    _, fd, core, nodes, root, target, *more = words
+    connection = socket.socket(fileno=int(fd))
 
     def give_up(kind: Kind, what: str) -> None:
         with suppress(OSError):  # the simulator is gone
@@ -52,15 +71,10 @@ def main() -> None:
         give_up(Kind.UNSUPPORTED, what)
 
     faults.on_fault = lambda what: give_up(Kind.FAILED, what)
+    if fault:
+        give_up(Kind.FAILED, fault)
     try:
-        # before rclpy is imported, which uses all of it
-        clocks.install(scheduler)
-        threads.install(scheduler)
-        chance.install()
-        sockets.install(scheduler)
         signals.install(scheduler, refuse)
-        if broken := contract.broken(contract.ENTITIES, contract.PROGRAM):
-            give_up(Kind.FAILED, broken)
         from grader.run.student import install as inside_rclpy
 
         known = [(name, namespace) for name, namespace in json.loads(nodes)]
@@ -83,12 +97,68 @@ def main() -> None:
 
     refusal.watch(refuse)
     student_main.forget_ourselves(root, target)
+    # however we have started, the collector begins to count here
+    gc.collect()
+    gc.freeze()
     code = student_main.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
     atexit._run_exitfuncs()
     faults.guarded(link.synchronise)()
     link.note(Kind.LEAVING)
     real.leave(code)
+
+
+def prepare(scheduler: Scheduler) -> tuple[str, Callable[[], object]]:
+    """Replace all that needs no link; what is wrong, or '', and what tells the state of chance."""
+    state: Callable[[], object] = object
+    try:
+        # before rclpy is imported, which uses all of it
+        clocks.install(scheduler)
+        threads.install(scheduler)
+        state = chance.install()
+        sockets.install(scheduler)
+        if broken := contract.broken(contract.ENTITIES, contract.PROGRAM):
+            return broken, state
+        from grader.run.student import install as inside_rclpy
+
+        inside_rclpy.prepare()
+    except refusal.Unsupported as lack:
+        return f"virtual time does not work here: {lack}", state
+    except Exception as error:
+        return faults.failed(faults.whose(error) or repr(error)), state
+    return "", state
+
+
+def become_one_of_many(
+    scheduler: Scheduler, state: Callable[[], object], words: Sequence[str]
+) -> list[str]:
+    """Be a zygote; returns in each child, with the arguments that it would have been started with.
+
+    Args:
+        state: tells whether anything has drawn random numbers.
+        words: what `forking.serve` wants, and which packages' messages to import.
+    """
+    *serving, packages = words
+    before, loaded = (state(), vars(scheduler).copy()), _loaded()
+    from grader.run.lockstep import preloading
+    from grader.run.processes import forking
+
+    preloading.import_messages(json.loads(packages))
+    if (state(), vars(scheduler)) != before:
+        sys.exit("what is imported beforehand draws random numbers, or takes time")
+    gc.collect()
+    gc.freeze()
+    drawn = random.getstate()
+    command = forking.serve(serving, _loaded() - loaded)
+    random.setstate(drawn)  # Python has drawn others for each fork
+    sys.argv = command[1:]
+    return sys.argv
+
+
+def _loaded() -> set[str]:
+    """The top-level modules that are loaded, but for those that a submission may not have."""
+    found = {name.partition(".")[0] for name in sys.modules}
+    return found - set(student_main.OURS)
 
 
 if __name__ == "__main__":

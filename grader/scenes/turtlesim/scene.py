@@ -18,6 +18,7 @@ from grader.scenes.scene import (
 from grader.scenes.turtlesim import interfaces, remarks, starts, trace, view
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.view import Pictures, View
+from turtlesim_py.world import sprites
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import to_json
 
@@ -54,6 +55,12 @@ class Turtlesim:
     def adapted(self, text: str, ros_distro: str) -> str:
         """With the package that the release has."""
         return interfaces.adapted(text, ros_distro)
+
+    def preload(self) -> None:
+        """Import the node, decode the picture of the turtle."""
+        from grader.scenes.turtlesim import simulation
+
+        sprites.sprite(simulation.SPRITE)
 
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str

@@ -18,6 +18,8 @@ from turtlesim_py.world.turtle import TICK_S, Pose, Reading
 
 #: How often the node is served although nothing has come [ticks]: goals expire.
 SERVE_TICKS = 63
+#: What every turtle looks like; the node would choose one of many.
+SPRITE = "rolling"
 
 
 class HookedNode(TurtlesimNode):
@@ -25,7 +27,7 @@ class HookedNode(TurtlesimNode):
 
     def __init__(self, hooks: Hooks, interfaces: str) -> None:
         self._hooks = hooks
-        parameters = ["turtle_image:=rolling"]
+        parameters = [f"turtle_image:={SPRITE}"]
         if interfaces:
             parameters.append(f"interfaces:={interfaces}")
         super().__init__(["--ros-args", *(word for text in parameters for word in ("-p", text))])
