@@ -15,10 +15,8 @@ from __future__ import annotations
 
 import array  # socket.recv_fds imports it where it is first needed, which is too late
 import ctypes
-import fcntl
 import json
 import os
-import resource
 import select
 import signal
 import socket
@@ -31,6 +29,10 @@ from pathlib import Path
 from typing import NoReturn, Self
 
 from grader.run.processes import supervisor
+
+with suppress(ImportError):  # Windows, which has no zygotes
+    import fcntl
+    import resource
 
 __all__ = ["MARK", "Order", "array", "become", "limits", "serve"]
 
@@ -61,7 +63,9 @@ class Order:
 
     Attributes:
         command: what would start it without a zygote.
-        env: all of its environment variables.
+        env: its environment variables, as they would be given to `command`.
+        zygote_env: those that were given to the zygote. What Python's start has made of them there
+            (ROS's wheels set a library path, for one) it would have made in the child as well.
         cwd: its current folder.
         fds: the numbers of the descriptors that it inherits, as its command knows them.
         namespaces: the kinds of the namespaces to enter, in order: keys of `NAMESPACES`.
@@ -71,6 +75,7 @@ class Order:
 
     command: Sequence[str]
     env: Mapping[str, str]
+    zygote_env: Mapping[str, str]
     cwd: str
     fds: Sequence[int]
     namespaces: Sequence[str]
@@ -181,7 +186,8 @@ def _be_child(zygote: int, data: bytes, fds: list[int], tells: int) -> Order:
     """Become what is ordered, say so, and go on as that."""
     try:
         order = Order.from_bytes(data)
-        report, tells = become(order, fds, zygote, tells)
+        tells = _out_of_the_way(tells, order)
+        report = become(order, fds, zygote, tells)
         os.write(tells, READY)
         os.close(tells)
     except BaseException as error:
@@ -200,7 +206,7 @@ def _give_up(tells: int, error: BaseException) -> NoReturn:
     os._exit(1)
 
 
-def become(order: Order, fds: Sequence[int], zygote: int, tells: int) -> tuple[int, int]:
+def become(order: Order, fds: Sequence[int], zygote: int, tells: int) -> int:
     """Turn a forked child into the process that was ordered, as a start of its command would.
 
     The one place for all that is done to a run's process as a whole, its supervisor included:
@@ -212,7 +218,7 @@ def become(order: Order, fds: Sequence[int], zygote: int, tells: int) -> tuple[i
         tells: a descriptor that is kept beside those.
 
     Returns:
-        the supervisor's report (-1 if there is none) and `tells`, under their new numbers.
+        the supervisor's report under its new number; -1 if there is none.
 
     Raises:
         OSError, ValueError, KeyError: something of it is refused.
@@ -221,13 +227,9 @@ def become(order: Order, fds: Sequence[int], zygote: int, tells: int) -> tuple[i
     output, *rest = fds
     report = rest.pop(0) if order.supervised else -1
     spaces, passed = rest[: len(order.namespaces)], rest[len(order.namespaces) :]
-    # out of the way of the numbers that are wanted
-    floor = max([2, *order.fds]) + 1
-    output, report, tells, *moved = (
-        fcntl.fcntl(fd, fcntl.F_DUPFD, floor) if fd >= 0 else fd
-        for fd in (output, report, tells, *spaces, *passed)
-    )
-    spaces, passed = moved[: len(spaces)], moved[len(spaces) :]
+    output, report = _out_of_the_way(output, order), _out_of_the_way(report, order)
+    spaces = [_out_of_the_way(fd, order) for fd in spaces]
+    passed = [_out_of_the_way(fd, order) for fd in passed]
     _close_others({0, output, report, tells, *spaces, *passed})
     for number in (1, 2):
         os.dup2(output, number)
@@ -241,9 +243,14 @@ def become(order: Order, fds: Sequence[int], zygote: int, tells: int) -> tuple[i
     for number, *both in order.limits:
         if resource.getrlimit(number) != tuple(both):
             resource.setrlimit(number, (both[0], both[1]))
-    _replace_environment(order.env)
+    _replace_environment(order)
     os.chdir(order.cwd)
-    return report, tells
+    return report
+
+
+def _out_of_the_way(fd: int, order: Order) -> int:
+    """Another number for a descriptor: none that is wanted for what is passed."""
+    return fd if fd < 0 else fcntl.fcntl(fd, fcntl.F_DUPFD, max([2, *order.fds]) + 1)
 
 
 def _close_others(kept: set[int]) -> None:
@@ -262,10 +269,15 @@ def _go_with(zygote: int) -> None:
         os._exit(1)  # it has died before we asked
 
 
-def _replace_environment(env: Mapping[str, str]) -> None:
+def _replace_environment(order: Order) -> None:
+    env, before = dict(order.env), order.zygote_env
     if MARK in env and len(env[MARK]) == len(NO_MARK):
         with suppress(OSError, ValueError):
             _show_mark(env[MARK])
+    now = {name: value for name, value in os.environ.items() if name != MARK}
+    env.update((name, value) for name, value in now.items() if before.get(name) != value)
+    for name in before.keys() - now.keys():
+        env.pop(name, None)
     os.environ.clear()
     os.environ.update(env)
 

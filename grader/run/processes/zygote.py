@@ -141,6 +141,7 @@ class Zygote:
         order = forking.Order(
             command=command,
             env=env,
+            zygote_env=self.env,
             cwd=str(cwd or Path.cwd()),
             fds=pass_fds,
             namespaces=list(namespaces),
