@@ -97,9 +97,6 @@ def main() -> None:
 
     refusal.watch(refuse)
     student_main.forget_ourselves(root, target)
-    # however we have started, the collector begins to count here
-    gc.collect()
-    gc.freeze()
     code = student_main.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
     atexit._run_exitfuncs()

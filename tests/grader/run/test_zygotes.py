@@ -1,0 +1,328 @@
+"""Runs that are forked from zygotes are those that start from nothing, only sooner."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import psutil
+import pytest
+
+from grader.recording.recording import Recording
+from grader.run import virtual_time, zygotes
+from grader.run.plan import Plan
+from grader.run.processes import forking, isolation
+from grader.scenes.scene import Limits
+from grader.submission.opening import open_submission
+
+ROOT = Path(__file__).parents[3]
+PLAN = Plan(Limits(first_motion_s=0.5, rest_s=0.2, total_s=5))
+#: What a submission can find out about itself, and what differs from run to run elsewhere.
+PORTRAIT = """
+import os, random, re, resource, signal, sys, tempfile, threading, time, uuid, warnings
+import rclpy
+home = os.path.dirname(os.environ["TMPDIR"])
+def shown(*things):
+    text = " ".join(str(thing).replace(home, "HOME") for thing in things)
+    print(re.sub("0x[0-9a-f]+|[0-9a-f]{32}|started [0-9]+", "X", text))
+shown("argv", sys.argv, sys.flags, sys.orig_argv[:2], sys.orig_argv[4:])
+shown("path", sys.path, sys.meta_path, sys.path_hooks)
+shown("main", vars(sys.modules["__main__"])["__file__"], __name__)
+shown("env", os.environ)
+shown("where", os.getcwd(), tempfile.gettempdir(), os.getpid(), os.getppid(), os.getsid(0))
+fds = [(fd, f"/proc/self/fd/{fd}") for fd in range(64)]
+kinds = [os.readlink(at).partition(":")[0] for fd, at in fds if os.path.exists(at)]
+shown("open", sorted(kinds), sys.stdout, sys.stderr)
+shown("limits", [resource.getrlimit(number) for number in range(16)])
+shown("signals", [(n, str(signal.getsignal(n)).partition(" at ")[0]) for n in range(1, 32)])
+shown("threads", threading.enumerate(), threading.active_count(), threading.main_thread().name)
+shown("chance", random.random(), uuid.uuid4(), hash("x"), os.urandom(4), list({"a", "b", "c"}))
+shown("more chance", random.Random().random(), random.SystemRandom().random())
+import numpy.random
+shown("numpy", numpy.random.random(), numpy.random.default_rng().random())
+shown("time", time.time(), time.monotonic(), len(warnings.filters))
+def depth(n=0):
+    try:
+        return depth(n + 1)
+    except RecursionError:
+        return n
+shown("depth", depth(), [frame.f_code.co_name for frame in sys._current_frames().values()])
+sys.stdout.flush()
+from geometry_msgs.msg import Twist
+rclpy.init()
+node = rclpy.create_node("driver")
+publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+for _ in range(3):
+    twist = Twist()
+    twist.linear.x = random.random()
+    publisher.publish(twist)
+    time.sleep(random.random())
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def ended_afterwards() -> Iterator[None]:
+    yield
+    zygotes.close()
+
+
+@pytest.fixture
+def fresh() -> Iterator[None]:
+    """No zygote is there, and none is afterwards."""
+    zygotes.close()
+    yield
+    zygotes.close()
+
+
+def forks() -> tuple[int, int]:
+    """How many processes the zygotes have given."""
+    sides = zygotes.zygote(zygotes.STUDENT), zygotes.zygote(zygotes.SIMULATOR)
+    student, simulator = (0 if side is None else side.forks for side in sides)
+    return student, simulator
+
+
+def graded(text: str, folder: Path) -> Recording:
+    script = folder / "submitted.py"
+    script.write_text(text)
+    with open_submission(script) as submission:
+        return virtual_time.run(submission, PLAN)
+
+
+def cold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zygotes, "zygote", lambda side: None)
+
+
+@pytest.mark.parametrize("level", ["private network", "user namespace", "ROS domain"])
+def test_a_forked_submission_finds_all_that_a_started_one_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, level: str
+) -> None:
+    refused = {
+        "private network": set(),
+        "user namespace": {isolation._as_root},
+        "ROS domain": {isolation._as_root, isolation._as_user},
+    }
+    monkeypatch.setattr(isolation, "_refused", refused[level])
+    monkeypatch.setattr(isolation.domain, "DOMAINS", (77,))
+    before = forks()
+    forked = graded(PORTRAIT, tmp_path)
+    assert [now - then for now, then in zip(forks(), before, strict=True)] == [1, 1]
+    cold(monkeypatch)
+    started = graded(PORTRAIT, tmp_path)
+    assert started.run.exit_code == 0, started.output
+    assert forked.output.splitlines() == started.output.splitlines()
+    assert forked.run.trace_sha256 == started.run.trace_sha256
+    assert (forked.run.time, forked.run.flags) == ("virtual", ())
+    assert forked.run.isolation == started.run.isolation
+
+
+@pytest.mark.parametrize(
+    "own",
+    [
+        "numpy.py",
+        "std_msgs/__init__.py",
+        "geometry_msgs.py",
+        "lark.py",
+        "zlib.py",
+        "lib/std_srvs.py",
+    ],
+)
+def test_a_submission_s_own_module_is_what_it_imports(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: str
+) -> None:
+    folder = tmp_path / "submission"
+    (folder / own).parent.mkdir(parents=True, exist_ok=True)
+    (folder / own).write_text("MINE = 'mine'\n")
+    name = own.partition("/")[0].removesuffix(".py") if "lib/" not in own else "std_srvs"
+    (folder / "main.py").write_text(
+        f"import sys; sys.path.insert(0, {str(folder / 'lib')!r})\n"
+        f"import {name}; print(getattr({name}, 'MINE', 'installed'))\n"
+    )
+    recordings = []
+    for _ in range(2):
+        with open_submission(folder / "main.py") as submission:
+            submission.root.joinpath(own).parent.mkdir(parents=True, exist_ok=True)
+            submission.root.joinpath(own).write_text("MINE = 'mine'\n")
+            recordings.append(virtual_time.run(submission, PLAN))
+        cold(monkeypatch)
+    warm, started = (recording.output for recording in recordings)
+    assert warm == started
+    # rclpy has loaded numpy before, however it was started
+    assert warm == ("installed\n" if name == "numpy" else "mine\n")
+
+
+def test_a_second_grading_needs_no_new_start(tmp_path: Path, fresh: None) -> None:
+    zygotes.warm()
+    pids = [side.pid for side in zygotes._zygotes.values()]
+    for number in range(1, 4):
+        recording = graded(f"print({number})", tmp_path)
+        assert recording.output == f"{number}\n"
+        assert [side.pid for side in zygotes._zygotes.values()] == pids
+        assert forks() == (number, number)
+
+
+def test_runs_side_by_side_share_the_zygotes(tmp_path: Path, fresh: None) -> None:
+    def one(number: int) -> str:
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        return graded(f"print({number})", folder).output
+
+    with ThreadPoolExecutor(3) as pool:
+        assert list(pool.map(one, range(3))) == ["0\n", "1\n", "2\n"]
+    assert forks() == (3, 3)
+    # those who have asked first are gone
+    assert graded("print(4)", tmp_path).output == "4\n"
+    assert forks() == (4, 4)
+
+
+@pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
+def test_a_zygote_that_dies_costs_a_start_and_nothing_else(
+    tmp_path: Path, fresh: None, side: str
+) -> None:
+    zygotes.warm()
+    first = zygotes._zygotes[side]
+    first.preloaded()
+    os.kill(first.pid, signal.SIGKILL)
+    first._process.wait()
+    assert graded("print('here')", tmp_path).output == "here\n"
+    assert graded("print('again')", tmp_path).output == "again\n"
+    second = zygotes._zygotes[side]
+    assert second is not first
+    assert second.forks >= 1
+
+
+@pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
+def test_a_zygote_that_never_comes_up_is_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None, side: str
+) -> None:
+    started = []
+    original = zygotes.Zygote
+
+    def broken(command: list[str], env: dict[str, str], *more: str) -> object:
+        if (command == zygotes.command(side)) is False:
+            return original(command, env, *more)
+        started.append(1)
+        return original([sys.executable, "-S", "-c", "raise SystemExit(1)"], env)
+
+    monkeypatch.setattr(zygotes, "Zygote", broken)
+    for number in range(zygotes.MOST_LOSSES + 2):
+        assert graded(f"print({number})", tmp_path).output == f"{number}\n"
+    assert len(started) == zygotes.MOST_LOSSES
+    assert zygotes.zygote(side) is None
+
+
+def test_a_changed_environment_is_another_zygote_s(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None
+) -> None:
+    says = "import os; print(os.environ.get('MY_OWN'))"
+    assert graded(says, tmp_path).output == "None\n"
+    before = list(zygotes._zygotes.values())
+    monkeypatch.setenv("MY_OWN", "1")
+    assert graded(says, tmp_path).output == "1\n"
+    assert not set(before) & set(zygotes._zygotes.values())
+    for each in before:
+        each._process.wait(20)
+
+
+@pytest.mark.parametrize(
+    ("names", "value"), [("PYTHONPATH", "relative:/opt/ros"), ("PYTHONPATH", ":/opt/ros")]
+)
+def test_there_is_none_where_the_import_path_depends_on_the_folder(
+    monkeypatch: pytest.MonkeyPatch, names: str, value: str
+) -> None:
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    monkeypatch.setenv(names, value)
+    assert zygotes.zygote(zygotes.STUDENT) is None
+
+
+def test_there_is_none_without_pidfd(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "pidfd_open")
+    assert zygotes.zygote(zygotes.STUDENT) is None
+    assert zygotes.for_simulator({}) is None
+    assert zygotes.for_student(ROOT, {}) is None
+
+
+def test_a_fork_of_the_grader_has_zygotes_of_its_own() -> None:
+    code = f"""
+import os, sys
+sys.path.insert(0, {str(ROOT)!r})
+from grader.run import zygotes
+zygotes.warm()
+ours = {{side.pid for side in zygotes._zygotes.values()}}
+child = os.fork()
+if not child:
+    assert not zygotes._zygotes
+    theirs = {{zygotes.zygote(side).pid for side in ("student", "simulator")}}
+    assert zygotes.zygote("student").preloaded()
+    zygotes.close()
+    os._exit(bool(ours & theirs))
+assert os.waitpid(child, 0)[1] == 0
+assert zygotes.zygote("student").preloaded()
+assert {{side.pid for side in zygotes._zygotes.values()}} == ours
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
+
+
+def test_zygotes_end_with_the_program_that_has_graded() -> None:
+    code = f"""
+import sys, threading
+sys.path.insert(0, {str(ROOT)!r})
+from grader.run import zygotes
+thread = threading.Thread(target=zygotes.warm)
+thread.start()
+thread.join()
+print(*(side.pid for side in zygotes._zygotes.values()))
+"""
+    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True)
+    pids = [int(word) for word in done.stdout.split()]
+    assert len(pids) == 2
+    assert not any(psutil.pid_exists(pid) for pid in pids)
+
+
+def test_warming_up_imports_nothing_heavy() -> None:
+    code = f"""
+import sys
+sys.path.insert(0, {str(ROOT)!r})
+from grader.run import zygotes
+zygotes.warm()
+print(*sorted({{"numpy", "rosbags", "rclpy", "PIL", "yaml", "rich"}} & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True)
+    assert done.stdout == b"\n"
+
+
+def test_real_time_starts_none(tmp_path: Path, fresh: None) -> None:
+    from grader.run import real_time
+
+    script = tmp_path / "submitted.py"
+    script.write_text("print('here')")
+    with open_submission(script) as submission:
+        assert real_time.run(submission, PLAN).output == "here\n"
+    assert not zygotes._zygotes
+
+
+REACHES = f"""
+import os
+for name in os.listdir("/proc"):
+    if name.isdigit():
+        print(open(f"/proc/{{name}}/cmdline").read().count({forking.ZYGOTE!r}))
+"""
+
+
+def test_a_submission_with_a_namespace_of_its_own_sees_no_zygote_but_itself(
+    tmp_path: Path,
+) -> None:
+    if os.geteuid() != 0:
+        pytest.skip("only root is sure to get one")
+    # the namespace's first process, and itself: both are forks
+    assert graded(REACHES, tmp_path).output == "1\n1\n"
+
+
+def test_no_thread_of_ours_stays_behind(tmp_path: Path) -> None:
+    graded("print(1)", tmp_path)
+    before = threading.active_count()
+    graded("print(1)", tmp_path)
+    assert threading.active_count() <= before
