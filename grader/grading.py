@@ -53,7 +53,10 @@ def grade(
     executable: str | None = None,
     progress: Progress | None = None,
 ) -> Result:
-    """Run a submission and judge it. Nothing is written, and no process is left behind.
+    """Run a submission and judge it. Nothing is written, and no process of the run is left behind.
+
+    Two that have imported what runs need wait for the next grading, and end with this process; see
+    `grader.run.zygotes`.
 
     Args:
         submission: the path of a .py file, a folder, a package or a zip; or what

@@ -16,6 +16,7 @@ import yaml
 
 import grader
 from grader.errors import ExerciseError, GraderFailure, UsageError
+from grader.run import zygotes
 
 ROOT = Path(__file__).parents[2]
 DRIVES = """
@@ -33,6 +34,7 @@ rclpy.spin(node)
 WATCHES = """
 import ctypes, json, os, signal, sys, threading
 import grader
+from grader.run import zygotes
 from grader.run.processes import watched
 
 def state():
@@ -51,6 +53,7 @@ thread = threading.Thread(target=grade)
 thread.start()
 grade()
 thread.join()
+zygotes.close()  # which wait for the next grading
 assert state() == before, (before, state())
 print(len(result))
 """
@@ -151,6 +154,7 @@ def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
         with pytest.raises(GraderFailure, match="the simulator"):
             task.result()
     assert not [p for p in psutil.process_iter() if words(p) == ["sleep", seconds]]
+    zygotes.close()  # which wait for the next grading
     assert set(psutil.Process().children()) <= before
 
 

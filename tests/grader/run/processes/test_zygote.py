@@ -341,7 +341,7 @@ def test_many_may_ask_at_once_and_leave_no_descriptor(zygote: Zygote) -> None:
     theirs = psutil.Process(zygote.pid).num_fds()
     with ThreadPoolExecutor(8) as pool:
         assert list(pool.map(graded, range(24))) == [f"{number}\n" for number in range(24)]
-    assert len(list(Path("/proc/self/fd").iterdir())) == before
+    assert len(list(Path("/proc/self/fd").iterdir())) <= before
     python("", Warm(zygote, {})).end()  # it has heard of the ends before
     assert psutil.Process(zygote.pid).num_fds() <= theirs + 2
     assert not [p for p in psutil.Process(zygote.pid).children() if p.status() == "zombie"][1:]
