@@ -113,7 +113,7 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
     path = Path(name_or_path)
     if path.suffix in SUFFIXES:
         return _from_file(path)
-    if isinstance(name_or_path, str) and name_or_path in names():
+    if isinstance(name_or_path, str) and places.is_installed(name_or_path):
         return _from_place(places.installed(name_or_path))
     if path.is_dir():
         return _from_place(places.in_folder(path))

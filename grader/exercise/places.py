@@ -62,6 +62,11 @@ def names() -> list[str]:
     return sorted({*_ours(), *_entry_points()})
 
 
+def is_installed(name: str) -> bool:
+    """Whether there is an installed exercise of this name."""
+    return name in _ours() or name in _entry_points()
+
+
 def installed(name: str) -> Place:
     """The installed exercise of this name.
 

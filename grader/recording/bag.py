@@ -9,8 +9,10 @@ tick have equal times and stand in the file in the order in which they happened.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import Reader
@@ -18,7 +20,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
-from grader.recording.rosbag2_writer import Rosbag2Writer
+from grader.recording.rosbag2_writer import Record, Rosbag2Writer
 from grader.scenes.scene import Message, Scene, Trace
 
 
@@ -30,7 +32,7 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
     Raises:
         OSError: it cannot be written, e.g. because the disk is full.
     """
-    types = _store(scene.message_definitions())
+    types = types_of(scene)
     writer = Rosbag2Writer(folder)
     connections: dict[str, Connection] = {}
 
@@ -40,12 +42,16 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
             connections[topic] = writer.add_connection(topic, msgtype, typestore=types)
         return connections[topic]
 
+    def records() -> Iterator[Record]:
+        tick_ns = scene.tick_ns
+        for tick, topic, msgtype, message in scene.to_messages(trace):
+            data = message if type(message) is bytes else cdr(types, message, msgtype)
+            yield connections.get(topic) or connection(topic, msgtype), tick * tick_ns, data
+
     with writer:
         for topic, msgtype in scene.bag_topics(trace):
             connection(topic, msgtype)
-        for tick, topic, msgtype, message in scene.to_messages(trace):
-            data = types.serialize_cdr(message, msgtype, little_endian=True)
-            writer.write(connection(topic, msgtype), tick * scene.tick_ns, data)
+        writer.write_all(records())
     return folder / f"{folder.name}.mcap"
 
 
@@ -55,7 +61,7 @@ def read(folder: Path, scene: Scene, ticks: int) -> Trace:
     Raises:
         RecordingError: it is damaged, or is another one.
     """
-    types = _store(scene.message_definitions())
+    types = types_of(scene)
     try:
         with Reader(folder) as reader:
             topics = {c.topic: c.msgtype for c in reader.connections}
@@ -76,10 +82,20 @@ def read(folder: Path, scene: Scene, ticks: int) -> Trace:
         raise RecordingError(f"the bag in {folder} holds no recording: {_brief(error)}") from error
 
 
-def _store(definitions: Mapping[str, str]) -> Typestore:
+def cdr(types: Typestore, message: Any, msgtype: str) -> bytes:
+    """A message of rosbags, serialized."""
+    return bytes(types.serialize_cdr(message, msgtype, little_endian=True))
+
+
+def types_of(scene: Scene) -> Typestore:
     """The types of ROS 2 Jazzy and the scene's own."""
+    return _store(tuple(scene.message_definitions().items()))
+
+
+@cache  # rosbags compiles what (de)serializes a type, once a store
+def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
     types = get_typestore(Stores.ROS2_JAZZY)
-    for msgtype, text in definitions.items():
+    for msgtype, text in definitions:
         types.register(get_types_from_msg(text, msgtype))
     return types
 

@@ -4,13 +4,16 @@
 |---|---|
 | `topic_type_hash`, by which a type is known on the graph | metadata of each channel in the .mcap |
 | `ros_distro`, whose types these are | metadata.yaml, and its copy in the .mcap |
+
+And with one loop over all messages, which takes a third of the time of a call for each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from io import BytesIO
 from pathlib import Path
+from struct import Struct
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
@@ -18,6 +21,14 @@ from rosbags.rosbag2.storage_mcap import McapWriter, write_channel, write_string
 
 #: Under whichever ROS a run was made: the bag's definitions are those of Jazzy.
 DISTRO = "jazzy"
+#: A message to be written: of which connection, when [ns], its CDR.
+Record = tuple[Connection, int, bytes]
+#: What stands before a message's data in MCAP: opcode, length of what follows, channel, sequence
+#: number, when it was received, when it was sent [ns].
+_MESSAGE = Struct("<BQHIQQ")
+_OPCODE, _FIELDS_BYTES = 0x05, _MESSAGE.size - 9
+#: rosbags closes a chunk that has become longer than this [bytes].
+_CHUNK_BYTES = 2**20
 
 
 class _Storage(McapWriter):
@@ -39,6 +50,24 @@ class _Storage(McapWriter):
         records.truncate()
         write_channel(records, channel, self.schemas)
 
+    def write_all(self, messages: Iterable[Record]) -> None:
+        """Write messages in the order of their times, as `write` does each."""
+        pack = _MESSAGE.pack
+        last_ns = self.message_end_time
+        for connection, time_ns, data in messages:
+            number, chunk = connection.id, self.chunk
+            if not chunk.msgs:
+                chunk.message_start_time = time_ns
+                self.message_start_time = min(time_ns, self.message_start_time)
+            chunk.msgs[number].append((time_ns, chunk.bio.tell()))
+            head = pack(_OPCODE, _FIELDS_BYTES + len(data), number, 0, time_ns, time_ns)
+            chunk.bio.write(head + data)
+            self.channel_stats[number] += 1
+            chunk.message_end_time = last_ns = time_ns
+            if chunk.bio.tell() > _CHUNK_BYTES:
+                self.close_chunk()
+        self.message_end_time = last_ns
+
     def close(self, version: int, metadata: str) -> None:
         """Write the rest, the metadata too."""
         super().close(version, _with_distro(metadata))
@@ -54,6 +83,15 @@ class Rosbag2Writer(Writer):
         # Chunks inside the file: 0.2 MB instead of 2 MB a run, and every reader of MCAP can
         # unpack it.
         self.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+
+    def write_all(self, messages: Iterable[Record]) -> None:
+        """Write messages, which must come in the order of their times."""
+        storage = self.storage
+        assert isinstance(storage, _Storage)
+        storage.write_all(messages)
+        self.counts.update(storage.channel_stats)
+        self.min_timestamp = min(self.min_timestamp, storage.message_start_time)
+        self.max_timestamp = max(self.max_timestamp, storage.message_end_time)
 
     def close(self) -> None:
         """Finish the bag; last comes metadata.yaml."""

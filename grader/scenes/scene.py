@@ -143,7 +143,10 @@ class Simulation(Protocol):
 
 
 class Message(NamedTuple):
-    """A message of a bag: its tick, topic, ROS type, and itself in the types of rosbags."""
+    """A message of a bag: its tick, topic, ROS type, and itself.
+
+    Itself in the types of rosbags; or, on the way into a bag, as the bytes of its CDR.
+    """
 
     tick: int
     topic: str

@@ -18,6 +18,7 @@ from rosbags.highlevel import AnyReader
 from grader.recording import bag
 from grader.recording import folder as storage
 from grader.recording.recording import Recording
+from grader.recording.rosbag2_writer import Rosbag2Writer
 from grader.scenes import load_scene
 from grader.scenes.turtlesim import messages as bag_messages
 from tests.grader.driving import drive, pen, twist
@@ -258,6 +259,30 @@ def test_the_real_rclpy_reads_the_messages(folder, recorded):
             if connection.topic == "/second/cmd_vel":
                 assert (message.linear.x, message.linear.y) == (0.5, float("inf"))
     assert found == {topic: count for topic, (_, count) in TOPICS.items()}
+
+
+def test_it_is_the_bag_that_rosbags_writes_message_by_message(tmp_path):
+    """Chunks, indices and counts too; a run of three minutes fills several chunks."""
+    scene = load_scene("turtlesim")
+    trace = drive(couple, ticks=11_000).trace
+    quick = bag.write(trace, scene, tmp_path / "quick" / "recording")
+    types, writer = bag.types_of(scene), Rosbag2Writer(tmp_path / "slow" / "recording")
+    connections = {}
+    with writer:
+        for topic, msgtype in scene.bag_topics(trace):
+            connections[topic] = writer.add_connection(topic, msgtype, typestore=types)
+        for tick, topic, msgtype, message in scene.to_messages(trace):
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, msgtype, typestore=types)
+            if isinstance(message, bytes):
+                message = types.deserialize_cdr(message, msgtype)
+            data = types.serialize_cdr(message, msgtype, little_endian=True)
+            writer.write(connections[topic], tick * scene.tick_ns, data)
+    with quick.open("rb") as stream:
+        assert len(make_reader(stream).get_summary().chunk_indexes) > 2
+    for name in ("recording.mcap", "metadata.yaml"):
+        slow = tmp_path / "slow" / "recording" / name
+        assert (quick.parent / name).read_bytes() == slow.read_bytes()
 
 
 def test_writing_alone_makes_the_same_bag(recorded, folder, tmp_path):
