@@ -8,7 +8,6 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from PIL import Image
 from rich.console import Console
 
 from grader import files
@@ -23,7 +22,6 @@ from grader.reports import Report, render, terminal
 from grader.requirements import require
 from grader.result.result import FAMILY, build
 from grader.run import zygotes
-from grader.scenes import load_scene
 from grader.submission.opening import open_submission
 
 #: What lies beside a result file: name -> path relative to it.
@@ -151,8 +149,6 @@ def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
 def _write(recordings: Recordings, out: Path) -> dict[str, str]:
     """Write everything but the result; name -> path relative to it."""
     folder.save_all(recordings, out / ARTIFACTS["recording"])
-    scene = load_scene(recordings.nominal.scene)
-    window = scene.pictures(recordings.nominal.trace).window
-    Image.fromarray(window).save(out / ARTIFACTS["canvas"])
+    (out / ARTIFACTS["canvas"]).write_bytes(recordings.nominal.png["window"])
     (out / ARTIFACTS["output"]).write_text(recordings.nominal.output, encoding="utf-8")
     return dict(ARTIFACTS)

@@ -28,7 +28,6 @@ from types import ModuleType
 from typing import Any
 
 import jsonschema
-from PIL import Image
 
 from grader import strict_json
 from grader.errors import RecordingError
@@ -153,9 +152,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     _write_json(folder / CIRCUMSTANCES_FILE, circumstances)
     # Bytes: a student's line ends stay as they are.
     (folder / OUTPUT).write_bytes(recording.output.encode("utf-8", "surrogatepass"))
-    pictures = scene.pictures(recording.trace)
-    for name, pixels in {"window": pictures.window, **pictures.others}.items():
-        Image.fromarray(pixels).save(folder / f"{name}.png")
+    for name, png in recording.png.items():
+        (folder / f"{name}.png").write_bytes(png)
     if recording.start is None:  # a scenario begins in the usual place
         scenario = {"name": NAME, "description": "a graded run", **scene.scenario(recording.trace)}
         _write_json(folder / SCENARIO, scenario, indent=None)

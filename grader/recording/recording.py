@@ -5,11 +5,15 @@ How a recording lies on disk is told by `grader.recording.folder`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import io
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
+from grader.scenes import load_scene
 from grader.scenes.scene import Start, Trace
+from grader.scenes.view import Pixels
 
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed"]
 Clock = Literal["virtual", "real"]
@@ -74,6 +78,23 @@ class Recording:
     output: str = ""
     start: Start | None = None
     scene: str = "turtlesim"
+
+    @cached_property
+    def png(self) -> Mapping[str, bytes]:
+        """The pictures of the scene at the end, as PNG files by their names.
+
+        Encoding one takes longer than writing its file: the folder of the recording, the canvas
+        beside the result and the page show the same one.
+        """
+        from PIL import Image  # here: the simulator's process imports this module too
+
+        def encoded(pixels: Pixels) -> bytes:
+            file = io.BytesIO()
+            Image.fromarray(pixels).save(file, format="PNG")
+            return file.getvalue()
+
+        made = load_scene(self.scene).pictures(self.trace)
+        return {name: encoded(p) for name, p in {"window": made.window, **made.others}.items()}
 
 
 @dataclass(frozen=True)

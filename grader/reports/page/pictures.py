@@ -20,7 +20,8 @@ def canvas_uri(report: Report) -> str:
         try:
             with Image.open(path, formats=["PNG"]) as image:
                 if max(image.size) <= report.scene.plane.size_px:
-                    return _uri(image.convert("RGB"))
+                    # anew, and without anything else that the file may hold
+                    return _uri(_png(image.convert("RGB")))
         except (OSError, UnidentifiedImageError):
             pass  # a damaged picture; the recording may hold it whole
     return window_uri(report, 0)
@@ -31,17 +32,17 @@ def window_uri(report: Report, run: int) -> str:
     recording = report.recordings.get(run)
     if recording is None:
         return ""
-    return _uri(Image.fromarray(report.scene.pictures(recording.trace).window))
+    return _uri(recording.png["window"])
 
 
-def _uri(image: Image.Image) -> str:
-    data = _png(image)
+def _uri(data: bytes) -> str:
     if len(data) > _LIMIT_BYTES:
-        data = _png(image.quantize(256))
+        with Image.open(io.BytesIO(data)) as image:
+            data = _png(image.quantize(256), optimize=True)
     return f"data:image/png;base64,{base64.b64encode(data).decode()}"
 
 
-def _png(image: Image.Image) -> bytes:
+def _png(image: Image.Image, optimize: bool = False) -> bytes:
     out = io.BytesIO()
-    image.save(out, format="PNG", optimize=True)
+    image.save(out, format="PNG", optimize=optimize)
     return out.getvalue()
