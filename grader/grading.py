@@ -7,22 +7,24 @@ any thread, several at once.
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
 from grader.errors import GraderFailure, UsageError
-from grader.exercise import check
-from grader.exercise.loading import DEFAULT, Exercise, load_exercise
+from grader.exercise import DEFAULT, check, early
+from grader.exercise.loading import Exercise, load_exercise
 from grader.recording import folder as recording_folder
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
 from grader.run import real_time, virtual_time
 from grader.run.plan import Plan
+from grader.run.processes import cores
 from grader.scenes import load_scene
 from grader.submission.imports import read_imports
 from grader.submission.opening import Submission, open_submission
@@ -30,6 +32,10 @@ from grader.submission.opening import Submission, open_submission
 Progress = Callable[[float], None]
 AnyPath = str | os.PathLike[str]
 REPEATED = "repeated, because the first try failed in the grader"
+#: So many runs go at once even on less than two cores: each waits now and then.
+LEAST_AT_ONCE = 2
+#: A run by its number, 0 nominal, 1, 2, ... varied, and what was recorded of it.
+Finished = tuple[int, Recording]
 
 
 class Runner(Protocol):
@@ -146,36 +152,72 @@ def run_all(
         SubmissionError: there is no ROS in which it could run.
         GraderFailure: a run could not be made, twice.
     """
+    with start(submission, plan(submission, exercise, seed), run, progress) as runs:
+        return gather(runs)
+
+
+def plan(submission: Submission, exercise: Exercise, seed: int | None = None) -> list[Plan]:
+    """The runs of a submission: the nominal one, and where the exercise asks for them, varied ones.
+
+    Raises:
+        SubmissionError: there is no ROS in which it could run.
+    """
     starts = exercise.starts(seed)
     used = exercise.varied.seed if seed is None else seed
-    nominal_plan = Plan(
+    imports = read_imports(submission)
+    scene = load_scene(exercise.scene)
+    nominal = Plan(
         exercise.limits,
         scene=exercise.scene,
         seed=used if starts else None,
-        interfaces=interfaces_for(submission, exercise),
+        interfaces=scene.interfaces_for(imports.surely, imports.perhaps),
     )
-    plans = [nominal_plan, *(replace(nominal_plan, start=s, seed=None) for s in starts)]
+    return [nominal, *(replace(nominal, start=start, seed=None) for start in starts)]
+
+
+@contextmanager
+def start(
+    submission: Submission, plans: Sequence[Plan], run: Runner, progress: Progress | None = None
+) -> Iterator[Iterator[Finished]]:
+    """Start runs, as many at once as there are cores; yields each as soon as it is over.
+
+    In the meantime the caller can do what is to be done for the others. None goes on when the
+    context is left.
+
+    Args:
+        plans: from `plan`.
+        progress: called with the simulated seconds of the nominal run.
+
+    Raises:
+        GraderFailure: a run could not be made, twice; while iterating.
+    """
 
     def run_twice_at_most(plan: Plan) -> Recording:
-        show = progress if plan is nominal_plan else None
+        show = progress if plan is plans[0] else None
         try:
             return run(submission, plan, show)
         except GraderFailure:
             return run(submission, replace(plan, flags=(REPEATED,)), show)
 
-    with ThreadPoolExecutor(max_workers=min(len(plans), max(2, os.cpu_count() or 1))) as pool:
-        nominal, *varied = pool.map(run_twice_at_most, plans)
+    at_once = min(len(plans), max(LEAST_AT_ONCE, math.ceil(cores.share())))
+    pool = ThreadPoolExecutor(max_workers=at_once)
+    try:
+        numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
+        yield ((numbers[future], future.result()) for future in as_completed(numbers))
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def gather(runs: Iterable[Finished]) -> Recordings:
+    """Runs, in whatever order they ended, as what is judged."""
+    nominal, *varied = (recording for _, recording in sorted(runs, key=lambda run: run[0]))
     return Recordings(nominal, tuple(varied))
 
 
-def interfaces_for(submission: Submission, exercise: Exercise) -> str:
-    """Which interfaces of the exercise's scene a submission is written for.
-
-    Raises:
-        SubmissionError: there is no ROS in which it could run.
-    """
-    imports = read_imports(submission)
-    return load_scene(exercise.scene).interfaces_for(imports.surely, imports.perhaps)
+def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "") -> Result:
+    """What the nominal run alone decides, as a result that lacks all other verdicts."""
+    verdicts = early.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
+    return build(submission, exercise, Recordings(nominal), verdicts, {})
 
 
 def _record(

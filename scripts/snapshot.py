@@ -6,7 +6,8 @@
 A change that is to leave behaviour as it is takes a snapshot before and one after. `take` uses
 nothing but the command line, so it serves for any two versions of the grader. Compared are, byte
 for byte, the result, the recordings and every report format; what differs between equal runs (wall
-time, a date) is taken out first, and pictures inside reports are compared by their pixels. What ran in real time is compared by its outcome alone.
+time, a date) is taken out first, and pictures inside reports are compared by their pixels. What ran
+in real time is compared by its outcome alone.
 """
 
 from __future__ import annotations

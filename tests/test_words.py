@@ -39,7 +39,7 @@ ALLOWED = {
     # the challenge, and the name that it asks a program to have
     "grader/package.xml": [r"for the turtlesim challenge"],
     "grader/cli/__init__.py": [r"Grade the turtlesim challenge"],
-    "grader/cli/run.py": [r"alice/turtle_controller\.py"],
+    "grader/cli/grade_one.py": [r"alice/turtle_controller\.py"],
     "grader/submission/opening.py": [r"turtle_controller"],
     "grader/submission/entry_points.py": [r"turtle_controller"],
     "grader/submission/setup_files.py": [r"turtle_controller"],

@@ -16,69 +16,93 @@ from typing import Any
 # numpy's worker threads would spin a while after its import, and have nothing to do here
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-try:  # this takes half a second, in which somebody may think better of it
-    from rich.console import Console
-    from rich.markup import escape
+try:  # somebody may think better of it at once
+    import importlib
 
-    from grader.cli import check, check_exercise, error_file, new, report, run
+    from grader.cli import error_file
     from grader.errors import CheckFailed, GraderError, GraderFailure, UsageError
-    from grader.run.processes import watched
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
     sys.exit(130)
 
-VERBS: dict[str, Any] = {
-    **{"run": run, "check": check, "report": report, "new": new},
-    "check-exercise": check_exercise,
+#: Each verb with the first line of its module, which is imported where the verb is called.
+VERBS = {
+    "run": "Run a submission and judge it.",
+    "check": "Judge a saved recording again.",
+    "report": "Show a result in another format.",
+    "new": "Write the starter package of the challenge, or of another exercise.",
+    "check-exercise": "Try an exercise on its right solutions and mutants: who catches what, and "
+    "what is to mend.",
 }
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb; the exit code is the return value."""
-    words = sys.argv[1:] if argv is None else argv
     try:
-        args = _parser().parse_args(words)
+        return _main(sys.argv[1:] if argv is None else argv)
+    except KeyboardInterrupt:  # before a verb was at work
+        print("grader: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+def load(verb: str) -> Any:
+    """The module of a verb."""
+    return importlib.import_module(f"{__name__}.{verb.replace('-', '_')}")
+
+
+def _main(words: Sequence[str]) -> int:
+    try:
+        args = _parser(words).parse_args(words)
     except error_file.Misuse as error:
         print(f"{error.usage}{error.prog}: error: {error}", file=sys.stderr)
         return _misused(error, error_file.look_for(words))
+    from grader.run.processes import watched
+
     watched.adopt_orphans()
     watched.end_on_signals()
-    say = Console(stderr=True, soft_wrap=True, highlight=False).print
     try:
         error_file.prepare(args)
     except UsageError as error:
-        say(f"[red]grader {args.verb}:[/] {escape(error.message)}")
+        _say(f"grader {args.verb}:", error.message)
         return error.exit_code
     try:
-        return int(VERBS[args.verb].main(args))
+        return int(load(args.verb).main(args))
     except KeyboardInterrupt:
-        say(f"grader {args.verb}: interrupted")
+        print(f"grader {args.verb}: interrupted", file=sys.stderr)
         return _ended(UsageError("interrupted"), args, INTERRUPTED)
     except (GraderFailure, CheckFailed) as error:
         who = "exercise" if isinstance(error, CheckFailed) else "grader"
-        say(
-            f"[red]The {who} failed; this is not the submission's fault:[/] {escape(error.message)}"
-        )
+        _say(f"The {who} failed; this is not the submission's fault:", error.message)
         return _ended(error, args)
     except GraderError as error:
-        say(f"[red]grader {args.verb}:[/] {escape(error.message)}")
+        _say(f"grader {args.verb}:", error.message)
         return _ended(error, args)
     except Exception as error:
-        say("[red]The grader failed; this is not the submission's fault. Please report:[/]")
+        _say("The grader failed; this is not the submission's fault. Please report:")
         traceback.print_exc()
         what = "".join(traceback.format_exception_only(error)).strip()
         return _ended(GraderFailure(f"unexpected: {what}"), args)
 
 
-def _parser() -> error_file.Parser:
+def _say(red: str, message: str = "") -> None:
+    from rich.console import Console  # here: most calls have nothing to say
+    from rich.markup import escape
+
+    console = Console(stderr=True, soft_wrap=True, highlight=False)
+    console.print(f"[red]{red}[/] {escape(message)}" if message else f"[red]{red}[/]")
+
+
+def _parser(words: Sequence[str]) -> error_file.Parser:
+    """The parser of a call: of the verb that it asks for it knows the arguments."""
+    asked = next((word for word in words if not word.startswith("-")), None)
     parser = error_file.Parser(prog="grader", description="Grade the turtlesim challenge.")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for name, module in VERBS.items():
-        summary = (module.__doc__ or "").splitlines()[0]
+    for name, summary in VERBS.items():
         verb = verbs.add_parser(name, help=summary, description=summary)
-        module.add_arguments(verb)
-        error_file.add_argument(verb)
+        if name == asked:
+            load(name).add_arguments(verb)
+            error_file.add_argument(verb)
     return parser
 
 

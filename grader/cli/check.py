@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import argparse
 import os
+from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
 
-from grader import files
+from grader import files, grading
 from grader.cli import error_file
 from grader.cli.run import points
-from grader.exercise.check import judge
-from grader.exercise.loading import DEFAULT, load_exercise
+from grader.exercise import DEFAULT
+from grader.exercise.loading import load_exercise
 from grader.recording.folder import WINDOW_PICTURE, load_all
 from grader.reports import Report, terminal
-from grader.result.result import FAMILY, build
+from grader.result.result import FAMILY
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,13 +44,11 @@ def main(args: argparse.Namespace) -> int:
     if (folder / "recording").is_dir():  # the folder of the result, which holds the recording
         folder /= "recording"
     recordings = load_all(folder)
-    verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
-    artifacts = {}
+    result = grading.judge(recordings, exercise, submission=args.recording.name)
     if args.json:
         beside = os.path.relpath(folder, args.json.parent)
         artifacts = {"recording": beside, "canvas": f"{beside}/{WINDOW_PICTURE}"}
-    result = build(args.recording.name, exercise, recordings, verdicts, artifacts)
-    if args.json:
+        result = replace(result, artifacts=artifacts)
         result.write(args.json)
     terminal.show(Report.of(result, folder, recordings), Console())
     return int(args.fail_under is not None and result.score < args.fail_under)

@@ -13,8 +13,6 @@ from typing import NoReturn
 
 from grader import files
 from grader.errors import GraderError, UsageError
-from grader.exercise.loading import load_exercise
-from grader.result.error import FAMILY, ErrorResult
 
 
 class Misuse(UsageError):
@@ -73,6 +71,8 @@ def prepare(args: argparse.Namespace) -> None:
         UsageError: no new one could be written, or what is there is something else.
     """
     if args.error_json is not None:
+        from grader.result.error import FAMILY
+
         files.check_writable(args.error_json)
         files.check_replaceable(args.error_json, FAMILY, inputs(args))
         files.withdraw(args.error_json)
@@ -85,6 +85,8 @@ def write(error: GraderError, args: argparse.Namespace) -> None:
         UsageError: it cannot be written.
     """
     if args.error_json is not None:
+        from grader.result.error import ErrorResult
+
         ErrorResult.of(error, _max_score(args)).write(args.error_json)
 
 
@@ -92,6 +94,8 @@ def _max_score(args: argparse.Namespace) -> float | None:
     name = getattr(args, "exercise", None)
     if name is None:
         return None
+    from grader.exercise.loading import load_exercise
+
     try:
         return round(sum(load_exercise(name).points.values()), 2)
     except Exception:  # it may be this that is reported

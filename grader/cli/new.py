@@ -11,7 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from grader.errors import UsageError
-from grader.exercise.loading import DEFAULT, load_exercise
+from grader.exercise import DEFAULT
+from grader.exercise.loading import load_exercise
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
 

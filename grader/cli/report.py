@@ -8,14 +8,12 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from rich.console import Console
-
 from grader import files, reports
 from grader.cli import error_file
-from grader.cli.run import ARTIFACTS
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
-from grader.reports import FORMATS, Report, terminal
+from grader.reports import FORMATS, Report
+from grader.result.result import ARTIFACTS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,6 +52,10 @@ def main(args: argparse.Namespace) -> int:
     shown = [reports.read(path, checks) for path in args.result]
     summary = _summary_file() if args.github_summary else None
     if args.format == "terminal" and args.out is None and len(shown) == 1:
+        from rich.console import Console
+
+        from grader.reports import terminal
+
         (only,) = shown
         if isinstance(only, Report):
             terminal.show(only, Console())

@@ -19,7 +19,7 @@ from typing import Any
 from grader.errors import CheckFailed
 from grader.exercise.foreign import contained
 from grader.exercise.verdict import Evidence, Finding, Verdict
-from grader.recording.recording import Recordings
+from grader.recording.recording import NominalAlone, NotOver, Recordings
 
 Tolerances = Mapping[str, Any]
 CheckFunction = Callable[[Recordings, Tolerances], Finding]
@@ -108,19 +108,25 @@ def judge(
             raise KeyError(f"no check is named {name!r}; there are {', '.join(known)}")
     for check in known.values():
         if check.name in points:
-            verdicts[check.name] = _judge_one(
+            verdicts[check.name] = judge_one(
                 check, float(points[check.name]), recordings, tolerances, verdicts
             )
     return [verdicts[name] for name in points]
 
 
-def _judge_one(
+def judge_one(
     check: Check,
     max_score: float,
     recordings: Recordings,
     tolerances: Tolerances,
     earlier: Mapping[str, Verdict],
 ) -> Verdict:
+    """Run one check, if the `earlier` verdicts of those that it depends on allow it.
+
+    Raises:
+        CheckFailed: it raised something, or returned what is no finding.
+        NotOver: it asked for a run that is not over.
+    """
     missing = [n for n in check.depends_on if n in earlier and earlier[n].status != "passed"]
     if missing:
         return Verdict(
@@ -137,11 +143,12 @@ def _judge_one(
     try:
         with contained():
             finding = check.function(recordings, tolerances)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, NotOver):
         raise
     except BaseException as error:  # SystemExit too: a check must not end us unjudged
         raise CheckFailed(_told(check, error)) from error
-    wrong = wrong_with(finding, len(list(recordings)))
+    is_alone = isinstance(recordings, NominalAlone)
+    wrong = wrong_with(finding, 1 if is_alone else len(list(recordings)))
     if wrong:
         raise CheckFailed(
             f"the check {check.name!r} returned what it should not, so nothing was judged: "

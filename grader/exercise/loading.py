@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.errors import ExerciseError
-from grader.exercise import places
+from grader.exercise import DEFAULT, places
 from grader.exercise.check import Checks
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.yaml_file import Mistake, YamlFile, read_yaml
@@ -24,7 +24,6 @@ from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Limits, Start
 
-DEFAULT = "turtlesim_challenge"
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "scene", "limits", "varied_runs", "points", "tolerances", "starter"),

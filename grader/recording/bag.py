@@ -10,17 +10,16 @@ tick have equal times and stand in the file in the order in which they happened.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import Reader
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
 from grader.recording.rosbag2_writer import Record, Rosbag2Writer
+from grader.scenes.message_types import types_of
 from grader.scenes.scene import Message, Scene, Trace
 
 
@@ -32,7 +31,7 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
     Raises:
         OSError: it cannot be written, e.g. because the disk is full.
     """
-    types = types_of(scene)
+    types = types_of(scene.message_definitions())
     writer = Rosbag2Writer(folder)
     connections: dict[str, Connection] = {}
 
@@ -61,7 +60,7 @@ def read(folder: Path, scene: Scene, ticks: int) -> Trace:
     Raises:
         RecordingError: it is damaged, or is another one.
     """
-    types = types_of(scene)
+    types = types_of(scene.message_definitions())
     try:
         with Reader(folder) as reader:
             topics = {c.topic: c.msgtype for c in reader.connections}
@@ -85,19 +84,6 @@ def read(folder: Path, scene: Scene, ticks: int) -> Trace:
 def cdr(types: Typestore, message: Any, msgtype: str) -> bytes:
     """A message of rosbags, serialized."""
     return bytes(types.serialize_cdr(message, msgtype, little_endian=True))
-
-
-def types_of(scene: Scene) -> Typestore:
-    """The types of ROS 2 Jazzy and the scene's own."""
-    return _store(tuple(scene.message_definitions().items()))
-
-
-@cache  # rosbags compiles what (de)serializes a type, once a store
-def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
-    types = get_typestore(Stores.ROS2_JAZZY)
-    for msgtype, text in definitions:
-        types.register(get_types_from_msg(text, msgtype))
-    return types
 
 
 def _brief(error: Exception) -> str:

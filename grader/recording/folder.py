@@ -19,15 +19,14 @@ import hashlib
 import json
 import re
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
-from typing import Any
-
-import jsonschema
+from typing import TYPE_CHECKING, Any
 
 from grader import strict_json
 from grader.errors import RecordingError
@@ -35,6 +34,9 @@ from grader.recording.recording import PublishedTopic, Recording, Recordings, Ru
 from grader.requirements import require
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene, Start
+
+if TYPE_CHECKING:
+    import jsonschema
 
 SCHEMA = "turtlesim-grader/recording/v2"
 NAME = "recording"
@@ -60,32 +62,61 @@ def save(recording: Recording, folder: Path, varied_runs: int = 0) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    unfinished = folder / UNFINISHED
-    shutil.rmtree(unfinished, ignore_errors=True)
-    try:
-        _write(recording, unfinished / NAME, varied_runs)
-        _withdraw(folder)
-        for name in FILES:
-            made = unfinished / NAME / name
-            if made.exists():
-                made.replace(folder / name)
-            else:
-                (folder / name).unlink(missing_ok=True)
-    finally:
-        shutil.rmtree(unfinished, ignore_errors=True)
+    with _unfinished(folder) as place:
+        _write(recording, place / NAME, varied_runs)
+        _put(place / NAME, folder)
 
 
 def save_all(recordings: Recordings, folder: Path) -> None:
     """Write a nominal recording and its varied ones; see `save`."""
-    _withdraw(folder)  # comes back as the last file of all
-    for number, recording in enumerate(recordings.varied, 1):
-        save(recording, folder / f"varied_{number}")
-    for number in _varied(folder):
-        older = folder / f"varied_{number}"
-        if number > len(recordings.varied) and (older / RUN).exists():
-            shutil.rmtree(older)
-    save(recordings.nominal, folder, len(recordings.varied))
+    with saving(folder, len(recordings.varied)) as unsaved:
+        for number, recording in enumerate(recordings):
+            unsaved.write(number, recording)
+        unsaved.put()
+
+
+class Unsaved:
+    """Recordings on their way into a folder: written one by one, put there all at once.
+
+    Args:
+        place: where they are written before.
+        folder: where they come.
+        varied_runs: how many varied ones there will be.
+    """
+
+    def __init__(self, place: Path, folder: Path, varied_runs: int) -> None:
+        self._place = place
+        self._folder = folder
+        self._varied_runs = varied_runs
+
+    def write(self, number: int, recording: Recording) -> None:
+        """Write a recording: 0 the nominal one, 1, 2, ... varied ones, in any order."""
+        _write(recording, self._of(number), 0 if number else self._varied_runs)
+
+    def put(self) -> None:
+        """Put all of them in place of older ones, of which none is left."""
+        _withdraw(self._folder)  # comes back as the last file of all
+        for number in range(1, self._varied_runs + 1):
+            _put(self._of(number), self._folder / f"varied_{number}")
+        for number in _varied(self._folder):
+            older = self._folder / f"varied_{number}"
+            if number > self._varied_runs and (older / RUN).exists():
+                shutil.rmtree(older)
+        _put(self._of(0), self._folder)
+
+    def _of(self, number: int) -> Path:
+        return self._place / str(number) / NAME
+
+
+@contextmanager
+def saving(folder: Path, varied_runs: int) -> Iterator[Unsaved]:
+    """Write recordings as they come; nothing of an older one changes before `Unsaved.put`.
+
+    Raises:
+        OSError: they cannot be written; also from `Unsaved`.
+    """
+    with _unfinished(folder) as place:
+        yield Unsaved(place, folder, varied_runs)
 
 
 def load(path: Path) -> Recording:
@@ -125,6 +156,33 @@ def scene_of(folder: Path) -> str:
 
 
 # Writing --------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _unfinished(folder: Path) -> Iterator[Path]:
+    """A place for files that come into the folder later; what is still there then goes."""
+    is_new = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    place = folder / UNFINISHED
+    shutil.rmtree(place, ignore_errors=True)
+    try:
+        yield place
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+        if is_new:
+            with suppress(OSError):  # it holds what was put there
+                folder.rmdir()
+
+
+def _put(made: Path, folder: Path) -> None:
+    """Move the files of a recording to where they belong, metadata.yaml last."""
+    folder.mkdir(parents=True, exist_ok=True)
+    _withdraw(folder)
+    for name in FILES:
+        if (made / name).exists():
+            (made / name).replace(folder / name)
+        else:
+            (folder / name).unlink(missing_ok=True)
 
 
 def _withdraw(folder: Path) -> None:
@@ -210,7 +268,9 @@ def _facts(folder: Path) -> dict[str, Any]:
     circumstances = _read_json(path) if path.exists() else {}
     if isinstance(facts.get("run"), dict):
         facts["run"].update((k, v) for k, v in circumstances.items() if k in CIRCUMSTANCES)
-    error = jsonschema.exceptions.best_match(_validator().iter_errors(facts))
+    from jsonschema.exceptions import best_match  # here: what is only written is not validated
+
+    error = best_match(_validator().iter_errors(facts))
     if error is not None:
         raise RecordingError(f"{folder / RUN} is damaged: {error.json_path}: {error.message}")
     return facts
@@ -275,5 +335,7 @@ def _sha256(path: Path) -> str:
 
 @cache
 def _validator() -> jsonschema.Draft202012Validator:
+    import jsonschema
+
     text = (files(__package__) / "recording.schema.json").read_text(encoding="utf-8")
     return jsonschema.Draft202012Validator(json.loads(text))

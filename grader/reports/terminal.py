@@ -76,6 +76,17 @@ def show(report: Report, console: Console) -> None:
     console.print(_text(f"Score: {report.score_text}", "bold"))
 
 
+def show_nominal(report: Report, console: Console) -> None:
+    """Print what the nominal run decides while the varied ones still go."""
+    console.print(_text("The nominal run is over, the others still go.", "bold"))
+    if report.verdicts:
+        console.print(_table(report, console.width))
+    first = report.first_to_mend
+    if first is not None and not report.waited_for(first):
+        console.print(_explanation(report, first))
+    console.print()
+
+
 def _text(value: str, style: str = "") -> Text:
     return Text(_RUNNER_COMMAND.sub(lambda match: " ".join(match[0]), value), style)
 

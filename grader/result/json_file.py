@@ -7,12 +7,13 @@ from collections.abc import Callable
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, TypeVar
-
-import jsonschema
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from grader import strict_json
 from grader.errors import UsageError
+
+if TYPE_CHECKING:
+    import jsonschema
 
 Made = TypeVar("Made")
 
@@ -34,7 +35,9 @@ def validate(data: object, name: str, version: str) -> None:
     family = version.rpartition("/")[0]
     if isinstance(found, str) and found != version and found.startswith(f"{family}/"):
         raise ValueError(f"is no {name} of {version}: it is of another version, {found:.60}")
-    error = jsonschema.exceptions.best_match(_validator(name).iter_errors(data))
+    from jsonschema.exceptions import best_match  # here: what is only written is not validated
+
+    error = best_match(_validator(name).iter_errors(data))
     if error is not None:
         raise ValueError(f"is no {name} of {version}: {error.message}")
 
@@ -73,4 +76,6 @@ def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
 
 @cache
 def _validator(name: str) -> jsonschema.Draft202012Validator:
+    import jsonschema
+
     return jsonschema.Draft202012Validator(schema(name))

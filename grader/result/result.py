@@ -22,6 +22,8 @@ from grader.scenes.scene import Start
 #: What the schemas of all versions begin with.
 FAMILY = "turtlesim-grader/result/"
 SCHEMA = f"{FAMILY}v1"
+#: What `grader run` puts beside a result file: name -> path relative to it.
+ARTIFACTS = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
 #: A total is rounded to hundredths, its parts need not be [points].
 ROUNDING = 0.01 + 1e-9
 

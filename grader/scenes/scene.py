@@ -225,7 +225,7 @@ class Scene(Protocol):
     # Recordings -------------------------------------------------------------------------------
 
     def message_definitions(self) -> Mapping[str, str]:
-        """The definitions of the ROS types in its bags that rosbags does not know."""
+        """The definitions of the ROS types in its bags, and of the types of their fields."""
 
     def bag_topics(self, trace: Trace) -> Iterable[tuple[str, str]]:
         """Topics with their types that a bag has even where it holds no message of them."""

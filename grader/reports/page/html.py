@@ -13,12 +13,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import jinja2
 import numpy as np
 from markupsafe import Markup
 
 from grader import text
+from grader.recording.recording import Recording
 from grader.reports import wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.page.pictures import canvas_uri, window_uri
@@ -27,6 +29,7 @@ from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
 from grader.reports.page.tracks import Film, film
 from grader.reports.report import Report
 from grader.result.result import RunSummary
+from grader.scenes import load_scene
 from grader.scenes.view import Floats
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -122,11 +125,32 @@ def _environment() -> jinja2.Environment:
     return environment
 
 
+@dataclass(frozen=True)
+class Drawing:
+    """What a page shows of a recording by itself."""
+
+    film: Film | None = None
+    plots: Plots | None = None
+
+
+_drawings: WeakKeyDictionary[Recording, Drawing] = WeakKeyDictionary()
+
+
+def draw(recording: Recording) -> Drawing:
+    """Draw a recording, once: ahead of the page, while other runs go, or for it."""
+    drawing = _drawings.get(recording)
+    if drawing is None:
+        scene = load_scene(recording.scene)
+        view, tick_s = scene.view(recording.trace), scene.tick_ns / 1e9
+        ticks = recording.run.ticks
+        drawing = Drawing(film(view, ticks, tick_s), plots(view, ticks, tick_s))
+        _drawings[recording] = drawing
+    return drawing
+
+
 def _view(report: Report, number: int) -> RunView:
     recording = report.recordings.get(number)
-    scene = report.scene
-    view = scene.view(recording.trace) if recording is not None else None
-    ticks, tick_s = (recording.run.ticks if recording else 0), scene.tick_ns / 1e9
+    drawing = Drawing() if recording is None else draw(recording)
     output = report.output if number == 0 else text.plain(recording.output if recording else "")
     return RunView(
         number,
@@ -134,8 +158,8 @@ def _view(report: Report, number: int) -> RunView:
         report.varied_runs[number - 1] if number else report.run,
         canvas_uri(report) if number == 0 else window_uri(report, number),
         pins(report, number),
-        film(view, ticks, tick_s) if view is not None else None,
-        plots(view, ticks, tick_s) if view is not None else None,
+        drawing.film,
+        drawing.plots,
         text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
     )
 

@@ -11,10 +11,42 @@ from pathlib import Path
 _getaffinity = getattr(os, "sched_getaffinity", None)
 _setaffinity = getattr(os, "sched_setaffinity", None)
 
+#: Where the kernel tells what control groups allow, and in which of them this process is.
+_CGROUPS, _OWN_GROUPS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
+
 
 def available() -> list[int]:
     """The cores that this process may use."""
     return sorted(_getaffinity(0)) if _getaffinity else list(range(os.cpu_count() or 1))
+
+
+def share() -> float:
+    """So many cores' time a second this process may use; a container may have a part of one."""
+    return min([float(len(available())), *_quotas()])
+
+
+def _quotas() -> Iterator[float]:
+    """What the control groups that this process is in allow, of version 2 and of 1."""
+    with suppress(OSError, ValueError, ZeroDivisionError):
+        group = _CGROUPS.joinpath(*_own_group().split("/"))
+        for folder in (group, *group.parents):
+            if folder.is_relative_to(_CGROUPS) and (folder / "cpu.max").exists():
+                quota, period = (folder / "cpu.max").read_text().split()
+                if quota != "max":
+                    yield int(quota) / int(period)
+    with suppress(OSError, ValueError, ZeroDivisionError):
+        quota_us, period_us = (
+            int((_CGROUPS / "cpu" / f"cpu.cfs_{word}_us").read_text())
+            for word in ("quota", "period")
+        )
+        if quota_us > 0:
+            yield quota_us / period_us
+
+
+def _own_group() -> str:
+    """The group of version 2 that this process is in, as a path below the root that it sees."""
+    lines = _OWN_GROUPS.read_text().splitlines()
+    return next((line.removeprefix("0::") for line in lines if line.startswith("0::")), "")
 
 
 @contextmanager

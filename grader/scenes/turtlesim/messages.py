@@ -21,8 +21,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from rosbags.typesys.stores import ros2_jazzy as ros
 
+from grader.scenes.message_types import types_of
 from grader.scenes.scene import Message
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace
 from turtlesim_py.world.arena import TICK_NS
@@ -31,11 +31,25 @@ from turtlesim_py.world.trajectory import Trajectory
 
 POSE, COLOR, TWIST = "turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"
 STRING, LOG, IMAGE = "std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"
-#: rosbags knows no turtlesim, and where ROS is not sourced there may be no share/turtlesim to ask.
+VECTOR, HEADER, TIME = (
+    "geometry_msgs/msg/Vector3",
+    "std_msgs/msg/Header",
+    "builtin_interfaces/msg/Time",
+)
+#: Where ROS is not sourced there may be no share/ to ask. Those of ROS's own are Jazzy's.
 DEFINITIONS = {
     POSE: "float32 x\nfloat32 y\nfloat32 theta\n"
     "float32 linear_velocity\nfloat32 angular_velocity\n",
     COLOR: "uint8 r\nuint8 g\nuint8 b\n",
+    VECTOR: "float64 x\nfloat64 y\nfloat64 z\n",
+    TWIST: "Vector3 linear\nVector3 angular\n",
+    STRING: "string data\n",
+    HEADER: "builtin_interfaces/Time stamp\nstring frame_id\n",
+    LOG: "uint8 DEBUG=10\nuint8 INFO=20\nuint8 WARN=30\nuint8 ERROR=40\nuint8 FATAL=50\n"
+    "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\n"
+    "string function\nuint32 line\n",
+    IMAGE: "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
+    "uint8 is_bigendian\nuint32 step\nuint8[] data\n",
 }
 #: A pose and a colour as CDR: the mark of little-endian plain CDR, then the fields as they are.
 _CDR_MARK = (0, 1, 0, 0)
@@ -95,31 +109,32 @@ def _cdr(columns: npt.NDArray[np.float64], layout: np.dtype[np.void]) -> list[by
 def _input(event: Event) -> Message:
     """A velocity command as a Twist, all else as JSON."""
     if isinstance(event, CmdVel):
-        vectors = (
-            ros.geometry_msgs__msg__Vector3(*event.linear),
-            ros.geometry_msgs__msg__Vector3(*event.angular),
-        )
-        twist = ros.geometry_msgs__msg__Twist(*vectors)
+        twist = _made(TWIST, _made(VECTOR, *event.linear), _made(VECTOR, *event.angular))
         return Message(event.tick, f"/{event.turtle}/cmd_vel", TWIST, twist)
-    text = ros.std_msgs__msg__String(json.dumps(to_json(event)))
+    text = _made(STRING, json.dumps(to_json(event)))
     return Message(event.tick, EVENTS, STRING, text)
 
 
 def _log(tick: int, severity: str, name: str, text: str) -> Any:
     # CDR is UTF-8, which cannot hold half a surrogate pair.
     text = text.encode("utf-8", "replace").decode("utf-8")
-    return ros.rcl_interfaces__msg__Log(_time(tick), LEVELS[severity], name, text, "", "", 0)
+    return _made(LOG, _time(tick), LEVELS[severity], name, text, "", "", 0)
 
 
 def _image(pixels: Pixels, encoding: str, tick: int) -> Any:
     height, width, channels = pixels.shape
-    header = ros.std_msgs__msg__Header(_time(tick), "")
+    header = _made(HEADER, _time(tick), "")
     step = width * channels
-    return ros.sensor_msgs__msg__Image(header, height, width, encoding, 0, step, pixels.reshape(-1))
+    return _made(IMAGE, header, height, width, encoding, 0, step, pixels.reshape(-1))
 
 
 def _time(tick: int) -> Any:
-    return ros.builtin_interfaces__msg__Time(*divmod(tick * TICK_NS, 1_000_000_000))
+    return _made(TIME, *divmod(tick * TICK_NS, 1_000_000_000))
+
+
+def _made(msgtype: str, *fields: Any) -> Any:
+    """A message in the types of rosbags."""
+    return types_of(DEFINITIONS).types[msgtype](*fields)
 
 
 # Messages to a trace --------------------------------------------------------------------------

@@ -79,7 +79,7 @@ class Turtlesim:
         return trace.decode(data)
 
     def message_definitions(self) -> Mapping[str, str]:
-        """The definitions of turtlesim's messages."""
+        """Turtlesim's messages, and ROS's own in its bags."""
         from grader.scenes.turtlesim import messages
 
         return messages.DEFINITIONS

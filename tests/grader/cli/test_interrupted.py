@@ -7,22 +7,36 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[3]
 INTERRUPTED = """
 import sys
 
 class Interrupt:
     def find_spec(self, name, *_):
-        if name == "grader.cli.run":
+        if name == sys.argv[1]:
             raise KeyboardInterrupt
 
 sys.meta_path.insert(0, Interrupt())
 from grader.cli import main
+sys.exit(main(["run", "x.py"]))
 """
 
 
-def test_it_ends_in_one_line_and_without_a_traceback():
+@pytest.mark.parametrize(
+    ("module", "who"),
+    [
+        ("grader.cli.error_file", "grader"),
+        ("grader.cli.run", "grader"),
+        ("grader.run.processes.watched", "grader"),
+        ("grader.cli.grade_one", "grader run"),
+        ("numpy", "grader run"),
+        ("rosbags.rosbag2", "grader run"),
+    ],
+)
+def test_it_ends_in_one_line_and_without_a_traceback(module, who):
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-c", INTERRUPTED]
+    command = [sys.executable, "-c", INTERRUPTED, module]
     done = subprocess.run(command, env=env, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (130, "grader: interrupted\n")
+    assert (done.returncode, done.stderr) == (130, f"{who}: interrupted\n")

@@ -128,6 +128,26 @@ def test_an_older_recording_stays_whole_until_the_new_one_is_written(recorded, f
     assert contents(folder) == before
 
 
+def test_nothing_of_an_older_one_changes_before_the_new_ones_are_put_in_place(recorded, tmp_path):
+    storage.save_all(Recordings(recorded, (recorded,) * 2), tmp_path)
+    before = contents(tmp_path)
+    newer = drive(Spiral(), ticks=50)
+    with storage.saving(tmp_path, 1) as unsaved:
+        for number in (1, 0):  # as they come
+            unsaved.write(number, newer)
+        outside = {path: data for path, data in contents(tmp_path).items() if path in before}
+        assert outside == before
+        unsaved.put()
+    assert [r.run.ticks for r in storage.load_all(tmp_path)] == [newer.run.ticks] * 2
+
+
+def test_what_is_never_put_in_place_leaves_nothing(recorded, tmp_path):
+    with pytest.raises(KeyboardInterrupt), storage.saving(tmp_path / "new", 0) as unsaved:
+        unsaved.write(0, recorded)
+        raise KeyboardInterrupt
+    assert not (tmp_path / "new").exists()
+
+
 def test_what_a_killed_save_left_behind_goes_with_the_next(recorded, folder):
     before = contents(folder)
     (folder / storage.UNFINISHED / "recording").mkdir(parents=True)

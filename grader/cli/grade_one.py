@@ -1,0 +1,145 @@
+"""One grading of `grader run`: from what was handed in to the files of its result.
+
+While runs go, what only those files need is imported, and each recording is written and drawn as
+soon as its run is over.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from rich.console import Console
+
+from grader import files, grading
+from grader.cli import error_file, progress
+from grader.errors import GraderError
+from grader.exercise.loading import Exercise, load_exercise
+from grader.grading import Finished
+from grader.recording import folder
+from grader.recording.recording import Recording, Recordings
+from grader.result.result import ARTIFACTS, FAMILY, Result
+from grader.submission.opening import Submission, open_submission
+
+#: What is not needed before a run is over.
+LATER = ("grader.recording.bag", "grader.reports.page.html", "grader.reports.terminal")
+
+
+def grade_and_go_on(args: argparse.Namespace) -> None:
+    """Grade for somebody who waits; what cannot be used now may be usable after the next save."""
+    messages = Console(stderr=True, highlight=False)
+    error_file.prepare(args)
+    try:
+        grade(args)
+    except GraderError as error:
+        messages.print(error.message, markup=False, soft_wrap=True)
+        error_file.write(error, args)
+    messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
+
+
+def grade(args: argparse.Namespace) -> int:
+    """Grade once; the exit code."""
+    exercise = load_exercise(args.exercise)
+    out: Path = args.out or _default_out(args.submission)
+    with open_submission(args.submission, args.executable) as submission:
+        result, recordings = _run_and_judge(args, submission, exercise, out)
+    return _report(args, result, recordings, out)
+
+
+def _run_and_judge(
+    args: argparse.Namespace, submission: Submission, exercise: Exercise, out: Path
+) -> tuple[Result, Recordings]:
+    """Run a submission, judge it, and keep its recordings."""
+    messages = Console(stderr=True, highlight=False)
+    messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
+    plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
+    _prepare(out, args.json, error_file.inputs(args))
+    messages.print(f"Running it beside a simulator, in {args.time} time ...")
+
+    def tell(nominal: Recording) -> None:
+        if args.watch:
+            known = grading.judge_nominal(nominal, exercise, submission=submission.name)
+            _show_nominal(known, nominal, out, messages)
+
+    runner = grading.RUNNERS[args.time]
+    with folder.saving(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
+        with (
+            progress.shown(messages, "running") as show,
+            grading.start(submission, plans, runner, show) as runs,
+        ):
+            for module in LATER:
+                importlib.import_module(module)
+            recordings = grading.gather(_kept(runs, len(plans), unsaved, tell))
+        result = grading.judge(recordings, exercise, submission=submission.name)
+        unsaved.put()
+    return replace(result, artifacts=dict(ARTIFACTS)), recordings
+
+
+def _kept(
+    runs: Iterable[Finished], count: int, unsaved: folder.Unsaved, tell: Callable[[Recording], None]
+) -> Iterator[Finished]:
+    """Do with each run what can be done before the others are over."""
+    from grader.reports.page import html
+
+    for over, (number, recording) in enumerate(runs, 1):
+        if number == 0 and over < count:
+            tell(recording)
+        unsaved.write(number, recording)
+        html.draw(recording)
+        yield number, recording
+
+
+def _show_nominal(known: Result, nominal: Recording, out: Path, console: Console) -> None:
+    from grader.reports import Report, terminal
+
+    terminal.show_nominal(Report.of(known, out, Recordings(nominal)), console)
+
+
+def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> int:
+    """Write the result and what lies beside it, show it; the exit code."""
+    from grader.reports import Report, render, terminal
+
+    nominal, console = recordings.nominal, Console()
+    (out / ARTIFACTS["canvas"]).write_bytes(nominal.png["window"])
+    (out / ARTIFACTS["output"]).write_text(nominal.output, encoding="utf-8")
+    result.write(out / "result.json")
+    if args.json:
+        result.write(args.json)
+    report = Report.of(result, out, recordings)
+    page = out / "report.html"
+    files.write(page, render("html", [report]))
+    terminal.show(report, console)
+    console.print(f"The page with picture and plots: {page}", highlight=False, soft_wrap=True)
+    return int(args.fail_under is not None and result.score < args.fail_under)
+
+
+def _default_out(submission: Path) -> Path:
+    """A folder of its own for each submission: alice/turtle_controller.py is not bob's."""
+    absolute = Path(os.path.abspath(submission))  # noqa: PTH100  a link keeps its own name
+    here = Path.cwd()
+    if absolute.is_relative_to(here) and absolute != here:
+        return Path("graded") / absolute.relative_to(here)
+    return Path("graded") / absolute.parent.name / absolute.name
+
+
+def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
+    """Find out before the run whether its result can be written, then make the folders.
+
+    An older result goes now: it must not outlive a run that fails.
+
+    Raises:
+        UsageError: one of the places cannot be written; nothing has changed then.
+    """
+    written = [out / "result.json", *([copy] if copy else [])]
+    read = list(inputs)
+    for path in written:
+        files.check_writable(path)
+        files.check_replaceable(path, FAMILY, read)
+    for path in written:
+        files.make_folder(path.parent)
+    for path in written:
+        files.withdraw(path)

@@ -1,0 +1,114 @@
+"""What `grader run` does while runs still go: here with runs that take as long as a test says."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import pytest
+
+from grader import grading
+from grader.cli import main
+from grader.cli.grade_one import grade
+from grader.errors import GraderFailure
+from grader.recording import folder
+from grader.reports.page import html
+from tests.grader.driving import Spiral, drive
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    return drive(Spiral(), ticks=600)
+
+
+@pytest.fixture
+def submission(tmp_path):
+    path = tmp_path / "node.py"
+    path.write_text("import turtlesim.msg")
+    return path
+
+
+@pytest.fixture
+def call(submission, tmp_path):
+    """The arguments of a call."""
+    from grader.cli import _parser
+
+    def called(*more: str):
+        words = ["run", str(submission), "--out", str(tmp_path / "out"), *more]
+        return _parser(words).parse_args(words)
+
+    return called
+
+
+@pytest.fixture
+def in_turn(monkeypatch, drawn):
+    """Varied runs that are over only when all that can be done with the nominal one is done."""
+    worked_off = threading.Event()
+    draw = html.draw
+
+    def noted(recording):
+        made = draw(recording)
+        if recording.start is None:
+            worked_off.set()
+        return made
+
+    def run(submission, plan, progress=None):
+        assert plan.start is None or worked_off.wait(60)
+        return replace(drawn, start=plan.start)
+
+    monkeypatch.setitem(grading.RUNNERS, "virtual", run)
+    monkeypatch.setattr(html, "draw", noted)
+
+
+def test_under_watch_the_nominal_run_s_verdicts_come_first(call, in_turn, capsys):
+    assert grade(call("--watch")) == 0
+    first = capsys.readouterr().err
+    assert "The nominal run is over, the others still go." in first
+    assert "moves" in first
+    assert "edge_stop" not in first  # which looks at the varied runs too
+
+
+def test_without_watch_there_is_one_table(call, in_turn, capsys):
+    assert grade(call()) == 0
+    shown = capsys.readouterr()
+    assert "nominal run" not in shown.err
+    assert shown.out.count("pen_per_quadrant") >= 1
+
+
+def test_recordings_are_complete_and_in_order_whichever_run_ends_first(call, in_turn, tmp_path):
+    assert grade(call()) == 0
+    loaded = folder.load_all(tmp_path / "out" / "recording")
+    starts = [recording.start for recording in loaded]
+    assert starts[0] is None
+    assert starts[1:] == list(grading.load_exercise("turtlesim_challenge").starts())
+
+
+def test_a_run_that_cannot_be_made_leaves_an_older_recording_and_no_result(
+    call, monkeypatch, drawn, tmp_path
+):
+    monkeypatch.setitem(grading.RUNNERS, "virtual", lambda *_: drawn)
+    assert grade(call()) == 0
+    out = tmp_path / "out"
+    before = {path: path.read_bytes() for path in (out / "recording").rglob("*.*")}
+
+    def fails(submission, plan, progress=None):
+        if plan.start is not None:
+            raise GraderFailure("the simulator died")
+        return replace(drawn, output="newer")
+
+    monkeypatch.setitem(grading.RUNNERS, "virtual", fails)
+    with pytest.raises(GraderFailure, match="the simulator died"):
+        grade(call())
+    assert not (out / "result.json").exists()
+    assert {path: path.read_bytes() for path in (out / "recording").rglob("*.*")} == before
+
+
+def test_ctrl_c_between_two_runs_leaves_nothing(submission, monkeypatch, drawn, tmp_path, capsys):
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(grading.RUNNERS, "virtual", lambda *_: drawn)
+    monkeypatch.setattr(html, "draw", interrupted)
+    assert main(["run", str(submission), "--out", str(tmp_path / "out")]) == 130
+    assert capsys.readouterr().err.endswith("grader run: interrupted\n")
+    assert list((tmp_path / "out").iterdir()) == []

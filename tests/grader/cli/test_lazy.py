@@ -1,0 +1,75 @@
+"""A verb imports what it uses, and no other verb."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader import cli
+from grader.cli import run
+from grader.grading import RUNNERS
+from tests.grader.reports import samples
+
+ROOT = Path(__file__).parents[3]
+IMPORTED = """
+import json, sys
+import grader.cli
+if sys.argv[1:]:
+    try:
+        grader.cli.main(sys.argv[1:])
+    except SystemExit:
+        pass
+print(json.dumps(list(sys.modules)))
+"""
+#: What takes long to import, and is not needed to know what is asked for.
+DEAR = {"numpy", "PIL", "yaml", "rosbags", "jsonschema", "rich", "jinja2", "psutil", "watchdog"}
+
+
+def imported(*words: str | Path, cwd: Path = ROOT) -> set[str]:
+    """The modules that there are after a call."""
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTED, *map(str, words)],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.parametrize("words", [[], ["--help"], ["run", "--help"], ["run", "--nonsense"]])
+def test_who_only_asks_for_help_waits_for_nothing(words):
+    assert not DEAR & imported(*words)
+
+
+def test_a_run_imports_the_types_of_no_release_and_validates_nothing_of_its_own(tmp_path):
+    node = tmp_path / "node.py"
+    node.write_text("print('over')")
+    modules = imported("run", node, "--out", tmp_path / "out", cwd=tmp_path)
+    assert (tmp_path / "out" / "result.json").exists()
+    stores = {m for m in modules if m.startswith("rosbags.typesys.stores.")}
+    assert stores == {"rosbags.typesys.stores.empty"}
+    assert not {"jsonschema", "watchdog", "grader.cli.check_exercise", "grader.testing"} & modules
+
+
+def test_a_table_of_results_needs_no_terminal_and_no_page(tmp_path):
+    result = tmp_path / "result.json"
+    result.write_text(json.dumps(samples.result()))
+    modules = imported("report", result, "--format", "csv", "--out", tmp_path / "results.csv")
+    assert (tmp_path / "results.csv").exists()
+    assert not {"rich", "jinja2", "rosbags"} & modules
+
+
+@pytest.mark.parametrize("verb", cli.VERBS)
+def test_the_summary_of_a_verb_is_the_first_line_of_its_module(verb):
+    assert cli.VERBS[verb] == (cli.load(verb).__doc__ or "").splitlines()[0]
+
+
+def test_the_clocks_are_those_that_there_are():
+    assert set(run.CLOCKS) == RUNNERS.keys()
