@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+from importlib.util import find_spec
 
 from grader.errors import GraderFailure
 
@@ -19,18 +20,22 @@ OPTIONAL = {
 }
 
 
-def require(package: str) -> None:
+def require(package: str, load: bool = True) -> None:
     """Find out whether a package can be imported, before anything is done that needs it.
 
     Args:
         package: one of `OPTIONAL`.
+        load: import it; else only look whether it is there, which takes no time.
 
     Raises:
         GraderFailure: it is missing, or a package that it needs is.
     """
     module, use, requirement = OPTIONAL[package]
     try:
-        importlib.import_module(module)
+        if load:
+            importlib.import_module(module)
+        elif find_spec(package) is None:
+            raise ImportError(name=package)
     except ImportError as error:
         found = error.name or package
         own = found.partition(".")[0] == package

@@ -1,7 +1,8 @@
 """One grading of `grader run`: from what was handed in to the files of its result.
 
-While runs go, what only those files need is imported, and each recording is written and drawn as
-soon as its run is over.
+What only those files need is imported when the first run is over, or at once where a core is free:
+on two cores the third run leaves one idle. Each recording is written and drawn as soon as its run
+is over.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from grader.grading import Finished
 from grader.recording import folder
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import ARTIFACTS, FAMILY, Result
+from grader.run.processes import cores
 from grader.submission.opening import Submission, open_submission
 
 #: What is not needed before a run is over.
@@ -71,8 +73,9 @@ def _run_and_judge(
             progress.shown(messages, "running") as show,
             grading.start(submission, plans, runner, show) as runs,
         ):
-            for module in LATER:
-                importlib.import_module(module)
+            if cores.share() > len(plans):
+                for module in LATER:
+                    importlib.import_module(module)
             recordings = grading.gather(_kept(runs, len(plans), unsaved, tell))
         result = grading.judge(recordings, exercise, submission=submission.name)
         unsaved.put()

@@ -57,7 +57,7 @@ def main(args: argparse.Namespace) -> int:
     from grader.cli import grade_one
     from grader.requirements import require
 
-    require("rosbags")  # now, not when a run is to be saved
+    require("rosbags", load=False)  # missing it is told now, not when a run is to be saved
     if not args.watch:
         return grade_one.grade(args)
     require("watchdog")

@@ -107,13 +107,17 @@ def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """At most four points a column: its first, lowest, highest and last; nothing is smoothed."""
     if len(x) <= 2 * _COLUMNS:
         return x, y
-    keep: set[int] = set()
-    finite = np.isfinite(y)
-    low, high = np.where(finite, y, np.inf), np.where(finite, y, -np.inf)
-    for block in np.array_split(np.arange(len(x)), _COLUMNS):
-        lowest, highest = int(np.argmin(low[block])), int(np.argmax(high[block]))
-        keep.update(int(block[place]) for place in (0, lowest, highest, -1))
-    rows = np.array(sorted(keep))
+    # a row of a table for each column of the plot; those of the first are one longer, if need be
+    each, more = divmod(len(x), _COLUMNS)
+    edges = np.arange(_COLUMNS + 1) * each
+    edges += np.minimum(np.arange(_COLUMNS + 1), more)
+    first, size = edges[:-1, np.newaxis], np.diff(edges)[:, np.newaxis]
+    places = np.arange(each + 1)
+    values = y[np.minimum(first + places, len(y) - 1)]
+    counts = np.isfinite(values) & (places < size)
+    lowest = first[:, 0] + np.argmin(np.where(counts, values, np.inf), axis=1)
+    highest = first[:, 0] + np.argmax(np.where(counts, values, -np.inf), axis=1)
+    rows = np.unique(np.concatenate((edges[:-1], lowest, highest, edges[1:] - 1)))
     # In the middle of a straight stretch a point says nothing.
     inner = (y[rows[1:-1]] == y[rows[:-2]]) & (y[rows[1:-1]] == y[rows[2:]])
     rows = rows[~np.concatenate(([False], inner, [False]))]

@@ -32,7 +32,7 @@ sys.exit(main(["run", "x.py"]))
         ("grader.run.processes.watched", "grader"),
         ("grader.cli.grade_one", "grader run"),
         ("numpy", "grader run"),
-        ("rosbags.rosbag2", "grader run"),
+        ("yaml", "grader run"),
     ],
 )
 def test_it_ends_in_one_line_and_without_a_traceback(module, who):
