@@ -23,6 +23,7 @@ from grader import text
 from grader.recording.recording import Recording
 from grader.reports import wording
 from grader.reports.error_report import ErrorReport
+from grader.reports.page.compiled import BesideTheTemplates
 from grader.reports.page.pictures import canvas_uri, window_uri
 from grader.reports.page.pins import RADIUS_PX, Pin, pins
 from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
@@ -106,6 +107,7 @@ def render_error(report: ErrorReport) -> str:
 def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES),
+        bytecode_cache=BesideTheTemplates(_TEMPLATES),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
