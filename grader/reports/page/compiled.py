@@ -16,8 +16,8 @@ from jinja2.bccache import Bucket, BytecodeCache
 class BesideTheTemplates(BytecodeCache):
     """Where nothing can be written, templates are compiled each time.
 
-    jinja2 itself sees whether what it finds is of this source and of Python's version; its own version
-    and the settings that compiling depends on are in the file's name.
+    jinja2 itself sees whether what it finds is of this source and of Python's version; its own
+    version and the settings that compiling depends on are in the file's name.
 
     Args:
         folder: the templates'.
