@@ -151,21 +151,26 @@ def _fork(
     """In the child its order; in the zygote the child's pidfd, process id and pipe, if it is up."""
     me = os.getpid()
     told, tells = os.pipe()
-    with warnings.catch_warnings():
-        # CPython 3.12 warns of forks beside other threads: ROS's two sleep, and hold nothing
-        warnings.simplefilter("ignore", DeprecationWarning)
-        pid = os.fork()
+    try:
+        with warnings.catch_warnings():
+            # CPython 3.12 warns of forks beside other threads: ROS's two sleep, and hold nothing
+            warnings.simplefilter("ignore", DeprecationWarning)
+            pid = os.fork()
+    except OSError as error:  # no memory, too many processes: the others go on
+        pid, why = -1, repr(error)
     if not pid:
         link.close()
         return _be_child(me, data, fds, tells), None
-    os.close(tells)
-    for fd in fds:
+    for fd in (tells, *fds):
         os.close(fd)
-    answer = os.read(told, 4096)
+    if pid > 0:
+        why = os.read(told, 4096).decode("utf-8", "replace")
     os.close(told)
-    if answer != READY:
-        os.waitpid(pid, 0)
-        link.send(json.dumps({"refused": answer.decode("utf-8", "replace")}).encode())
+    if why != READY.decode():
+        if pid > 0:
+            os.waitpid(pid, 0)
+        with suppress(OSError):
+            link.send(json.dumps({"refused": why}).encode())
         return None, None
     pidfd, (theirs, ours) = os.pidfd_open(pid), os.pipe()
     with suppress(OSError):  # nobody listens any more; then it is ended with the grader

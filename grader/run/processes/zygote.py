@@ -40,7 +40,8 @@ class Forked:
         self._pidfd = pidfd
         self._ending = ending
         self._code: int | None = None
-        self._lock = threading.Lock()
+        # a handler of signals, in the middle of a wait, may ask as well
+        self._lock = threading.RLock()
 
     def poll(self) -> int | None:
         """The exit code, negative for a signal, or None while it runs."""
@@ -50,8 +51,8 @@ class Forked:
         """Wait for its end; None if it still runs then."""
         if self._code is None and await_readable(self._ending, timeout_s):
             with self._lock:
+                told = os.read(self._ending, 16) if self._code is None else b""
                 if self._code is None:
-                    told = os.read(self._ending, 16)
                     # a zygote that has died takes its children along, and tells nothing
                     self._code = int(told) if told else -signal.SIGKILL
         return self._code

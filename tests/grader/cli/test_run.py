@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +21,7 @@ import pytest
 import yaml
 
 from grader.result import json_file
+from grader.run.processes.forking import ZYGOTE
 from grader.scenes.turtlesim.interfaces import adapted
 from turtlesim_py.ros.interfaces import installed
 
@@ -306,12 +308,22 @@ def test_a_killed_grader_takes_both_processes_along(tmp_path, exercise):
 
 
 def wait_for(grader: psutil.Process, name: str, sign: Path) -> psutil.Process:
-    """Wait until the submission has made its sign of life; return the process of this module."""
-    while not sign.exists():
+    """Wait until the submission has made its sign of life; return the run's process of this module.
+
+    That is no zygote, which stays from run to run, but what one has forked.
+    """
+    found: list[psutil.Process] = []
+    while not (sign.exists() and found):
         assert grader.is_running()
         assert grader.status() != psutil.STATUS_ZOMBIE
-    return next(
-        p
-        for p in grader.children(recursive=True)
-        if p.status() != psutil.STATUS_ZOMBIE and any(w.startswith(name) for w in p.cmdline())
-    )
+        own, *forked = grader.children(), *[p.children() for p in grader.children()]
+        family = [p for p in own if ZYGOTE not in words(p)] + [p for each in forked for p in each]
+        found = [p for p in family if any(word.startswith(name) for word in words(p))]
+    return found[0]
+
+
+def words(process: psutil.Process) -> list[str]:
+    """A process's command line; of one that has ended, nothing."""
+    with suppress(psutil.Error):
+        return process.cmdline() if process.status() != psutil.STATUS_ZOMBIE else []
+    return []
