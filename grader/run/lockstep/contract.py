@@ -261,7 +261,9 @@ PROGRAM: tuple[Assumption, ...] = (
 #: Of executors, nodes and callback groups.
 EXECUTOR: tuple[Assumption, ...] = (
     *_sets("rclpy.executors", "Executor", "_tasks", "_tasks_lock", "_guard", "_sigint_gc"),
-    *_sets("rclpy.executors", "Executor", "_is_shutdown", "_context"),
+    *_sets("rclpy.executors", "Executor", "_is_shutdown", "_context", "_nodes"),
+    *_sets("rclpy.executors", "_WorkTracker", "_num_work_executing", "_work_condition"),
+    *_has("rclpy.executors", "_WorkTracker", "__enter__", "__exit__"),
     *_has("rclpy.executors", "Executor", "can_execute", "get_nodes", "_make_handler"),
     *_has("rclpy.executors", "Executor", "_take_timer", "_take_subscription", "_take_client"),
     *_has("rclpy.executors", "Executor", "_take_service", "_take_guard_condition"),

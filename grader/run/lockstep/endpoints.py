@@ -158,7 +158,8 @@ class Subscription(Registered, _rclpy.Subscription):
         item = self.reader.pop()
         if item is None:
             return None
-        message = item.data if raw else deserialized(item.data, self.reader.message)
+        data = item.data
+        message = data if raw else pass_on(_deserialize, data, self.reader.message)
         return message, {
             "source_timestamp": item.time_ns,
             "received_timestamp": item.time_ns,

@@ -50,6 +50,21 @@ def install() -> None:
     if order is not None and not contract.broken(contract.EXECUTOR):
         _in_order = order
         rclpy.executors.Executor._wait_for_ready_callbacks = _wait_for_ready_callbacks
+        rclpy.executors._WorkTracker.__enter__ = _begin_work
+        rclpy.executors._WorkTracker.__exit__ = _end_work
+
+
+def _begin_work(self: Any) -> None:
+    """As rclpy's, which takes a lock for it: here no two threads run at once."""
+    self._num_work_executing += 1
+
+
+def _end_work(self: Any, *_: object) -> None:
+    """The same; whoever waits for all work's end is told."""
+    self._num_work_executing -= 1
+    if self._work_condition._waiters:
+        with self._work_condition:
+            self._work_condition.notify_all()
 
 
 def allow_nested_spins() -> None:
@@ -211,7 +226,7 @@ def _work(
     end_ns = waitsets.WAITER.deadline(timeout_ns) if timeout_ns > 0 else NEVER
     yielded_work = False
     while not yielded_work and not executor._is_shutdown and not condition():
-        used = executor.get_nodes() if nodes is None else nodes
+        used = list(executor._nodes) if nodes is None else nodes
         if executor._tasks:
             for work in _tasks(executor, used):
                 yielded_work = True
@@ -269,6 +284,13 @@ def _wait(executor: Any, look: Look, timeout_ns: int, end_ns: int) -> bool:
     return wait_set.is_out
 
 
+def _can_execute(group: Any, entity: Any) -> bool:
+    """As the group says, without a lock where we know what it would say."""
+    if type(group) is MutuallyExclusiveCallbackGroup:
+        return group._active_entity is None
+    return bool(group.can_execute(entity))
+
+
 def _ready(executor: Any, look: Look, nodes: list[Any]) -> Iterable[tuple[Any, Any, Any]]:
     """What is ready, as tasks, in rclpy's order."""
     ready = look.wait_set.take_ready()
@@ -285,7 +307,7 @@ def _ready(executor: Any, look: Look, nodes: list[Any]) -> Iterable[tuple[Any, A
         if len(ready) == 1:  # as below, where mostly nothing else is ready
             entity, node, take = look.by_handle[ready[0]]
             is_ready = take != "_take_timer" or ready[0].is_timer_ready()
-            if is_ready and entity.callback_group.can_execute(entity):
+            if is_ready and _can_execute(entity.callback_group, entity):
                 yield make(entity, node, getattr(executor, take)), entity, node
             return
     for node in nodes:

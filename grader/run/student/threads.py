@@ -80,7 +80,10 @@ class Lock:
         return self.acquire()
 
     def __exit__(self, *_: object) -> None:
-        self.release()
+        if self._locked and not self._waiting:
+            self._locked = False
+        else:
+            self.release()
 
     def _at_fork_reinit(self) -> None:
         self._locked = False
@@ -112,7 +115,13 @@ class RLock(threading._PyRLock):  # type: ignore[name-defined]
         self._owner, self._count = me, 1
         return True
 
-    __enter__ = acquire
+    def __enter__(self) -> bool:
+        block = self._block
+        if self._owner is None and not block._locked:
+            block._locked = True
+            self._owner, self._count = get_ident(), 1
+            return True
+        return self.acquire()
 
     def release(self) -> None:
         """Give the lock back, if it was taken but once."""
@@ -124,7 +133,12 @@ class RLock(threading._PyRLock):  # type: ignore[name-defined]
             self._block.release()
 
     def __exit__(self, *_: object) -> None:
-        self.release()
+        block = self._block
+        if self._count == 1 and not block._waiting and self._owner == get_ident():
+            self._owner, self._count = None, 0
+            block._locked = False
+        else:
+            self.release()
 
 
 class ThreadHandle:
