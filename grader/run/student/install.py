@@ -60,7 +60,7 @@ def install(
     graph.install(link, rclpy.node.Node, nodes)
     chance.order_nodes(rclpy.node.Node)
     _charge_for(rclpy.task.Future, "done", scheduler)
-    _charge_for(rclpy.context.Context, "ok", scheduler)
+    _tell_if_ok(scheduler)
     _replace_events_executor()
     scheduler.on_foreign_thread = lambda: refuse(
         "runs Python in a thread that a C extension has started"
@@ -98,6 +98,20 @@ def _charge_for(owner: Any, name: str, scheduler: Scheduler) -> None:
         return faults.pass_on(ask, self, *args)
 
     setattr(owner, name, asked)
+
+
+def _tell_if_ok(scheduler: Scheduler) -> None:
+    """The same for contexts, without the lock that rclpy's takes: executors ask thrice a message."""
+
+    def ok(self: Any) -> bool:
+        scheduler.charge()
+        context = self.handle
+        if context is None:
+            return False
+        with context:
+            return bool(faults.pass_on(context.ok))
+
+    rclpy.context.Context.ok = functools.wraps(rclpy.context.Context.ok)(ok)
 
 
 def _replace_events_executor() -> None:
