@@ -96,6 +96,9 @@ class Watched:
     However much it prints, only the start and the end are kept, and it never blocks on a full pipe.
     """
 
+    #: it runs our own program, which leaves nothing behind when it comes to its end
+    IS_OURS = True
+
     def __init__(
         self,
         command: Sequence[str],
@@ -167,12 +170,14 @@ class Watched:
 
     def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
         """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
+        is_through = self.poll() == 0
         for sent in INSISTING if gently else INSISTING[-1:]:
             if self.poll() is None:
                 self._send(sent)
                 self.wait(patience_s)
         _running.discard(self)
-        self._sweep(patience_s)
+        if not (is_through and self.IS_OURS):
+            self._sweep(patience_s)
 
     def _send(self, number: signal.Signals) -> None:
         """A signal to it and its group; Windows, which has no such groups, ends it at once."""
@@ -236,6 +241,8 @@ class Unsupervised(Watched):
     environment. One that has got away from all three stays.
     """
 
+    IS_OURS = False
+
     def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
         """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
         family = []
@@ -250,6 +257,8 @@ class Unsupervised(Watched):
 
 class Student(Watched):
     """A submission's process, below a supervisor that holds its whole family."""
+
+    IS_OURS = False
 
     def __init__(
         self,

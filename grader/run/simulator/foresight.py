@@ -7,6 +7,7 @@ publish, byte for byte, what was told.
 from __future__ import annotations
 
 from grader.run.lockstep.protocol import Advance, Parcel, Parcels
+from grader.run.lockstep.registry import Writer
 from grader.run.simulator.endpoints import SimulatorEndpoints, writer_of
 from grader.scenes.scene import Forecast, Reason, Simulation
 
@@ -31,6 +32,7 @@ class Foresight:
         self._simulation = simulation
         self._registry = registry
         self._told = Forecast((), [])
+        self._writers: list[Writer] = []
         self._lived = 0
         self._length = 1
         self._vain = 0
@@ -51,7 +53,7 @@ class Foresight:
             for index, writer in enumerate(writers)
             if self._registry.is_read(writer)
         ]
-        self._told = told
+        self._told, self._writers = told, writers
         self.end = tick + len(told.ticks)
         self.parcels = [
             Parcel(number, 0, sent + ahead, tick + ahead, published[index])
@@ -83,8 +85,8 @@ class Foresight:
         reason, published = self._simulation.pass_tick(now_ns)
         if published != self._told.ticks[self._lived]:
             raise RuntimeError("a tick was not as it was foreseen")
-        for publisher in self._told.publishers:
-            writer_of(publisher).sent += 1
+        for writer in self._writers:
+            writer.sent += 1
         self._lived += 1
         return reason
 

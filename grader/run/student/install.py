@@ -101,7 +101,7 @@ def _charge_for(owner: Any, name: str, scheduler: Scheduler) -> None:
 
 
 def _tell_if_ok(scheduler: Scheduler) -> None:
-    """The same for contexts, without the lock that rclpy's takes: executors ask thrice a message."""
+    """The same for contexts, without rclpy's lock: executors ask three times a message."""
 
     def ok(self: Any) -> bool:
         scheduler.charge()

@@ -51,15 +51,19 @@ class HookedNode(TurtlesimNode):
         if twins is None or self.follows_ros_clock:
             return Forecast((), [])
         publishers = tuple(self._endpoints[twin.name].pose_publisher for twin in twins)
-        now_ns = self.arena.now_ns
-        ticks: list[tuple[bytes, ...]] = []
+        begin_ns = self.arena.now_ns
         until_served = -self.arena.ticks % SERVE_TICKS
-        for ahead in range(min(most, until_served)):
-            poses = [twin.foresee(now_ns + ahead * TICK_NS) for twin in twins]
-            known = {twin.name: pose for twin, pose in zip(twins, poses, strict=True) if pose}
-            if len(known) < len(twins) or not is_certain(known):
+        end_ns = begin_ns + min(most, until_served) * TICK_NS
+        ticks: list[tuple[bytes, ...]] = []
+        for now_ns in range(begin_ns, end_ns, TICK_NS):
+            poses: dict[str, Pose] = {}
+            for twin in twins:
+                if (pose := twin.foresee(now_ns)) is None:
+                    return Forecast(publishers, ticks)
+                poses[twin.name] = pose
+            if not is_certain(poses):
                 break
-            ticks.append(tuple(map(pose_bytes, known.values())))
+            ticks.append(tuple(map(pose_bytes, poses.values())))
         return Forecast(publishers, ticks)
 
     def pass_tick(self, now_ns: int) -> dict[str, Reading]:
