@@ -37,7 +37,7 @@ class HookedNode(TurtlesimNode):
         if now_ns is None:
             now_ns = int(self.get_clock().now().nanoseconds)
         if not self._hooks.has_unread() and self.arena.ticks % SERVE_TICKS:
-            self.arena.now_ns = now_ns
+            self._set_time(now_ns)
             return now_ns
         return super().serve(now_ns)
 
