@@ -155,17 +155,18 @@ class Subscription(Registered, _rclpy.Subscription):
 
     def take_message(self, _: type, raw: bool) -> Any:
         """The oldest message in the reader with what is known of it, or None."""
-        item = self.reader.pop()
-        if item is None:
-            return None
-        data = item.data
-        message = data if raw else pass_on(_deserialize, data, self.reader.message)
-        return message, {
-            "source_timestamp": item.time_ns,
-            "received_timestamp": item.time_ns,
-            "publication_sequence_number": item.number,
-            "reception_sequence_number": None,
-        }
+        while (item := self.reader.pop()) is not None:
+            try:
+                message = item.data if raw else _deserialize(item.data, self.reader.message)
+            except _rclpy.RMWError:  # somebody has published other bytes; DDS drops them
+                continue
+            return message, {
+                "source_timestamp": item.time_ns,
+                "received_timestamp": item.time_ns,
+                "publication_sequence_number": item.number,
+                "reception_sequence_number": None,
+            }
+        return None
 
 
 class RequestId(_rclpy.rmw_request_id_t):
