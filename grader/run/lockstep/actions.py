@@ -24,7 +24,6 @@ from grader.run.lockstep.times import NEVER
 
 _ActionClient, _ActionServer = _rclpy.ActionClient, _rclpy.ActionServer
 _GoalHandle = _rclpy.ActionGoalHandle
-STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
 
 
 def install() -> None:
@@ -39,8 +38,16 @@ class _Action(Registered):
 
     def prepare(self, node: Node, action_type: Any, name: str) -> None:
         """Remember what every endpoint needs; before any other method."""
-        self._node, self._name, self._type = node, name, ros_type(action_type)
-        self._feedback_type = ros_type(action_type.Impl.FeedbackMessage)
+        impl = action_type.Impl
+        self._node, self._name = node, name
+        #: of each part, which is a service or a topic that others may use as such
+        self._types = {
+            "send_goal": impl.SendGoalService,
+            "cancel_goal": impl.CancelGoalService,
+            "get_result": impl.GetResultService,
+            "feedback": impl.FeedbackMessage,
+            "status": impl.GoalStatusMessage,
+        }
 
     def channel(self, kind: str, part: str) -> str:
         """The channel of a part of the action; a part's name can be remapped like any other."""
@@ -48,13 +55,18 @@ class _Action(Registered):
         is_service = kind != "topic"
         return f"{kind} {_rclpy.rclpy_resolve_name(self._node, name, False, is_service)}"
 
-    def writer(self, kind: str, part: str, c_qos: Any, message_type: str = "") -> Writer:
+    def writer(self, kind: str, part: str, c_qos: Any) -> Writer:
         """A writer."""
-        return Writer(self.channel(kind, part), self._type, profile(c_qos), message_type)
+        return Writer(self.channel(kind, part), ros_type(self._types[part]), profile(c_qos))
 
-    def reader(self, kind: str, part: str, c_qos: Any, message: Any) -> Reader:
+    def reader(self, kind: str, part: str, c_qos: Any) -> Reader:
         """A reader."""
-        return Reader(self.channel(kind, part), self._type, profile(c_qos), message=message)
+        part_type = self._types[part]
+        messages = {"topic": "", "request": "Request", "response": "Response"}[kind]
+        message = getattr(part_type, messages) if messages else part_type
+        return Reader(
+            self.channel(kind, part), ros_type(part_type), profile(c_qos), message=message
+        )
 
 
 def _take(reader: Reader) -> Any:
@@ -73,17 +85,14 @@ class ActionClient(_Action, _rclpy.ActionClient):
         profiles = (goal, result, cancel, feedback, status)
         pass_on(_ActionClient.__init__, self, node, kind, name, *profiles, *more)
         self.prepare(node, kind, name)
-        impl = kind.Impl
         self.goal = self.writer("request", "send_goal", goal)
         self.cancel = self.writer("request", "cancel_goal", cancel)
         self.result = self.writer("request", "get_result", result)
-        self.goals = self.reader("response", "send_goal", goal, impl.SendGoalService.Response)
-        self.cancels = self.reader(
-            "response", "cancel_goal", cancel, impl.CancelGoalService.Response
-        )
-        self.results = self.reader("response", "get_result", result, impl.GetResultService.Response)
-        self.feedback = self.reader("topic", "feedback", feedback, impl.FeedbackMessage)
-        self.status = self.reader("topic", "status", status, impl.GoalStatusMessage)
+        self.goals = self.reader("response", "send_goal", goal)
+        self.cancels = self.reader("response", "cancel_goal", cancel)
+        self.results = self.reader("response", "get_result", result)
+        self.feedback = self.reader("topic", "feedback", feedback)
+        self.status = self.reader("topic", "status", status)
         self.readers = [self.feedback, self.status, self.goals, self.cancels, self.results]
         self.register(node, self.goal, self.cancel, self.result, *self.readers)
 
@@ -168,17 +177,11 @@ class ActionServer(_Action, _rclpy.ActionServer):
         rest = (goal, result, cancel, feedback, status, result_timeout, *more)
         pass_on(_ActionServer.__init__, self, node, clock, kind, name, *rest)
         self.prepare(node, kind, name)
-        parts = (
-            ("send_goal", goal, kind.Impl.SendGoalService),
-            ("cancel_goal", cancel, kind.Impl.CancelGoalService),
-            ("get_result", result, kind.Impl.GetResultService),
-        )
-        self.readers, self.answers = [], []
-        for part, c_qos, service in parts:
-            self.readers.append(self.reader("request", part, c_qos, service.Request))
-            self.answers.append(self.writer("response", part, c_qos))
-        self.feedback = self.writer("topic", "feedback", feedback, self._feedback_type)
-        self.status = self.writer("topic", "status", status, STATUS_TYPE)
+        parts = (("send_goal", goal), ("cancel_goal", cancel), ("get_result", result))
+        self.readers = [self.reader("request", part, c_qos) for part, c_qos in parts]
+        self.answers = [self.writer("response", part, c_qos) for part, c_qos in parts]
+        self.feedback = self.writer("topic", "feedback", feedback)
+        self.status = self.writer("topic", "status", status)
         self.register(node, *self.readers, *self.answers, self.feedback, self.status)
 
     def take_goal_request(self, _: type) -> Any:

@@ -49,9 +49,8 @@ class Endpoint:
 
     Attributes:
         channel: what it is connected to.
-        type: the ROS type, "geometry_msgs/msg/Twist"; of a service or action, that of the whole.
+        type: the ROS type, "geometry_msgs/msg/Twist"; of a service, that of the whole.
         qos: its quality of service.
-        message_type: of a part of an action that is a topic, the type of its messages.
         matches, unfit: how many counterparts it has had in all, here and in the simulator: those
             that DDS connects, and those whose quality of service does not fit. Counted on the
             student's side.
@@ -60,7 +59,6 @@ class Endpoint:
     channel: str
     type: str
     qos: QoSProfile
-    message_type: str = ""
     matches: int = 0
     unfit: int = 0
 

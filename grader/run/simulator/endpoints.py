@@ -64,7 +64,7 @@ class SimulatorEndpoints(EndpointRegistry):
             types.setdefault(topic, set()).add(kind)
         for endpoint in (*self.writers, *self.readers):
             if endpoint.name in types and endpoint.kind == "topic":
-                types[endpoint.name].add(endpoint.message_type or endpoint.type)
+                types[endpoint.name].add(endpoint.type)
         # as the graph shows it: of several types on a topic, ours too, the first
         self._published |= {topic: min(kinds) for topic, kinds in types.items()}
 

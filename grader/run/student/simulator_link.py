@@ -247,7 +247,7 @@ class SimulatorLink(EndpointRegistry):
         self.changed = False
         self._pair()
         self.graph_epoch += 1
-        topics = {(w.name, w.message_type or w.type) for w in self.writers if w.kind == "topic"}
+        topics = {(w.name, w.type) for w in self.writers if w.kind == "topic"}
         reads = {reader.channel for reader in self.readers if reader.kind != "request"}
         interests = Interests(tuple(sorted(reads)), tuple(sorted(topics)))
         if interests != self._interests:
