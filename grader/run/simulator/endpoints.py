@@ -72,6 +72,10 @@ class SimulatorEndpoints(EndpointRegistry):
         """Whether the student's side reads what this writer writes."""
         return writer.channel in self._read
 
+    def count_readers(self, writer: Writer) -> int:
+        """How many hear a writer; how many there are on the student's side is not known."""
+        return super().count_readers(writer) + self.is_read(writer)
+
     def others_are_read(self, writers: Iterable[Writer]) -> bool:
         """Whether the student's side reads a topic of ours that is not one of these."""
         known = {writer.channel for writer in writers}
