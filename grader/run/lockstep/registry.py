@@ -52,8 +52,8 @@ class Endpoint:
         type: the ROS type, "geometry_msgs/msg/Twist"; of a service, that of the whole.
         qos: its quality of service.
         matches, unfit: how many counterparts it has had in all, here and in the simulator: those
-            that DDS connects, and those whose quality of service does not fit. Counted on the
-            student's side.
+            that DDS connects, and those whose quality of service does not fit.
+        matched: how many of the former it has. All three are counted on the student's side.
     """
 
     channel: str
@@ -61,6 +61,7 @@ class Endpoint:
     qos: QoSProfile
     matches: int = 0
     unfit: int = 0
+    matched: int = 0
 
     @property
     def name(self) -> str:

@@ -103,30 +103,63 @@ class Timer(_rclpy.Timer):
         WAITER.poke(self)
 
 
-class EventHandle(_rclpy.EventHandle):
-    """An event of DDS: it has found counterparts, or ones whose quality of service does not fit.
+class MatchedStatus(_rclpy.rmw_matched_status_t):
+    """How many counterparts there are; rclpy's own cannot be set."""
 
-    DDS finds them when it likes. We know them already, so whoever looks waits until DDS does too.
-    Other events tell of real time or of real networks, and never come.
+    total_count = 0
+    total_count_change = 0
+    current_count = 0
+    current_count_change = 0
+
+
+class EventHandle(_rclpy.EventHandle):
+    """An event of DDS: counterparts have come or gone, or their quality of service does not fit.
+
+    We know them as soon as they are there, and tell of those that come and go. Of what does not fit
+    DDS tells more than we know: whoever looks waits until it does. Other events tell of real time
+    or of real networks, and never come.
     """
+
+    #: somebody wants it destroyed
+    is_gone = False
 
     def __init__(self, parent: Any, kind: Any) -> None:
         pass_on(_EventHandle.__init__, self, parent, kind)
         self._endpoint: Endpoint = parent.endpoints[0]
         self._counts_matches = kind.name.endswith("_MATCHED")
-        self._counts_unfit = kind.name.endswith("_INCOMPATIBLE_QOS")
-        self._told = 0
+        #: DDS must tell of it
+        self.is_unfit = bool(kind.name.endswith("_INCOMPATIBLE_QOS"))
+        #: how many there had been and were when the program was told
+        self._told = (0, 0)
+
+    def destroy_when_not_in_use(self) -> None:
+        """As in rclpy; a wait set may still hold it."""
+        self.is_gone = True
+        _EventHandle.destroy_when_not_in_use(self)
 
     def is_due(self) -> bool:
-        """Whether DDS has something to tell, now or soon."""
-        if self._counts_unfit:
-            return self._endpoint.unfit > self._told
-        return self._counts_matches and self._endpoint.matches > self._told
+        """Whether there is something to tell; DDS may still have to find it."""
+        if self.is_gone:
+            return False
+        if self.is_unfit:
+            return self._endpoint.unfit > self._told[0]
+        return self._counts_matches and self._matches() != self._told
+
+    def _matches(self) -> tuple[int, int]:
+        return self._endpoint.matches, self._endpoint.matched
 
     def take_event(self) -> Any:
         """As in rclpy."""
-        status = pass_on(_EventHandle.take_event, self)
-        self._told = getattr(status, "total_count", self._told)
+        if not self._counts_matches:
+            status = pass_on(_EventHandle.take_event, self)
+            if self.is_unfit and status is not None:
+                self._told = (status.total_count, 0)
+            return status
+        status = MatchedStatus.__new__(MatchedStatus)
+        before, self._told = self._told, self._matches()
+        status.total_count, status.current_count = self._told
+        status.total_count_change = self._told[0] - before[0]
+        status.current_count_change = self._told[1] - before[1]
         return status
 
 
@@ -260,7 +293,7 @@ class WaitSet:
         return self._has_work or bool(guards)
 
     def _ask_for_events(self) -> list[bool]:
-        """Of which events DDS has to tell."""
+        """Which events there are to tell of."""
         epoch = WAITER.graph_epoch
         if self._quiet_epoch == epoch:
             return []
@@ -268,19 +301,20 @@ class WaitSet:
         if not any(due):
             self._quiet_epoch = epoch
             return []
-        ready = self._look_for_events()
-        while any(is_due and not is_ready for is_due, is_ready in zip(due, ready, strict=True)):
+        awaited = [e for e, is_due in zip(self._events, due, strict=True) if is_due and e.is_unfit]
+        while not self._has_dds(awaited):
             WAITER.await_dds("event")
-            ready = self._look_for_events()
-        return [is_due and is_ready for is_due, is_ready in zip(due, ready, strict=True)]
+        return due
 
-    def _look_for_events(self) -> list[bool]:
-        real = _WaitSet(0, 0, 0, 0, 0, len(self._events), self._context)
+    def _has_dds(self, events: list[EventHandle]) -> bool:
+        """Whether DDS has all of these to tell."""
+        if not events:
+            return True
+        real = _WaitSet(0, 0, 0, 0, 0, len(events), self._context)
         real.clear_entities()
-        for event in self._events:
-            real.add_event(event)
+        places = [real.add_event(event) for event in events]
         real.wait(0)
-        return [real.is_ready("event", index) for index in range(len(self._events))]
+        return all(real.is_ready("event", place) for place in places)
 
     def _next_timer(self) -> int:
         """When the first timer is due."""

@@ -297,21 +297,24 @@ class SimulatorLink(EndpointRegistry):
         self._count_meetings(remotes)
 
     def _count_meetings(self, remotes: Mapping[str, Sequence[RemoteEndpoint]]) -> None:
-        """Count which endpoints of a topic have met for the first time; DDS tells of them."""
+        """Count which endpoints of a topic meet, and have met for the first time."""
+        for endpoint in (*self.writers, *self.readers):
+            endpoint.matched = 0
         readers: dict[str, list[Endpoint]] = defaultdict(list)
         for reader in (*self.readers, *(r for rs in remotes.values() for r in rs if not r.writes)):
             readers[reader.channel].append(reader)
         writers = (*self.writers, *(r for rs in remotes.values() for r in rs if r.writes))
         for writer in writers:
             for reader in readers.get(writer.channel, ()):
-                if writer.type != reader.type or (writer, reader) in self._met:
+                if writer.type != reader.type:
                     continue
+                is_new = (writer, reader) not in self._met
                 self._met.add((writer, reader))
+                fits = suits(writer, reader)
                 for endpoint in (writer, reader):
-                    if suits(writer, reader):
-                        endpoint.matches += 1
-                    else:
-                        endpoint.unfit += 1
+                    endpoint.matched += fits
+                    endpoint.matches += fits and is_new
+                    endpoint.unfit += is_new and not fits
 
     def await_dds(self, what: str) -> None:
         """Really wait a little until DDS has found what we know to be there.

@@ -31,7 +31,8 @@ class VirtualWaiter:
 
     @property
     def graph_epoch(self) -> int:
-        """Counts the changes of the graph."""
+        """Counts the changes of the graph; what belongs together is connected now."""
+        self._link.connect()
         return self._link.graph_epoch
 
     def await_dds(self, what: str) -> None:
