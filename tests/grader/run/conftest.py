@@ -18,6 +18,8 @@ from grader.submission.opening import open_submission
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 LIMITS = Limits(first_motion_s=3, rest_s=1, total_s=60)
+#: Of submissions that rest now and then and go on.
+LONGER = Limits(first_motion_s=3, rest_s=5, total_s=60)
 #: Whose limits or patience are shorter: what they do goes on for ever.
 SHORTER = {
     "busy_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
@@ -27,12 +29,15 @@ SHORTER = {
     "attacks_link": (Limits(1, 0.2, 10), Patience()),
     "floods": (Limits(3, 1, 5), Patience()),
     "floods_without_end": (Limits(3, 1, 5), Patience()),
+    "hangs_after_command": (LONGER, Patience(stall_cpu_s=0.5)),
+    "hangs_while_driving": (LONGER, Patience(stall_cpu_s=0.5)),
 }
 Run = Callable[..., Recording]
 
 
 def _run(name: str) -> Recording:
-    limits, patience = SHORTER.get(Path(name).stem, (LIMITS, Patience()))
+    usual = LONGER if name.startswith("messages/") else LIMITS
+    limits, patience = SHORTER.get(Path(name).stem, (usual, Patience()))
     with open_submission(SUBMISSIONS / f"{name}.py") as submission:
         return virtual_time.run(submission, Plan(limits), patience=patience)
 
