@@ -44,9 +44,9 @@ _losses: Counter[str] = Counter()
 
 
 def warm() -> None:
-    """Start both now, and do not wait for them."""
-    zygote(STUDENT)
+    """Start both now, and do not wait for them; that which imports more comes first."""
     zygote(SIMULATOR)
+    zygote(STUDENT)
 
 
 def for_student(root: Path, namespaces: Mapping[str, int]) -> Warm | None:
