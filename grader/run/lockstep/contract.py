@@ -207,6 +207,7 @@ ENTITIES: tuple[Assumption, ...] = (
     # name, namespace, context, and whatever follows
     *_takes("Node", __init__=3),
     *_takes("Context", ok=0),
+    *_takes("LifecycleStateMachine", __init__=2),
     *_has(CPP, "", "rclpy_serialize", "rclpy_deserialize"),
     Assumption("request headers", _request_headers),
     *_takes("Node", get_count_clients=1, get_count_services=1),

@@ -19,6 +19,7 @@ from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Re
 
 _Publisher, _Subscription = _rclpy.Publisher, _rclpy.Subscription
 _Client, _Service = _rclpy.Client, _rclpy.Service
+_StateMachine = _rclpy.LifecycleStateMachine
 _serialize, _deserialize = _rclpy.rclpy_serialize, _rclpy.rclpy_deserialize
 
 REGISTRY: EndpointRegistry
@@ -28,8 +29,8 @@ def install(registry: EndpointRegistry) -> None:
     """Put the classes of this module into rclpy's extension module."""
     global REGISTRY
     REGISTRY = registry
-    for name in ("Node", "Publisher", "Subscription", "Client", "Service"):
-        setattr(_rclpy, name, globals()[name])
+    for kind in (Node, Publisher, Subscription, Client, Service, LifecycleStateMachine):
+        setattr(_rclpy, kind.__name__, kind)
 
 
 def profile(c_qos: Any) -> QoSProfile:
@@ -167,6 +168,17 @@ class Subscription(Registered, _rclpy.Subscription):
                 "reception_sequence_number": None,
             }
         return None
+
+
+class LifecycleStateMachine(Registered, _rclpy.LifecycleStateMachine):
+    """A lifecycle node's states; rclpy's C++ tells of them, and only the graph shows where."""
+
+    def __init__(self, node: Node, enable_communication_interface: bool) -> None:
+        pass_on(_StateMachine.__init__, self, node, enable_communication_interface)
+        if enable_communication_interface:
+            name = _rclpy.rclpy_resolve_name(node, "~/transition_event", False, False)
+            kind = "lifecycle_msgs/msg/TransitionEvent"
+            self.register(node, Writer(f"topic {name}", kind, QoSProfile(depth=10)))
 
 
 class RequestId(_rclpy.rmw_request_id_t):

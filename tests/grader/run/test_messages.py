@@ -39,6 +39,7 @@ AS_WITH_DDS = {
     "graph_changes": Expected("ff4993249cfd6203"),
     "hangs_after_command": Expected("6d825b5b79d68b21", "stalled", None),
     "hangs_while_driving": Expected("56c2693433c1493e", "stalled", None),
+    "lifecycle": Expected("e26a3a4ea39227b4", "finished", None),
     "many_calls": Expected("7ff6f7efc2bdb23a"),
     "names": Expected("90b115683adfb659"),
     "own_action": Expected("e5e9a9f47e916c01"),
@@ -89,6 +90,12 @@ def test_messages_count_when_they_should(recorded: Recorded, name: str) -> None:
 def test_a_program_hears_and_is_told_what_it_should(recorded: Recorded, name: str) -> None:
     output = recorded(f"messages/{name}").output
     assert _without_wall_clock(output) == (OUTPUTS / f"{name}.txt").read_text()
+
+
+@pytest.mark.records("messages/lifecycle")
+def test_a_lifecycle_node_tells_of_its_states_on_a_topic_of_its_own(recorded: Recorded) -> None:
+    topics = [topic.topic for topic in recorded("messages/lifecycle").topics]
+    assert topics == ["/driver/transition_event", "/turtle1/cmd_vel"]
 
 
 def _without_wall_clock(output: str) -> str:
