@@ -68,7 +68,7 @@ class HookedNode(TurtlesimNode):
 
     def pass_tick(self, now_ns: int) -> dict[str, Reading]:
         """As `tick` where there is nothing to serve, but nothing of the turtles is published."""
-        self.arena.now_ns = now_ns
+        self._set_time(now_ns)
         readings = self.arena.tick()
         self._window.publish_if_due()
         return readings
