@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -150,7 +151,8 @@ def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
         while not over.is_set():
             for process in psutil.Process().children():
                 if any("grader.run.simulator" in word for word in words(process)):
-                    process.kill()
+                    with suppress(psutil.NoSuchProcess):  # it has ended by itself
+                        process.kill()
         with pytest.raises(GraderFailure, match="the simulator"):
             task.result()
     assert not [p for p in psutil.process_iter() if words(p) == ["sleep", seconds]]
