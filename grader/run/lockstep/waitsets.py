@@ -25,6 +25,10 @@ class Waiter(Protocol):
     def graph_epoch(self) -> int:
         """Counts what changes in the graph: afterwards DDS may have events for us."""
 
+    @property
+    def is_alone(self) -> bool:
+        """Whether the program has but one thread."""
+
     def await_dds(self, what: str) -> None:
         """Really wait a little for DDS; where that is in vain, the run cannot be made."""
 

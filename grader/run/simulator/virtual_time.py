@@ -176,6 +176,7 @@ class _NoWaiting:
 
     #: never quiet, never asked: warnings of others' quality of service would go nowhere
     graph_epoch = -1
+    is_alone = True
 
     def __init__(self, clocks: rclpy_clocks.RclpyClocks) -> None:
         self.tell_time = clocks.tell

@@ -225,13 +225,17 @@ def _work(
     )
     end_ns = waitsets.WAITER.deadline(timeout_ns) if timeout_ns > 0 else NEVER
     yielded_work = False
+    look: Look | None = None
     while not yielded_work and not executor._is_shutdown and not condition():
         used = list(executor._nodes) if nodes is None else nodes
         if executor._tasks:
             for work in _tasks(executor, used):
                 yielded_work = True
                 yield work
-        look = _look(executor, used)
+            look = None
+        # nobody has changed anything since the last look where there is nobody else
+        if look is None or not waitsets.WAITER.is_alone:
+            look = _look(executor, used)
         is_out = _wait(executor, look, timeout_ns, end_ns)
         if look.may_have_work():
             look.is_used = True

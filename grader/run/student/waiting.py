@@ -35,6 +35,11 @@ class VirtualWaiter:
         self._link.connect()
         return self._link.graph_epoch
 
+    @property
+    def is_alone(self) -> bool:
+        """Whether the program has but one thread."""
+        return len(self._scheduler.runners) == 1
+
     def await_dds(self, what: str) -> None:
         """Really wait a little for DDS."""
         self._link.await_dds(what)
