@@ -39,6 +39,10 @@ from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
 
 
+#: So many new objects are searched for garbage: what a run records stays to its end.
+GARBAGE = 100_000
+
+
 class Lockstep:
     """Ticks a scene as its student's side asks, to the end of the run."""
 
@@ -206,8 +210,8 @@ def main(argv: list[str]) -> int:
     theirs = socket.socket(fileno=int(argv[3]))
     link = StudentLink(theirs, int(argv[4]), Patience(**json.loads(argv[6])))
     lockstep = Lockstep(link, Plan.from_json(argv[2]), int(argv[5]))
-    gc.collect()
     gc.freeze()
+    gc.set_threshold(GARBAGE)
     try:
         ending = lockstep.run()
         lockstep.save(Path(argv[1]))
