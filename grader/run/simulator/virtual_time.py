@@ -38,7 +38,6 @@ from grader.run.simulator.link import Patience, Refused, StudentLink
 from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
 
-
 #: So many new objects are searched for garbage: what a run records stays to its end.
 GARBAGE = 100_000
 
