@@ -14,7 +14,8 @@ from grader import scratch, system
 from grader.run import zygotes
 from grader.run.environment import environment, student_environment
 from grader.run.processes import isolation
-from grader.run.processes.watched import Watched, start_student
+from grader.run.processes.family import start_student
+from grader.run.processes.watched import Watched
 from grader.submission.opening import EntryPoint, Submission
 
 

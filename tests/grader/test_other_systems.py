@@ -136,8 +136,8 @@ time.sleep(1000)
 ENDS_A_FAMILY = f"""
 import os, sys, time
 import psutil
-from grader.run.processes import watched
-student = watched.start_student([sys.executable, "-c", {HAS_A_FAMILY!r}], os.environ)
+from grader.run.processes.family import start_student
+student = start_student([sys.executable, "-c", {HAS_A_FAMILY!r}], os.environ)
 while bytes(student._head).count(b"\\n") < 2:
     student.wait(0.02)
 family = [psutil.Process(int(pid)) for pid in student.output().split()]

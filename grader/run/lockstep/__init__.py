@@ -8,7 +8,7 @@ Each of the two processes has these put into its rclpy; neither side is imported
 | `link` | how that goes through a socket |
 | `registry` | the readers and writers of a process, and what has arrived |
 | `endpoints`, `actions` | rclpy's publishers, subscriptions, clients, services, actions |
-| `waitsets` | rclpy's wait sets, timers and guard conditions: they wait in virtual time |
+| `waitsets`, `events` | rclpy's wait sets, timers, guards, events: they wait in virtual time |
 | `rclpy_clocks` | rclpy's clocks |
 | `contract` | what is assumed of rclpy's inside, and whether it holds |
 | `faults` | whose an exception is: the program's or ours |

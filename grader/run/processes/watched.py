@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import os
-import select
 import signal
-import sys
 import threading
-import time
 import uuid
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -18,7 +15,6 @@ from types import FrameType
 import psutil
 
 from grader import system
-from grader.errors import GraderFailure
 from grader.run.processes import supervisor
 from grader.run.processes.forking import MARK
 from grader.run.processes.process import Process, Spawned
@@ -36,9 +32,6 @@ KEEP_BYTES = 32_768
 ENDING = (signal.SIGINT, signal.SIGTERM, *_if_there("SIGHUP"))
 #: What a process is told to end with, ever less gently.
 INSISTING = (signal.SIGINT, signal.SIGTERM, *_if_there("SIGKILL"))
-#: How long a process may take to come up [s]; only a machine in distress takes so long.
-START_S = 30.0
-SUPERVISOR = (sys.executable, "-I", "-S", supervisor.__file__, "run")
 
 
 def adopt_orphans() -> None:
@@ -175,9 +168,13 @@ class Watched:
             if self.poll() is None:
                 self._send(sent)
                 self.wait(patience_s)
-        _running.discard(self)
+        self.forget()
         if not (is_through and self.IS_OURS):
             self._sweep(patience_s)
+
+    def forget(self) -> None:
+        """It has ended: the end of the grader needs not see to it."""
+        _running.discard(self)
 
     def _send(self, number: signal.Signals) -> None:
         """A signal to it and its group; Windows, which has no such groups, ends it at once."""
@@ -218,143 +215,3 @@ class Watched:
         if len(self._tail) > KEEP_BYTES:
             self._dropped += len(self._tail) - KEEP_BYTES
             del self._tail[:-KEEP_BYTES]
-
-
-def start_student(
-    command: Sequence[str],
-    env: Mapping[str, str],
-    cwd: Path | None = None,
-    pass_fds: tuple[int, ...] = (),
-    entry: Sequence[str] = (),
-    warm: Warm | None = None,
-) -> Watched:
-    """Start a submission's process, held as well as this system can; see `Watched`."""
-    if system.has_supervision():
-        return Student(command, env, cwd, pass_fds, entry, warm)
-    return Unsupervised(command, env, cwd, pass_fds, entry)
-
-
-class Unsupervised(Watched):
-    """A submission's process where nobody can adopt its family: elsewhere than on Linux.
-
-    Its descendants are those that it still has at its end, its group, and whoever has its
-    environment. One that has got away from all three stays.
-    """
-
-    IS_OURS = False
-
-    def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
-        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
-        family = []
-        with suppress(psutil.Error):
-            family = psutil.Process(self.pid).children(recursive=True)
-        super().end(patience_s, gently=gently)
-        for process in family:
-            with suppress(psutil.Error):
-                process.kill()  # not if another has its number by now
-        psutil.wait_procs(family, timeout=patience_s)
-
-
-class Student(Watched):
-    """A submission's process, below a supervisor that holds its whole family."""
-
-    IS_OURS = False
-
-    def __init__(
-        self,
-        command: Sequence[str],
-        env: Mapping[str, str],
-        cwd: Path | None = None,
-        pass_fds: tuple[int, ...] = (),
-        entry: Sequence[str] = (),
-        warm: Warm | None = None,
-    ) -> None:
-        """`entry` stands before the supervisor's own command; see `.isolation`."""
-        self._report, self._theirs = os.pipe()
-        self._told = b""
-        self._is_silent = False
-        try:
-            super().__init__(command, env, cwd, pass_fds, entry, warm)
-        except BaseException:
-            self._close()
-            raise
-        finally:
-            os.close(self._theirs)
-
-    def _begin(
-        self,
-        command: Sequence[str],
-        env: Mapping[str, str],
-        cwd: Path | None,
-        pass_fds: tuple[int, ...],
-        entry: tuple[str, ...],
-        warm: Warm | None,
-    ) -> Process:
-        if warm is not None:
-            with suppress(ZygoteLost):
-                spaces = warm.namespaces
-                return warm.zygote.fork(command, env, cwd, pass_fds, spaces, self._theirs)
-        words = [*entry, *SUPERVISOR, str(os.getpid()), str(self._theirs), *command]
-        return Spawned(words, env, cwd, (*pass_fds, self._theirs))
-
-    @property
-    def pid(self) -> int:
-        """The process id of the command itself.
-
-        Raises:
-            GraderFailure: it could not be started.
-        """
-        if not self._hear(1, START_S):
-            raise GraderFailure(f"the submission's process did not start: {self.output()}")
-        return int(self._told.split()[0])
-
-    def poll(self) -> int | None:
-        """The exit code of the command itself, negative for a signal, or None while it runs."""
-        return self.wait(0.0)
-
-    def wait(self, timeout_s: float) -> int | None:
-        """Wait for the end of the command itself; None if it still runs then."""
-        if self._hear(2, timeout_s):
-            return int(self._told.split()[1])
-        # a supervisor ends without a word only if somebody has killed it
-        return -signal.SIGKILL if self._is_silent else None
-
-    def kill(self) -> None:
-        """End it and its family now, and do not wait."""
-        if self._process.poll() is None:
-            self._process.terminate()
-
-    def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
-        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
-        for sent in (signal.SIGINT, signal.SIGTERM) if gently else ():
-            if self.poll() is None:
-                with suppress(ProcessLookupError):
-                    if sent == signal.SIGINT:
-                        os.killpg(self._process.pid, sent)  # as a terminal does
-                    else:
-                        os.kill(self.pid, sent)
-                self.wait(patience_s)
-        self.kill()
-        if super().wait(patience_s) != 0:  # somebody has stopped or killed the supervisor
-            self._process.kill()
-            super().wait(patience_s)
-            self._sweep(patience_s)
-        _running.discard(self)
-        self._close()
-
-    def _hear(self, lines: int, timeout_s: float) -> bool:
-        """Whether the supervisor has told so many lines."""
-        deadline = time.monotonic() + timeout_s
-        while self._told.count(b"\n") < lines and not self._is_silent:
-            left = max(0.0, deadline - time.monotonic())
-            if not select.select([self._report], [], [], left)[0]:
-                break
-            news = os.read(self._report, 4096)
-            self._told += news
-            self._is_silent = not news
-        return self._told.count(b"\n") >= lines
-
-    def _close(self) -> None:
-        if self._report >= 0:
-            os.close(self._report)
-        self._report, self._is_silent = -1, True

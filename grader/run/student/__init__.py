@@ -9,9 +9,10 @@ In real time that is `main` alone, which imports nothing else of ours. In virtua
 | `threads`, `sockets`, `signals` | locks, `select` and asyncio, signals: where threads hand on |
 | `clocks`, `chance` | `time` and `datetime`; random numbers and what else differs every time |
 | `install` | puts rclpy into virtual time |
-| `waiting`, `executor` | how rclpy's wait sets wait; its executors, faster |
+| `waiting`, `executor`, `views` | how rclpy's wait sets wait; its executors, faster |
 | `graph` | questions about the ROS graph |
-| `simulator_link` | this end of the link to the simulator: asks for time, sends and receives |
+| `simulator_link`, `channel` | this end of the link: asks for time, sends and receives |
+| `remotes` | the simulator's endpoints, and who hears whom |
 | `deadlock`, `refusal` | what waits for ever, and where; what virtual time cannot follow |
 
 Both sides of the link share `grader.run.lockstep`.

@@ -70,7 +70,7 @@ def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[Name]) -> bool:
     if not set(nodes) <= set(node.get_node_names_and_namespaces()):
         return False
     expected = Counter(
-        [(r.channel, r.writes) for r in link.remotes.values()]
+        [(r.channel, r.writes) for r in link.remotes.by_number.values()]
         + [(reader.channel, False) for reader in link.readers]
         + [(writer.channel, True) for writer in link.writers]
     )
@@ -84,6 +84,6 @@ def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[Name]) -> bool:
             continue
         if count(name) != number:
             return False
-    topics = {r.name for r in link.remotes.values() if r.writes and r.kind == "topic"}
+    topics = {r.name for r in link.remotes.by_number.values() if r.writes and r.kind == "topic"}
     ask = _rclpy.rclpy_get_publisher_names_and_types_by_node
     return topics <= {topic for name in nodes for topic, _ in ask(node, False, *name)}

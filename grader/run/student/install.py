@@ -17,7 +17,7 @@ import rclpy.task
 import rclpy.timer
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader.run.lockstep import actions, endpoints, faults, rclpy_clocks, waitsets
+from grader.run.lockstep import actions, endpoints, events, faults, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import Kind
 from grader.run.student import chance, deadlock, executor, graph
 from grader.run.student.scheduler import Scheduler
@@ -82,7 +82,7 @@ def _guard_entities() -> None:
         *(endpoints.Publisher, endpoints.Subscription, endpoints.Client, endpoints.Service),
         *(endpoints.Registered, endpoints.Node),
         *(actions.ActionClient, actions.ActionServer, actions.ActionGoalHandle),
-        *(waitsets.Timer, waitsets.EventHandle),
+        *(waitsets.Timer, events.EventHandle),
     ):
         faults.guard_methods(kind)
     waitsets.WaitSet.wait = faults.guarded(waitsets.WaitSet.wait)  # type: ignore[method-assign]

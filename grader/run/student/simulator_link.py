@@ -7,45 +7,28 @@ what they will bring, if nothing is sent meanwhile; these pass without a word to
 
 from __future__ import annotations
 
-import mmap
-import os
 import socket
-from collections import defaultdict, deque
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NoReturn
+from collections import deque
+from collections.abc import Callable
+from typing import Any
 
-from grader.run.lockstep import link, real
+from grader.run.lockstep import real
 from grader.run.lockstep.protocol import (
     FOREVER,
-    PROGRESS,
     TICK_NS,
     Advance,
     Interests,
     Kind,
-    Mail,
-    Note,
-    Packet,
     Parcel,
-    ProtocolError,
     Reply,
     State,
     Table,
-    decode,
-    encode,
 )
-from grader.run.lockstep.registry import (
-    Arrived,
-    Endpoint,
-    EndpointRegistry,
-    Reader,
-    Writer,
-    compatible,
-    policies,
-    suits,
-)
+from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer
 from grader.run.lockstep.times import EPOCH_NS, NEVER
 from grader.run.processes import cores
-from grader.run.student.remotes import RemoteEndpoint
+from grader.run.student.channel import SimulatorChannel
+from grader.run.student.remotes import Remotes
 from grader.run.student.scheduler import Scheduler
 
 UNBOUNDED = 0xFFFFFFFF
@@ -75,15 +58,12 @@ class SimulatorLink(EndpointRegistry):
         self.on_arrival: Callable[[], None] = lambda: None
         #: called when nothing can ever happen any more
         self.on_standstill: Callable[[], None] = lambda: None
-        self.remotes: dict[int, RemoteEndpoint] = {}
+        self.remotes = Remotes()
         self._scheduler = scheduler
-        self._connection: socket.socket
-        self._packets: link.PacketReader
+        self._channel = SimulatorChannel(refuse)
         #: the processor core to share with the simulator from the first tick on; -1: any
         self._core = -1
-        self._progress: Any = bytearray(PROGRESS.size)
         self._is_connected = self._has_started = False
-        self._mailbox: socket.socket
         #: since the simulator was told last
         self._has_mailed = False
         #: the readers for responses, by the numbers that requests carry
@@ -98,12 +78,11 @@ class SimulatorLink(EndpointRegistry):
         self._spoken_s = 0.0
         self._waited_for = (0, "")
         self._waits_until_s = 0.0
-        self._met: set[tuple[Endpoint, Endpoint]] = set()
 
     def take_up(self, connection: socket.socket, core: int) -> None:
         """Take up the link, before anything else; `core` is to be shared from the first tick on."""
-        self._connection, self._core = connection, core
-        self._packets = link.PacketReader(connection)
+        self._channel.take_up(connection)
+        self._core = core
 
     # Time -------------------------------------------------------------------------------------
 
@@ -138,7 +117,7 @@ class SimulatorLink(EndpointRegistry):
     def _live_to(self, tick: int) -> None:
         """Let time pass to a tick, with the messages up to it."""
         self.tick = tick
-        PROGRESS.pack_into(self._progress, 0, tick)
+        self._channel.has_reached(tick)
         incoming = self._incoming
         while incoming and incoming[0].tick <= tick:
             self._deliver(incoming.popleft())
@@ -153,21 +132,21 @@ class SimulatorLink(EndpointRegistry):
         self._incoming.clear()
         self._is_ahead = False
         has_mailed, self._has_mailed = self._has_mailed, False
-        self._send(Advance(target, most, self.tick, has_mailed))
+        self._channel.send(Advance(target, most, self.tick, has_mailed))
         table = None
-        while not isinstance(packet := self._receive(), Reply):
-            match packet:
-                case Table():
-                    table = packet
-                    self._add(packet)
-                case _:
-                    self._break(ProtocolError(f"{packet!r:.200} where a reply was expected"))
+        while not isinstance(packet := self._channel.receive(), Reply):
+            if not isinstance(packet, Table):
+                self._channel.fail(packet, "a reply")
+            table = packet
+            self.remotes.add(table)
+            self._connect_anew()
         self._spoken_s = real.monotonic()
         self._incoming.extend(packet.parcels)
         self._foreseen_to = packet.foreseen
         self._live_to(packet.tick)
         if table is not None:
-            self._forget(table)
+            self.remotes.remove(table)
+            self._connect_anew()
         if packet.state == State.OVER:
             real.leave(0)
 
@@ -210,16 +189,12 @@ class SimulatorLink(EndpointRegistry):
         return number
 
     def _mail(self, parcel: Parcel) -> None:
-        for piece in link.pieces(encode(Mail([parcel]))):
+        self._has_mailed = True
+        rest = self._channel.mail(parcel)
+        while rest:
+            self._exchange(self.tick, 0)
             self._has_mailed = True
-            try:
-                self._mailbox.send(piece)
-            except BlockingIOError:  # full
-                self._exchange(self.tick, 0)
-                self._has_mailed = True
-                self._mailbox.send(piece)
-            except OSError:
-                real.leave(1)
+            rest = self._channel.mail_rest(rest)
 
     def _deliver(self, parcel: Parcel) -> None:
         endpoint, client, number, tick, data = parcel
@@ -229,7 +204,7 @@ class SimulatorLink(EndpointRegistry):
             reader.awaited -= 1
             reader.items.append(arrived)
             return
-        remote = self.remotes[endpoint]
+        remote = self.remotes.by_number[endpoint]
         if remote.is_lasting:
             remote.history.append(arrived)
         for reader in remote.readers:
@@ -241,12 +216,12 @@ class SimulatorLink(EndpointRegistry):
         """Connect what belongs together, and tell the simulator what we read and publish."""
         if not self._is_connected:
             self._is_connected = True
-            self._add(self._receive_first())
+            self.remotes.add(self._channel.introduction())
+            self._connect_anew()
         if not self.changed:
             return
         self.changed = False
-        self._pair()
-        self.graph_epoch += 1
+        self._connect_anew()
         topics = {(w.name, w.type) for w in self.writers if w.kind == "topic"}
         reads = {reader.channel for reader in self.readers if reader.kind != "request"}
         interests = Interests(tuple(sorted(reads)), tuple(sorted(topics)))
@@ -256,65 +231,13 @@ class SimulatorLink(EndpointRegistry):
                 self._exchange(self.tick, 0)
             self._incoming.clear()
             self._foreseen_to = self.tick
-            self._send(interests)
-
-    def _add(self, table: Table) -> None:
-        for entry in table.added:
-            qos = policies(entry.reliability, entry.durability, entry.depth)
-            self.remotes[entry.id] = RemoteEndpoint(
-                entry.channel, entry.type, qos, id=entry.id, writes=entry.writes
-            )
-        self._connect_anew()
-
-    def _forget(self, table: Table) -> None:
-        for number in table.removed:
-            self.remotes.pop(number, None)
-        self._connect_anew()
+            self._channel.send(interests)
 
     def _connect_anew(self) -> None:
-        self._pair()
-        self.graph_epoch += 1
-
-    def _pair(self) -> None:
         self._is_unpaired = True
         self.pair_locally()
-        remotes: dict[str, list[RemoteEndpoint]] = defaultdict(list)
-        for remote in self.remotes.values():
-            remotes[remote.channel].append(remote)
-            remote.readers = []
-        for reader in self.readers:
-            before, reader.remote = reader.remote, []
-            for remote in remotes[reader.channel]:
-                if remote.writes and compatible(remote, reader):
-                    reader.remote.append(remote)
-                    remote.readers.append(reader)
-                    if remote not in before and remote.is_lasting and reader.is_lasting:
-                        reader.items.extend(remote.history)
-            reader.hears = bool(reader.remote) and reader.kind == "topic"
-        for writer in self.writers:
-            readers = [remote for remote in remotes[writer.channel] if not remote.writes]
-            writer.remote = [remote for remote in readers if compatible(writer, remote)]
-        self._count_meetings(remotes)
-
-    def _count_meetings(self, remotes: Mapping[str, Sequence[RemoteEndpoint]]) -> None:
-        """Count which endpoints of a topic meet, and have met for the first time."""
-        for endpoint in (*self.writers, *self.readers):
-            endpoint.matched = 0
-        readers: dict[str, list[Endpoint]] = defaultdict(list)
-        for reader in (*self.readers, *(r for rs in remotes.values() for r in rs if not r.writes)):
-            readers[reader.channel].append(reader)
-        writers = (*self.writers, *(r for rs in remotes.values() for r in rs if r.writes))
-        for writer in writers:
-            for reader in readers.get(writer.channel, ()):
-                if writer.type != reader.type:
-                    continue
-                is_new = (writer, reader) not in self._met
-                self._met.add((writer, reader))
-                fits = suits(writer, reader)
-                for endpoint in (writer, reader):
-                    endpoint.matched += fits
-                    endpoint.matches += fits and is_new
-                    endpoint.unfit += is_new and not fits
+        self.remotes.pair(self.writers, self.readers)
+        self.graph_epoch += 1
 
     def await_dds(self, what: str) -> None:
         """Really wait a little until DDS has found what we know to be there.
@@ -329,56 +252,6 @@ class SimulatorLink(EndpointRegistry):
             real.leave(0)
         real.sleep(0.0005)
 
-    # The link ---------------------------------------------------------------------------------
-
     def note(self, kind: Kind, text: str = "") -> None:
         """Tell the simulator something about this process."""
-        self._send(Note(kind, text))
-
-    def _send(self, packet: Packet) -> None:
-        try:
-            for piece in link.pieces(encode(packet)):
-                self._connection.send(piece)
-        except OSError:
-            real.leave(1)
-
-    def _receive_first(self) -> Table:
-        """The first table, and with it the page that both processes see, and where mail goes."""
-        try:
-            data, descriptors, _, _ = socket.recv_fds(self._connection, link.PIECE_BYTES, 2)
-        except OSError:
-            data = b""
-        if not data:
-            real.leave(1)
-        packet = self._decode(data)
-        if not isinstance(packet, Table) or len(descriptors) != 2:
-            self._break(ProtocolError(f"{packet!r:.200} where a table was expected"))
-        page, mailbox = descriptors
-        os.set_inheritable(mailbox, False)
-        self._progress = mmap.mmap(page, mmap.PAGESIZE)
-        os.close(page)
-        self._mailbox = socket.socket(fileno=mailbox)
-        self._mailbox.setblocking(False)
-        return packet
-
-    def _receive(self) -> Packet:
-        data: bytes | None = None
-        while data is None:
-            try:
-                data = self._packets.read()
-            except OSError:
-                data = b""
-        if not data:
-            real.leave(1)
-        return self._decode(data)
-
-    def _decode(self, data: bytes) -> Packet:
-        try:
-            return decode(data)
-        except ProtocolError as error:
-            self._break(error)
-
-    def _break(self, error: ProtocolError) -> NoReturn:
-        """Somebody else has read or written here, and only the submission can."""
-        self.refuse(f"broke our virtual time ({error!r})")
-        raise error
+        self._channel.note(kind, text)

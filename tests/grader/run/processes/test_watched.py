@@ -12,8 +12,8 @@ import psutil
 import pytest
 
 from grader import scratch
-from grader.run.processes import watched
-from grader.run.processes.watched import Student
+from grader.run.processes import family
+from grader.run.processes.family import Student
 
 ROOT = Path(__file__).parents[4]
 #: Stands before a command that is not to make namespaces.
@@ -29,10 +29,10 @@ time.sleep(float(sys.argv[2]))
 GRADER = """
 import sys
 from grader.run.stage import open_stage
-from grader.run.processes import watched
+from grader.run.processes import family, watched
 watched.end_on_signals()
 with open_stage() as stage:
-    student = watched.Student([sys.executable, "-c", *sys.argv[1:]], stage.env)
+    student = family.Student([sys.executable, "-c", *sys.argv[1:]], stage.env)
     try:
         print(student.pid, stage.folder, flush=True)
         student.wait(60.0)
@@ -55,7 +55,7 @@ def python(code: str, *words: object) -> Student:
 def namespace(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """With and without the right to make a process namespace."""
     if request.param == "shared namespace":
-        monkeypatch.setattr(watched, "SUPERVISOR", (*UNPRIVILEGED, *watched.SUPERVISOR))
+        monkeypatch.setattr(family, "SUPERVISOR", (*UNPRIVILEGED, *family.SUPERVISOR))
     yield request.param
 
 

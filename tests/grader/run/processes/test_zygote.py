@@ -14,7 +14,8 @@ import psutil
 import pytest
 
 from grader.run.processes import forking, isolation
-from grader.run.processes.watched import Student, Watched
+from grader.run.processes.family import Student
+from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm, Zygote, ZygoteLost, shadows
 
 ROOT = Path(__file__).parents[4]
@@ -235,7 +236,8 @@ def test_one_run_s_end_leaves_another_alone(zygote: Zygote) -> None:
 GRADER = f"""
 import sys, threading, time
 sys.path.insert(0, {str(ROOT)!r})
-from grader.run.processes.watched import Student, Watched
+from grader.run.processes.family import Student
+from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm, Zygote
 made = []
 thread = threading.Thread(target=lambda: made.append(Zygote({COMMAND!r}, {ENV!r})))
