@@ -5,6 +5,7 @@ virtual time. Where it lost some, or the run could not be made, they are as they
 """
 
 import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -85,7 +86,10 @@ def test_messages_count_when_they_should(recorded: Recorded, name: str) -> None:
     assert run.trace_sha256[:16] == expected.trace
 
 
-@pytest.mark.skipif(executor.known() is not reversed, reason="this rclpy has another order")
+@pytest.mark.skipif(
+    executor.known() is not reversed or sys.version_info[:2] != (3, 11),
+    reason="recorded with the order of rclpy 7 and with Python 3.11, which tell some milliseconds",
+)
 @pytest.mark.parametrize("name", each(sorted(path.stem for path in OUTPUTS.glob("*.txt"))))
 def test_a_program_hears_and_is_told_what_it_should(recorded: Recorded, name: str) -> None:
     output = recorded(f"messages/{name}").output
