@@ -11,6 +11,7 @@ import socket
 import time
 from dataclasses import asdict, replace
 
+from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
 from grader.run import handover, real_time, stage, zygotes
 from grader.run.finish import Ending, outcome, record
@@ -83,6 +84,8 @@ def _try(
                 exit_code = student.wait(2.0) if message.get("silence") == "gone" else None
         finally:
             student.end(gently=False)
+        if student.was_lost:
+            raise GraderFailure("the process from which a submission's was forked has died")
         if message["say"] == "refused":
             return None, message["reason"]
         marks.update(message["marks"])

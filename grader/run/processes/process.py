@@ -20,10 +20,12 @@ class Process(Protocol):
     Attributes:
         pid: its process id, which is also that of its group.
         stdout: the reading end of what it prints on both outputs.
+        was_lost: it ended because a process of ours did, and nobody knows how it would have ended.
     """
 
     pid: int
     stdout: BinaryIO
+    was_lost: bool
 
     def poll(self) -> int | None:
         """The exit code, negative for a signal, or None while it runs."""
@@ -40,6 +42,8 @@ class Process(Protocol):
 
 class Spawned:
     """A program that was started; a `Process`."""
+
+    was_lost = False
 
     def __init__(
         self,

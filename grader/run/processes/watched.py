@@ -148,6 +148,11 @@ class Watched:
         """Wait for its end; None if it still runs then."""
         return self._process.wait(timeout_s)
 
+    @property
+    def was_lost(self) -> bool:
+        """Whether it ended because a process of ours did, which is no doing of its own."""
+        return self._process.was_lost
+
     def output(self) -> str:
         """What it has printed: all of it, or its start and end with a note between."""
         self._reader.join(1.0)  # ends with the process, unless a grandchild keeps the pipe

@@ -40,6 +40,7 @@ class Forked:
         self._pidfd = pidfd
         self._ending = ending
         self._code: int | None = None
+        self.was_lost = False
         # a handler of signals, in the middle of a wait, may ask as well
         self._lock = threading.RLock()
 
@@ -55,6 +56,7 @@ class Forked:
                 if self._code is None:
                     # a zygote that has died takes its children along, and tells nothing
                     self._code = int(told) if told else -signal.SIGKILL
+                    self.was_lost = not told
         return self._code
 
     def kill(self) -> None:

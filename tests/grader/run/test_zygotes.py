@@ -12,6 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from grader.errors import GraderFailure
 from grader.recording.recording import Recording
 from grader.run import virtual_time, zygotes
 from grader.run.plan import Plan
@@ -192,6 +193,22 @@ def test_a_zygote_that_dies_costs_a_start_and_nothing_else(
     second = zygotes._zygotes[side]
     assert second is not first
     assert second.forks >= 1
+
+
+@pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
+def test_a_zygote_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
+    tmp_path: Path, fresh: None, side: str
+) -> None:
+    pipe = tmp_path / "up"
+    os.mkfifo(pipe)
+    # in virtual time it wakes up when the simulator is there
+    text = f"import time; time.sleep(1); open({str(pipe)!r}, 'w').close()\nwhile True: pass"
+    with ThreadPoolExecutor(1) as pool:
+        run = pool.submit(graded, text, tmp_path)
+        pipe.read_bytes()
+        os.kill(zygotes._zygotes[side].pid, signal.SIGKILL)
+        with pytest.raises(GraderFailure):
+            run.result()
 
 
 @pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
