@@ -202,7 +202,7 @@ def test_a_zygote_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
     pipe = tmp_path / "up"
     os.mkfifo(pipe)
     # in virtual time it wakes up when the simulator is there
-    text = f"import time; time.sleep(1); open({str(pipe)!r}, 'w').close()\nwhile True: pass"
+    text = f"import time; time.sleep(0.1); open({str(pipe)!r}, 'w').close()\nwhile True: pass"
     with ThreadPoolExecutor(1) as pool:
         run = pool.submit(graded, text, tmp_path)
         pipe.read_bytes()
