@@ -5,9 +5,10 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from grader import locks
 from grader.errors import UsageError
 
 _STREAMS = {"/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
@@ -123,6 +124,27 @@ def make_folder(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UsageError(f"cannot make the folder {folder}: {error.strerror}") from None
+
+
+@contextlib.contextmanager
+def sole_writer(folder: Path) -> Iterator[None]:
+    """Be the only one of us who writes into a folder, for as long as the context lasts.
+
+    Raises:
+        UsageError: another one does.
+    """
+    if not hasattr(os, "O_DIRECTORY"):  # Windows opens no folders
+        yield
+        return
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        if not locks.take(descriptor):
+            raise UsageError(
+                f"another grading writes into {folder}: wait for its end, or give each an --out"
+            )
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def withdraw(path: Path) -> None:

@@ -11,12 +11,15 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 
-def take(file: IO[str]) -> bool:
+def take(file: IO[str] | int) -> bool:
     """Lock an open file, unless somebody else has it locked; held until the file is closed.
+
+    Elsewhere than on Windows a descriptor will do.
 
     Each `open` counts for itself, also within one process.
     """
     if fcntl is None:
+        assert not isinstance(file, int)
         return _take_byte(file)
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

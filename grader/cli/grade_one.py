@@ -10,7 +10,9 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,19 +49,20 @@ def grade(args: argparse.Namespace) -> int:
     """Grade once; the exit code."""
     exercise = load_exercise(args.exercise)
     out: Path = args.out or _default_out(args.submission)
-    with open_submission(args.submission, args.executable) as submission:
-        result, recordings = _run_and_judge(args, submission, exercise, out)
-    return _report(args, result, recordings, out)
+    with ExitStack() as held:
+        with open_submission(args.submission, args.executable) as submission:
+            result, recordings = _run_and_judge(args, submission, exercise, out, held)
+        return _report(args, result, recordings, out)
 
 
 def _run_and_judge(
-    args: argparse.Namespace, submission: Submission, exercise: Exercise, out: Path
+    args: argparse.Namespace, submission: Submission, exercise: Exercise, out: Path, held: ExitStack
 ) -> tuple[Result, Recordings]:
-    """Run a submission, judge it, and keep its recordings."""
+    """Run a submission, judge it, and keep its recordings; `held` holds what is written to."""
     messages = Console(stderr=True, highlight=False)
     messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
-    _prepare(out, args.json, error_file.inputs(args))
+    _prepare(out, args.json, error_file.inputs(args), held)
     messages.print(f"Running it beside a simulator, in {args.time} time ...")
 
     def tell(nominal: Recording) -> None:
@@ -106,7 +109,7 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     """Write the result and what lies beside it, show it; the exit code."""
     from grader.reports import Report, render, terminal
 
-    nominal, console = recordings.nominal, Console()
+    nominal, console = recordings.nominal, Patient()
     (out / ARTIFACTS["canvas"]).write_bytes(nominal.png["window"])
     (out / ARTIFACTS["output"]).write_text(nominal.output, encoding="utf-8")
     result.write(out / "result.json")
@@ -115,9 +118,22 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     report = Report.of(result, out, recordings)
     page = out / "report.html"
     files.write(page, render("html", [report]))
-    terminal.show(report, console)
-    console.print(f"The page with picture and plots: {page}", highlight=False, soft_wrap=True)
+    try:
+        terminal.show(report, console)
+        console.print(f"The page with picture and plots: {page}", highlight=False, soft_wrap=True)
+    except BrokenPipeError:  # rich before 13.8 leaves it to us
+        console.on_broken_pipe()
     return int(args.fail_under is not None and result.score < args.fail_under)
+
+
+class Patient(Console):
+    """A console that goes on where its reader has seen enough, as `| head -1` does."""
+
+    def on_broken_pipe(self) -> None:
+        """Print nothing more: the exit code tells of the score, not of who reads."""
+        self.quiet = True
+        with Path(os.devnull).open("wb") as nowhere:
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
 def _default_out(submission: Path) -> Path:
@@ -129,10 +145,11 @@ def _default_out(submission: Path) -> Path:
     return Path("graded") / absolute.parent.name / absolute.name
 
 
-def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
+def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path], held: ExitStack) -> None:
     """Find out before the run whether its result can be written, then make the folders.
 
-    An older result goes now: it must not outlive a run that fails.
+    An older result goes now: it must not outlive a run that fails. Nobody else writes into the
+    folder for as long as `held` is open.
 
     Raises:
         UsageError: one of the places cannot be written; nothing has changed then.
@@ -144,5 +161,6 @@ def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
         files.check_replaceable(path, FAMILY, read)
     for path in written:
         files.make_folder(path.parent)
+    held.enter_context(files.sole_writer(out))
     for path in written:
         files.withdraw(path)

@@ -27,6 +27,7 @@ from grader.submission.opening import Submission
 
 WAITS_FOR_EVER = "every thread of the node waits for something that will not come"
 STUCK = "the node waits for something that can no longer happen; its output says where"
+STOPPED = "the node's process was stopped (SIGSTOP), and nobody let it go on"
 PATIENCE = Patience()
 #: What runs as the simulator's process.
 MODULE = zygotes.MODULE
@@ -134,6 +135,8 @@ def _judge(ending: Message, exit_code: int | None, patience: Patience) -> tuple[
         used_s = patience.stall_cpu_s
         why = f"the node used {used_s:.0f} s of processor time without waiting for ROS"
         return ("finished" if at_rest else "stalled"), [why]
+    if silence == "stopped":
+        return ("finished" if at_rest else "stalled"), [STOPPED]
     if silence == "slow":
         return "time_limit", [
             f"the node used more than {patience.run_cpu_s:.0f} s of processor time"

@@ -100,3 +100,15 @@ def test_what_is_withdrawn_is_gone(tmp_path):
     files.withdraw(path)
     files.withdraw(path)
     assert not path.exists()
+
+
+def test_a_folder_has_one_writer_at_a_time(tmp_path):
+    with (
+        files.sole_writer(tmp_path),
+        pytest.raises(UsageError, match=r"another grading writes into .*--out"),
+        files.sole_writer(tmp_path),
+    ):
+        pass
+    with files.sole_writer(tmp_path):
+        pass
+    assert list(tmp_path.iterdir()) == []

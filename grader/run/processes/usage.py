@@ -17,6 +17,11 @@ def sleeps(pid: int) -> bool:
     return _stat(pid)[:1] == ["S"]
 
 
+def is_stopped(pid: int) -> bool:
+    """Whether somebody has stopped a process, by SIGSTOP or as a debugger does."""
+    return _stat(pid)[:1] in (["T"], ["t"])
+
+
 def _stat(pid: int) -> list[str]:
     try:
         text = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace")

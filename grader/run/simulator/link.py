@@ -64,7 +64,7 @@ class StudentLink:
     """Hears a submission's process for as long as there is something to hear.
 
     Attributes:
-        silence: why nothing comes any more: '', `gone`, `stalled`, `slow`, `broken`.
+        silence: why nothing comes any more: '', `gone`, `stalled`, `stopped`, `slow`, `broken`.
         has_left: the submission ended in good order, and has told all that it sent.
         waits: `for ever` - it waits for something that will not come, as a program may that has
             done its work; `stuck` - in a callback, where it must not.
@@ -200,9 +200,13 @@ class StudentLink:
             if now_used - used > self._stall_cpu_s:
                 self.silence = "stalled"
                 return False
-            if now_used > last_used or not usage.sleeps(self._pid):
+            is_stopped = usage.is_stopped(self._pid)
+            if now_used > last_used or not (is_stopped or usage.sleeps(self._pid)):
                 last_used, asleep_since = now_used, now
             if now - asleep_since > self._patience.asleep_s:
+                if is_stopped:
+                    self.silence = "stopped"
+                    return False
                 raise Refused(
                     "the submission waits for something outside of Python's and ROS's own waiting"
                 )

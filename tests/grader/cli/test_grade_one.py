@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import threading
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
-from grader import grading
+from grader import files, grading
 from grader.cli import main
 from grader.cli.grade_one import grade
-from grader.errors import GraderFailure
+from grader.errors import GraderFailure, UsageError
 from grader.recording import folder
 from grader.reports.page import html
 from tests.grader.driving import Spiral, drive
+
+ROOT = Path(__file__).parents[3]
+#: `grader` whose runs take no time, for a reader that has gone.
+READ_NO_MORE = """
+import sys
+from dataclasses import replace
+from grader import grading
+from grader.cli import main
+from tests.grader.driving import Spiral, drive
+drawn = drive(Spiral(), ticks=600)
+grading.RUNNERS["virtual"] = lambda _, plan, progress=None: replace(drawn, start=plan.start)
+sys.exit(main())
+"""
 
 
 @pytest.fixture(scope="module")
@@ -112,3 +129,28 @@ def test_ctrl_c_between_two_runs_leaves_nothing(submission, monkeypatch, drawn, 
     assert main(["run", str(submission), "--out", str(tmp_path / "out")]) == 130
     assert capsys.readouterr().err.endswith("grader run: interrupted\n")
     assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_who_grades_into_the_folder_of_another_grading_is_told_so(
+    call, tmp_path, monkeypatch, drawn
+):
+    monkeypatch.setitem(grading.RUNNERS, "virtual", lambda *_: drawn)
+    out = tmp_path / "out"
+    out.mkdir()
+    with (
+        files.sole_writer(out),
+        pytest.raises(UsageError, match="another grading writes into"),
+    ):
+        grade(call())
+    assert list(out.iterdir()) == []
+
+
+def test_a_reader_that_has_seen_enough_does_not_change_the_exit_code(call, tmp_path):
+    words = [sys.executable, "-c", READ_NO_MORE, *map(str, ("run", call().submission))]
+    ours, theirs = os.pipe()
+    os.close(ours)
+    done = subprocess.run(
+        [*words, "--out", str(tmp_path / "out")], stdout=theirs, stderr=subprocess.PIPE, cwd=ROOT
+    )
+    os.close(theirs)
+    assert (done.returncode, b"Traceback" in done.stderr) == (0, False), done.stderr

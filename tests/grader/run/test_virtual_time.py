@@ -196,6 +196,12 @@ def test_what_virtual_time_cannot_follow_runs_in_real_time(
     assert reason in recording.run.flags[-1]
 
 
+@pytest.mark.records("misbehaving/stops_itself")
+def test_who_stops_his_process_does_not_stop_the_grader(recorded: Recorded) -> None:
+    run = recorded("misbehaving/stops_itself").run
+    assert (run.time, run.outcome, run.flags) == ("virtual", "stalled", (virtual_time.STOPPED,))
+
+
 def test_who_lies_to_the_simulator_spoils_his_own_run(recorded: Recorded) -> None:
     recording = recorded("misbehaving/attacks_link")
     assert (recording.run.time, recording.run.outcome) == ("virtual", "killed")

@@ -1,6 +1,7 @@
 """What a submission's process may say, and for how long it may say nothing."""
 
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -124,6 +125,17 @@ def test_computing_without_end_is_a_stall(
         assert heard.receive() is None
         process.kill()
     assert heard.silence == "stalled"
+
+
+def test_a_process_that_somebody_has_stopped_is_not_waited_for(
+    ends: tuple[socket.socket, socket.socket],
+) -> None:
+    with subprocess.Popen(["sleep", "60"]) as process:
+        process.send_signal(signal.SIGSTOP)
+        heard = StudentLink(ends[0], process.pid, Patience(asleep_s=0.3))
+        assert heard.receive() is None
+        process.kill()
+    assert heard.silence == "stopped"
 
 
 def test_sleeping_outside_of_virtual_time_is_refused(
