@@ -20,7 +20,7 @@ SUFFIXES = (".py", ".cfg", ".toml", ".xml", ".zip")
 #: Folders in which other programs write such files.
 FOREIGN = frozenset({".git", ".venv", "venv", "__pycache__", "build", "install"})
 #: An editor's save is several events; it is over when this long none came.
-QUIET_S = 0.3
+QUIET_S = 0.1
 
 
 def each_save(submission: Path) -> Iterator[None]:
