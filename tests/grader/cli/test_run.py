@@ -316,10 +316,18 @@ def wait_for(grader: psutil.Process, name: str, sign: Path) -> psutil.Process:
     while not (sign.exists() and found):
         assert grader.is_running()
         assert grader.status() != psutil.STATUS_ZOMBIE
-        own, *forked = grader.children(), *[p.children() for p in grader.children()]
-        family = [p for p in own if ZYGOTE not in words(p)] + [p for each in forked for p in each]
+        own = grader.children()
+        forked = [child for process in own for child in children(process)]
+        family = [p for p in own if ZYGOTE not in words(p)] + forked
         found = [p for p in family if any(word.startswith(name) for word in words(p))]
     return found[0]
+
+
+def children(process: psutil.Process) -> list[psutil.Process]:
+    """A process's children; of one that has ended, none."""
+    with suppress(psutil.Error):
+        return process.children()
+    return []
 
 
 def words(process: psutil.Process) -> list[str]:
