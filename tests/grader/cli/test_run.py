@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import zipfile
@@ -280,12 +279,13 @@ def test_what_cannot_be_graded_gives_one_message_exit_code_2_and_no_files(tmp_pa
 def test_a_simulator_that_dies_is_the_graders_failure_and_leaves_no_result(tmp_path, exercise):
     out = tmp_path / "out"
     slow = tmp_path / "slow.py"
-    slow.write_text("import pathlib, time\npathlib.Path('up').touch()\ntime.sleep(1000)\n")
+    slow.write_text("import pathlib\npathlib.Path('up').touch()\nwhile True: pass\n")
     process = start(slow, out, "--exercise", str(exercise))
     grader = psutil.Process(process.pid)
-    for _ in range(2):  # a spoiled run is repeated once
-        wait_for(grader, SIMULATOR, tmp_path / "up").send_signal(signal.SIGKILL)
-        (tmp_path / "up").unlink()
+    while process.poll() is None:  # a spoiled run is repeated once
+        with suppress(psutil.Error):
+            for simulator in running(grader, SIMULATOR):
+                simulator.kill()
     run = finish(process, out)
     assert run.code == 3
     assert "not the submission's fault" in run.stderr
@@ -295,7 +295,7 @@ def test_a_simulator_that_dies_is_the_graders_failure_and_leaves_no_result(tmp_p
 def test_a_killed_grader_takes_both_processes_along(tmp_path, exercise):
     out = tmp_path / "out"
     slow = tmp_path / "slow.py"
-    slow.write_text("import pathlib, time\npathlib.Path('up').touch()\ntime.sleep(1000)\n")
+    slow.write_text("import pathlib\npathlib.Path('up').touch()\nwhile True: pass\n")
     process = start(slow, out, "--exercise", str(exercise))
     grader = psutil.Process(process.pid)
     wait_for(grader, SIMULATOR, tmp_path / "up")
@@ -308,7 +308,7 @@ def test_a_killed_grader_takes_both_processes_along(tmp_path, exercise):
 
 
 def wait_for(grader: psutil.Process, name: str, sign: Path) -> psutil.Process:
-    """Wait until the submission has made its sign of life; return the run's process of this module.
+    """Wait until the submission has made its sign of life; return a run's process of this module.
 
     That is no zygote, which stays from run to run, but what one has forked.
     """
@@ -316,11 +316,16 @@ def wait_for(grader: psutil.Process, name: str, sign: Path) -> psutil.Process:
     while not (sign.exists() and found):
         assert grader.is_running()
         assert grader.status() != psutil.STATUS_ZOMBIE
-        own = grader.children()
-        forked = [child for process in own for child in children(process)]
-        family = [p for p in own if ZYGOTE not in words(p)] + forked
-        found = [p for p in family if any(word.startswith(name) for word in words(p))]
+        found = running(grader, name)
     return found[0]
+
+
+def running(grader: psutil.Process, name: str) -> list[psutil.Process]:
+    """The processes of a module that serve runs."""
+    own = grader.children()
+    forked = [child for process in own for child in children(process)]
+    family = [p for p in own if ZYGOTE not in words(p)] + forked
+    return [p for p in family if any(word.startswith(name) for word in words(p))]
 
 
 def children(process: psutil.Process) -> list[psutil.Process]:
