@@ -133,18 +133,15 @@ def sole_writer(folder: Path) -> Iterator[None]:
     Raises:
         UsageError: another one does.
     """
-    if not hasattr(os, "O_DIRECTORY"):  # Windows opens no folders
-        yield
-        return
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    lock = locks.take_folder(folder)
+    if lock is None:
+        raise UsageError(
+            f"another grading writes into {folder}: wait for its end, or give each an --out"
+        )
     try:
-        if not locks.take(descriptor):
-            raise UsageError(
-                f"another grading writes into {folder}: wait for its end, or give each an --out"
-            )
         yield
     finally:
-        os.close(descriptor)
+        os.close(lock)
 
 
 def withdraw(path: Path) -> None:
