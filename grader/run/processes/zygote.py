@@ -1,7 +1,8 @@
 """A zygote as the grader holds it: asked for processes that need not start from nothing.
 
-What it does itself is in `.forking`. Nothing depends on it: where it cannot start, dies or
-refuses, `ZygoteLost` tells, and the process is started from nothing.
+What it does itself is in `.forking`. Nothing depends on it: where it cannot start, has died or
+refuses, `ZygoteLost` tells, and the process is started from nothing. Only where it dies over an
+order, whose process may have begun, the run is void.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from grader.run.processes import forking
+from grader.errors import GraderFailure
+from grader.run.processes import ZYGOTE, forking
 from grader.run.processes.process import await_readable
 
 #: How long it may take to import everything, or to fork [s]; only a machine in distress does.
@@ -97,7 +99,7 @@ class Zygote:
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket.settimeout(PATIENCE_S)
         with theirs:
-            words = (forking.ZYGOTE, str(theirs.fileno()), str(os.getpid()), *more)
+            words = (ZYGOTE, str(theirs.fileno()), str(os.getpid()), *more)
             self._process = subprocess.Popen(
                 [*self.command, *words],
                 env={**self.env, forking.MARK: forking.NO_MARK},
@@ -140,6 +142,7 @@ class Zygote:
 
         Raises:
             ZygoteLost: it gave none.
+            GraderFailure: nobody knows whether it did.
         """
         order = forking.Order(
             command=command,
@@ -167,21 +170,22 @@ class Zygote:
         return Forked(pid, pidfd, ending, os.fdopen(ours, "rb"))
 
     def retire(self) -> None:
-        """Let it end when its children have; those may go on."""
-        self.is_lost = True
-        self._socket.close()
+        """Let it end when its children have; those may go on. Who waits for it is answered."""
+        with self._lock:
+            self._hang_up()
 
     def close(self) -> None:
         """End it, and what it has left; wait for that."""
+        self._process.kill()  # which also ends an exchange
         self.retire()
-        self._process.kill()
         self._process.wait()
         assert self._process.stdout is not None
         self._process.stdout.close()
 
     def forget(self) -> None:
         """In a fork of the grader: it is another's."""
-        self.retire()
+        self._lock = threading.Lock()  # a thread of the other's may have held it
+        self._hang_up()
         self._process.returncode = 0
 
     def has_ended(self) -> bool:
@@ -193,28 +197,37 @@ class Zygote:
         return True
 
     def _await_ready(self) -> frozenset[str]:
-        if self._preloaded is None:
-            data, _ = self._exchange(None, [])
-            self._preloaded = frozenset(json.loads(data))
         if self.is_lost:
             raise ZygoteLost("it is gone")
+        if self._preloaded is None:
+            data, _ = self._hear()
+            self._preloaded = frozenset(json.loads(data))
         return self._preloaded
 
     def _ask(self, order: bytes, fds: list[int]) -> tuple[int, int, int]:
         if len(order) > forking.LIMIT_BYTES or len(fds) > forking.MOST_FDS:
             raise ZygoteLost("the order is too long")
-        data, got = self._exchange(order, fds)
+        try:
+            socket.send_fds(self._socket, [order], fds)
+        except OSError as error:
+            self._lose()
+            raise ZygoteLost(repr(error)) from None
+        except BaseException:
+            self._lose()
+            raise
+        try:
+            data, got = self._hear()
+        except ZygoteLost as lost:
+            raise GraderFailure(f"what a process was to be forked from has died: {lost}") from None
         answer = json.loads(data)
         if "refused" in answer:
             raise ZygoteLost(str(answer["refused"]))
         pidfd, ending = got
         return int(answer["pid"]), pidfd, ending
 
-    def _exchange(self, data: bytes | None, fds: list[int]) -> tuple[bytes, list[int]]:
-        """Say something, hear the answer. Whatever comes between makes them lose step: the end."""
+    def _hear(self) -> tuple[bytes, list[int]]:
+        """An answer. Whatever comes between makes them lose step: the end."""
         try:
-            if data is not None:
-                socket.send_fds(self._socket, [data], fds)
             answer, got, _, _ = socket.recv_fds(self._socket, forking.LIMIT_BYTES, 2)
         except OSError as error:
             self._lose()
@@ -228,8 +241,13 @@ class Zygote:
         return answer, got
 
     def _lose(self) -> None:
-        self.retire()
+        self._hang_up()
         self._process.kill()  # with a child that nobody has heard of
+
+    def _hang_up(self) -> None:
+        """Not while another thread waits for an answer, which would never come."""
+        self.is_lost = True
+        self._socket.close()
 
 
 @dataclass(frozen=True)

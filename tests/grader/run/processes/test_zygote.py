@@ -13,6 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from grader.errors import GraderFailure
 from grader.run.processes import forking, isolation
 from grader.run.processes.family import Student
 from grader.run.processes.watched import Watched
@@ -31,6 +32,8 @@ exec(command[-1], {{"__name__": "__main__"}})
 COMMAND = [sys.executable, "-c", PROGRAM.format(root=str(ROOT))]
 #: The seed is that of a set that becomes a library path, where ROS's wheels start.
 ENV = {"PATH": os.environ["PATH"], "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "0"}
+#: One that dies over its first order.
+DIES = "import socket, sys; s = socket.socket(fileno=int(sys.argv[2])); s.send(b'[]'); s.recv(9)"
 #: What a process can find out about itself, one line each.
 PORTRAIT = """
 import os, resource, signal, sys
@@ -309,6 +312,28 @@ def test_a_retired_zygote_ends_when_its_children_have() -> None:
     assert not zygote.has_ended() or student.poll() is not None
     student.end()
     assert zygote._process.wait(20.0) == 0
+    zygote.close()
+
+
+def test_a_zygote_is_retired_when_it_has_answered_those_who_wait() -> None:
+    zygote = Zygote(COMMAND, ENV)
+    with ThreadPoolExecutor(4) as pool:
+        waiting = [pool.submit(zygote.preloaded) for _ in range(4)]
+        zygote.retire()
+        for asked in waiting:
+            try:
+                assert asked.result() == {"numpy"}
+            except ZygoteLost as lost:
+                assert str(lost) == "it is gone"
+    assert zygote._process.wait(20.0) == 0
+    zygote.close()
+
+
+def test_a_process_that_may_have_begun_is_not_started_a_second_time() -> None:
+    zygote = Zygote([sys.executable, "-c", DIES], ENV)
+    with pytest.raises(GraderFailure, match="has died"):
+        python("print('started')", Warm(zygote, {}))
+    assert zygote.is_lost
     zygote.close()
 
 
