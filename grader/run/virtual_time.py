@@ -117,7 +117,7 @@ def _watch(simulator: Simulator, student_pid: int) -> Message:
     """Wait for the end of the run, for as long as one of its processes does something."""
     used_s, since = -1.0, 0.0
     while (message := simulator.next(0.2)) is None:
-        now_used_s = usage.cpu_s(simulator.pid) + usage.cpu_s(student_pid)
+        now_used_s = sum(usage.look(pid).cpu_s for pid in (simulator.pid, student_pid))
         if now_used_s != used_s:
             used_s, since = now_used_s, time.monotonic()
         if time.monotonic() > since + SIMULATOR_PATIENCE_S:

@@ -62,7 +62,6 @@ class State(IntEnum):
 class Kind(IntEnum):
     """What a `Note` is about."""
 
-    LEAVING = 0  # the student's program has ended, and has told all that it sent
     STUCK = 1  # its threads wait for something that can no longer happen, in a callback
     WAITING = 2  # its threads wait for something that will not come, as a program may at its end
     UNSUPPORTED = 3  # it did what virtual time cannot follow: `text` says what

@@ -16,9 +16,8 @@ import psutil
 from grader import system
 from grader.errors import GraderFailure
 from grader.run.processes import supervisor
-from grader.run.processes.process import Process, Spawned
 from grader.run.processes.watched import Watched
-from grader.run.processes.zygote import Warm, ZygoteLost
+from grader.run.processes.zygote import Warm
 
 #: How long a process may take to come up [s]; only a machine in distress takes so long.
 START_S = 30.0
@@ -75,32 +74,17 @@ class Student(Watched):
         warm: Warm | None = None,
     ) -> None:
         """`entry` stands before the supervisor's own command; see `.isolation`."""
-        self._report, self._theirs = os.pipe()
+        self._report, theirs = os.pipe()
         self._told = b""
         self._is_silent = False
+        supervised = [*entry, *SUPERVISOR, str(os.getpid()), str(theirs)]
         try:
-            super().__init__(command, env, cwd, pass_fds, entry, warm)
+            super().__init__(command, env, cwd, pass_fds, supervised, warm, theirs)
         except BaseException:
             self._close()
             raise
         finally:
-            os.close(self._theirs)
-
-    def _begin(
-        self,
-        command: Sequence[str],
-        env: Mapping[str, str],
-        cwd: Path | None,
-        pass_fds: tuple[int, ...],
-        entry: tuple[str, ...],
-        warm: Warm | None,
-    ) -> Process:
-        if warm is not None:
-            with suppress(ZygoteLost):
-                spaces = warm.namespaces
-                return warm.zygote.fork(command, env, cwd, pass_fds, spaces, self._theirs)
-        words = [*entry, *SUPERVISOR, str(os.getpid()), str(self._theirs), *command]
-        return Spawned(words, env, cwd, (*pass_fds, self._theirs))
+            os.close(theirs)
 
     @property
     def pid(self) -> int:

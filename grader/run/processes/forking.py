@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import array  # socket.recv_fds imports it where it is first needed, which is too late
 import ctypes
+import gc
 import json
 import os
 import select
@@ -40,9 +41,6 @@ __all__ = ["MARK", "Order", "array", "become", "limits", "serve"]
 MARK = "TURTLESIM_GRADER_PROCESS"
 #: Its value in a zygote: as long as any other, so that a child can write its own over it.
 NO_MARK = "0" * 32
-#: The first argument of a program that is to be a zygote; then the socket's number and the
-#: grader's process id follow.
-ZYGOTE = "--zygote"
 #: The longest order [bytes], and the most descriptors that come with one.
 LIMIT_BYTES = 1 << 20
 MOST_FDS = 64
@@ -108,6 +106,9 @@ def serve(words: Sequence[str], preloaded: Iterable[str]) -> list[str]:
     link, grader = socket.socket(fileno=int(words[0])), os.pidfd_open(int(words[1]))
     if os.getppid() != int(words[1]):
         os._exit(0)  # it has died before we asked
+    # what is there stays: no child looks through it, or writes to its pages
+    gc.collect()
+    gc.freeze()
     children: dict[int, tuple[int, int]] = {}  # pidfd -> process id, pipe
     poll = select.poll()
     poll.register(link, select.POLLIN)

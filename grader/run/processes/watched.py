@@ -100,17 +100,25 @@ class Watched:
         pass_fds: tuple[int, ...] = (),
         entry: Sequence[str] = (),
         warm: Warm | None = None,
+        report: int = -1,
     ) -> None:
         """Start it.
 
         Args:
             entry: stands before the command, where that is started; see `.isolation`.
             warm: where it is to be forked instead, if that can be.
+            report: the descriptor of a supervisor that stands between, if one does.
         """
         self._mark = uuid.uuid4().hex
-        self._process = self._begin(
-            command, {**env, MARK: self._mark}, cwd, pass_fds, tuple(entry), warm
-        )
+        env = {**env, MARK: self._mark}
+        process: Process | None = None
+        if warm is not None:
+            with suppress(ZygoteLost):
+                process = warm.zygote.fork(command, env, cwd, pass_fds, warm.namespaces, report)
+        if process is None:
+            inherited = (*pass_fds, report) if report >= 0 else pass_fds
+            process = Spawned([*entry, *command], env, cwd, inherited)
+        self._process = process
         self._head = bytearray()
         self._tail = bytearray()
         self._dropped = 0
@@ -120,20 +128,6 @@ class Watched:
         if _is_ending.is_set():
             self.end(gently=False)
             raise KeyboardInterrupt
-
-    def _begin(
-        self,
-        command: Sequence[str],
-        env: Mapping[str, str],
-        cwd: Path | None,
-        pass_fds: tuple[int, ...],
-        entry: tuple[str, ...],
-        warm: Warm | None,
-    ) -> Process:
-        if warm is not None:
-            with suppress(ZygoteLost):
-                return warm.zygote.fork(command, env, cwd, pass_fds, warm.namespaces)
-        return Spawned([*entry, *command], env, cwd, pass_fds)
 
     @property
     def pid(self) -> int:

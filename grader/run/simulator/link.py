@@ -65,7 +65,6 @@ class StudentLink:
 
     Attributes:
         silence: why nothing comes any more: '', `gone`, `stalled`, `stopped`, `slow`, `broken`.
-        has_left: the submission ended in good order, and has told all that it sent.
         waits: `for ever` - it waits for something that will not come, as a program may that has
             done its work; `stuck` - in a callback, where it must not.
         flags: remarks for the result.
@@ -73,7 +72,6 @@ class StudentLink:
 
     def __init__(self, link: socket.socket, pid: int, patience: Patience) -> None:
         self.silence = ""
-        self.has_left = False
         self.waits: Literal["", "for ever", "stuck"] = ""
         self.flags: list[str] = []
         self._link = link
@@ -174,8 +172,6 @@ class StudentLink:
     def _hear(self, note: Note) -> None:
         text = without_controls(note.text[:200], "?")
         match note.kind:
-            case Kind.LEAVING:
-                self.has_left = True
             case Kind.STUCK:
                 self.waits = "stuck"
             case Kind.WAITING:
@@ -193,18 +189,17 @@ class StudentLink:
         """Wait for a packet; False if none will come."""
         if self._poll.poll(LOOK_MS):
             return not self._is_slow()
-        used, last_used = usage.cpu_s(self._pid), usage.cpu_s(self._pid)
+        used_s = last_used_s = usage.look(self._pid).cpu_s
         asleep_since = time.monotonic()
         while not self._poll.poll(LOOK_MS):
-            now_used, now = usage.cpu_s(self._pid), time.monotonic()
-            if now_used - used > self._stall_cpu_s:
+            seen, now = usage.look(self._pid), time.monotonic()
+            if seen.cpu_s - used_s > self._stall_cpu_s:
                 self.silence = "stalled"
                 return False
-            is_stopped = usage.is_stopped(self._pid)
-            if now_used > last_used or not (is_stopped or usage.sleeps(self._pid)):
-                last_used, asleep_since = now_used, now
+            if seen.cpu_s > last_used_s or not (seen.is_stopped or seen.sleeps):
+                last_used_s, asleep_since = seen.cpu_s, now
             if now - asleep_since > self._patience.asleep_s:
-                if is_stopped:
+                if seen.is_stopped:
                     self.silence = "stopped"
                     return False
                 raise Refused(
@@ -217,6 +212,6 @@ class StudentLink:
         now = time.monotonic()
         if now > self._look_at_s:
             self._look_at_s = now + CPU_LOOK_S
-            if usage.cpu_s(self._pid) > self._patience.run_cpu_s:
+            if usage.look(self._pid).cpu_s > self._patience.run_cpu_s:
                 self.silence = "slow"
         return self.silence == "slow"

@@ -13,7 +13,6 @@ and forks for each order; a child goes on with the arguments of the first form.
 
 from __future__ import annotations
 
-import gc
 import json
 import os
 import sys
@@ -21,7 +20,7 @@ import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
-ZYGOTE = "--zygote"
+from grader.run.processes import ZYGOTE
 
 
 def main(argv: list[str]) -> int:
@@ -61,8 +60,6 @@ def become_one_of_many(words: Sequence[str]) -> list[str]:
     preloading.import_messages(packages)
     for name in scenes:
         load_scene(name).preload()
-    gc.collect()
-    gc.freeze()
     command = forking.serve(serving, ())
     return command[command.index("-m") + 2 :]
 

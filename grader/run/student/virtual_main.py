@@ -20,7 +20,6 @@ from pathlib import Path
 sys.path[0] = str(Path(__file__).resolve().parents[3])
 
 import atexit  # noqa: E402
-import gc  # noqa: E402
 import json  # noqa: E402
 import random  # noqa: E402
 import socket  # noqa: E402
@@ -29,6 +28,7 @@ from contextlib import suppress  # noqa: E402
 
 from grader.run.lockstep import contract, faults, real  # noqa: E402
 from grader.run.lockstep.protocol import Kind, Note, encode  # noqa: E402
+from grader.run.processes import ZYGOTE  # noqa: E402
 from grader.run.student import (  # noqa: E402
     chance,
     clocks,
@@ -42,8 +42,6 @@ from grader.run.student import (  # noqa: E402
 # ours, in the order in which they must take hold: threads and time before anything uses them
 from grader.run.student import main as student_main  # noqa: E402
 from grader.run.student.scheduler import Scheduler  # noqa: E402
-
-ZYGOTE = "--zygote"
 
 
 def main() -> None:
@@ -101,7 +99,6 @@ def main() -> None:
     threads.join_all()
     atexit._run_exitfuncs()
     faults.guarded(link.synchronise)()
-    link.note(Kind.LEAVING)
     real.leave(code)
 
 
@@ -143,8 +140,6 @@ def become_one_of_many(
     preloading.import_messages(json.loads(packages))
     if (state(), vars(scheduler)) != before:
         sys.exit("what is imported beforehand draws random numbers, or takes time")
-    gc.collect()
-    gc.freeze()
     drawn = random.getstate()
     command = forking.serve(serving, _loaded() - loaded)
     random.setstate(drawn)  # Python has drawn others for each fork

@@ -20,7 +20,7 @@ import pytest
 import yaml
 
 from grader.result import json_file
-from grader.run.processes.forking import ZYGOTE
+from grader.run.processes import ZYGOTE
 from grader.scenes.turtlesim.interfaces import adapted
 from turtlesim_py.ros.interfaces import installed
 

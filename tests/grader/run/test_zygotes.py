@@ -17,7 +17,7 @@ from grader.errors import GraderFailure
 from grader.recording.recording import Recording
 from grader.run import virtual_time, zygotes
 from grader.run.plan import Plan
-from grader.run.processes import forking, isolation
+from grader.run.processes import ZYGOTE, isolation
 from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
 
@@ -331,7 +331,7 @@ REACHES = f"""
 import os
 for name in os.listdir("/proc"):
     if name.isdigit():
-        print(open(f"/proc/{{name}}/cmdline").read().count({forking.ZYGOTE!r}))
+        print(open(f"/proc/{{name}}/cmdline").read().count({ZYGOTE!r}))
 """
 
 
