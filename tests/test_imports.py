@@ -58,7 +58,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
     "grader.run.processes": GROUND,
     "grader.run.lockstep": GROUND | {"grader.run.processes"},
-    "grader.run.student": below("grader.run", "lockstep", "processes.cores", "processes.forking"),
+    "grader.run.student": below(
+        "grader.run", "lockstep", "processes.__init__", "processes.cores", "processes.forking"
+    ),
     # what the grader's process and the simulator's have to agree on
     "grader.run.plan": {"grader.scenes"},
     "grader.run.handover": GROUND | below("grader", "recording", "scenes"),

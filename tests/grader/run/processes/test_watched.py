@@ -112,7 +112,7 @@ def test_a_submission_may_clean_up_when_it_is_asked_to_end() -> None:
         "import time\ntry:\n print('up', flush=True)\n time.sleep(1000)\n"
         "except KeyboardInterrupt: print('interrupted')\n"
     )
-    read_until(student, "up")
+    read_until(student, "up\n")
     student.end()
     assert student.output() == "up\ninterrupted\n"
 

@@ -163,7 +163,7 @@ def test_a_submission_may_clean_up_when_it_is_asked_to_end(warm: Warm | None) ->
         "except KeyboardInterrupt: print('interrupted')\n",
         warm,
     )
-    read_until(student, "up")
+    read_until(student, "up\n")
     student.end()
     assert student.output() == "up\ninterrupted\n"
 
