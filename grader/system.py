@@ -80,6 +80,21 @@ def user() -> str:
     return str(os.getuid()) if hasattr(os, "getuid") else os.environ.get("USERNAME", "user")
 
 
+def is_own(found: os.stat_result) -> bool:
+    """Whether a file is this user's; Windows keeps such things in lists that are not looked at."""
+    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+
+
+def owner(found: os.stat_result) -> str:
+    """Whose a file is, for a message: a name, or else a number."""
+    try:
+        import pwd  # here, since Windows lacks it
+
+        return pwd.getpwuid(found.st_uid).pw_name
+    except (ImportError, KeyError):
+        return f"user {found.st_uid}"
+
+
 def descriptor_path(descriptor: int) -> str:
     """What opens, in a process that has inherited it, the file behind a descriptor."""
     folder = PROC / "self" / "fd" if has_proc() else Path("/dev/fd")

@@ -25,7 +25,9 @@ def below(package: str, *names: str) -> set[str]:
 
 #: What every station of the grader may import.
 GROUND = below(
-    "grader", "errors", "text", "files", "locks", "scratch", "system", "requirements", "strict_json"
+    "grader",
+    *("errors", "text", "files", "locks", "scratch", "removal", "system"),
+    *("requirements", "strict_json"),
 )
 STATIONS = below(
     "grader",

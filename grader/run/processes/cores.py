@@ -57,14 +57,13 @@ def reserve_core(run: int) -> Iterator[int]:
         run: any number; spreads the runs over the cores where there are more runs than cores.
     """
     # here: the processes of a run import this module too, and need no locks
-    from grader import locks, scratch
+    from grader import scratch
 
     possible = available()
-    folder = scratch.home()
     with ExitStack() as held:
         for core in possible:
-            lock = held.enter_context((folder / f"core-{core}.lock").open("w"))
-            if locks.take(lock):
+            if lock := scratch.take_lock(f"core-{core}"):
+                held.enter_context(lock)
                 break
         else:
             core = possible[run % len(possible)]

@@ -6,7 +6,7 @@ import random
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from grader import locks, scratch
+from grader import scratch
 from grader.errors import GraderFailure
 
 #: Domain ids whose ports stay clear of the ephemeral ones, minus the low ones that people use.
@@ -20,12 +20,11 @@ def reserve_domain() -> Iterator[int]:
     The lock belongs to the open file, so that it vanishes with the process, however that ends.
 
     Raises:
-        GraderFailure: all of them are taken.
+        GraderFailure: all of them are taken, or there is no place for locks.
     """
-    folder = scratch.home()  # the empty lock files stay there for the next run
     for domain in random.sample(DOMAINS, len(DOMAINS)):
-        with (folder / f"domain-{domain}.lock").open("w") as lock:
-            if locks.take(lock):
+        if lock := scratch.take_lock(f"domain-{domain}"):
+            with lock:
                 yield domain
-                return
+            return
     raise GraderFailure(f"all {len(DOMAINS)} ROS domains are in use by other runs; try again later")

@@ -1,0 +1,181 @@
+"""Our own folders and locks are made safely, whatever lies in their places."""
+
+import os
+import shutil
+import socket
+import stat
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from grader import scratch
+from grader.errors import GraderFailure
+from grader.run.processes import cores, domain
+
+OTHER = 65534
+
+
+@pytest.fixture
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where the folder of this user's runs would be; nothing is there."""
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "runtime").mkdir(mode=0o700)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "runtime"))
+    monkeypatch.setenv("HOME", str(tmp_path / "user"))
+    return scratch.home_below(tmp_path / "tmp")
+
+
+def pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def link(path: Path) -> None:
+    target = path.parent.parent / "precious"
+    target.write_text("precious")
+    path.symlink_to(target)
+
+
+def dangling_link(path: Path) -> None:
+    path.symlink_to(path.parent.parent / "made by the grader")
+
+
+def folder(path: Path) -> None:
+    (path / "in").mkdir(parents=True)
+
+
+def a_socket(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(path))
+
+
+def forbidden_file(path: Path) -> None:
+    path.touch(0)
+
+
+def another_s_file(path: Path) -> None:
+    path.touch()
+    if os.geteuid() != 0:
+        pytest.skip("needs root to give a file away")
+    os.chown(path, OTHER, OTHER)
+
+
+FOREIGN = [pipe, link, dangling_link, folder, a_socket, forbidden_file, another_s_file]
+
+
+@pytest.mark.parametrize("lay", FOREIGN)
+def test_what_lies_where_locks_are_looked_for_stops_nobody(
+    place: Path, lay: Callable[[Path], None]
+) -> None:
+    home = scratch.home()
+    names = [f"domain-{number}" for number in domain.DOMAINS]
+    names += [f"core-{number}" for number in cores.available()]
+    for name in (*names, "run-123456789012", "run-"):
+        lay(home / f"{name}.lock")
+    with domain.reserve_domain() as first, domain.reserve_domain() as second:
+        assert first != second
+    with cores.reserve_core(0) as core:
+        assert core in cores.available()
+    with scratch.make_folder() as made:
+        assert made.parent == home
+        assert [path.name for path in home.glob("run-*") if path.is_dir()] == [made.name]
+    assert list(home.glob("run-*")) == []
+    assert not list(place.parent.parent.rglob("made by the grader"))
+    for path in place.parent.parent.rglob("precious"):
+        assert path.read_text() == "precious"
+
+
+def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
+    with domain.reserve_domain() as number:
+        found = (scratch.home() / f"domain-{number}.lock").lstat()
+    assert stat.S_ISREG(found.st_mode)
+    assert stat.S_IMODE(found.st_mode) == 0o600
+
+
+def test_a_lock_that_was_moved_away_is_not_held(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take = scratch.locks.take
+
+    def take_late(file):  # type: ignore[no-untyped-def]
+        Path(file.name).unlink()
+        return take(file)
+
+    monkeypatch.setattr(scratch.locks, "take", take_late)
+    assert scratch.take_lock("core-0") is None
+    with pytest.raises(GraderFailure, match="removes the locks"), scratch.make_folder():
+        pass
+
+
+@pytest.mark.parametrize("lay", FOREIGN)
+def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(
+    place: Path, lay: Callable[[Path], None]
+) -> None:
+    if lay is folder:
+        if os.geteuid() != 0:
+            pytest.skip("needs root to give a folder away")
+        place.mkdir()
+        os.chown(place, OTHER, OTHER)
+    else:
+        lay(place)
+    before = place.lstat()
+    assert scratch.home() == Path(os.environ["XDG_RUNTIME_DIR"]) / "turtlesim-grader"
+    assert scratch.home().stat().st_mode & 0o777 == 0o700
+    with scratch.make_folder(), domain.reserve_domain(), cores.reserve_core(0):
+        pass
+    assert place.lstat().st_mode == before.st_mode
+    assert not (place.parent.parent / "made by the grader").exists()
+
+
+def test_a_link_to_a_folder_of_ours_is_not_followed(place: Path, tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir(mode=0o700)
+    place.symlink_to(tmp_path / "mine")
+    with scratch.make_folder():
+        assert list((tmp_path / "mine").iterdir()) == []
+
+
+def test_a_folder_of_ours_that_others_could_write_into_is_closed_to_them(place: Path) -> None:
+    place.mkdir()
+    place.chmod(0o777)
+    assert scratch.home() == place
+    assert stat.S_IMODE(place.stat().st_mode) == 0o700
+
+
+def test_where_no_place_is_left_it_says_which_whose_and_what_to_do(
+    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pipe(place)
+    monkeypatch.delenv("XDG_RUNTIME_DIR")
+    (tmp_path / "user").touch()
+    with pytest.raises(GraderFailure) as error, scratch.make_folder():
+        pass
+    assert f"{place}: it is no folder, and belongs to " in error.value.message
+    assert f"{tmp_path}/user/.cache/turtlesim-grader: Not a directory" in error.value.message
+    assert "set TMPDIR" in error.value.message
+
+
+def test_what_a_run_that_was_killed_leaves_goes_with_the_next_whatever_it_is(place: Path) -> None:
+    outside = place.parent / "outside"
+    outside.mkdir()
+    home = scratch.home()
+    for name in ("run-1", "run-2"):
+        (home / name / "closed").mkdir(parents=True)
+        (home / name / "out").symlink_to(outside)
+        pipe(home / name / "pipe")
+        (home / name / "closed").chmod(0)
+    (home / "run-1.lock").touch()  # of the other somebody has removed the lock
+    (home / "run-3").symlink_to(outside)
+    with scratch.make_folder():
+        pass
+    assert list(home.iterdir()) == []
+    assert outside.is_dir()
+
+
+def test_the_folder_goes_even_if_what_is_in_it_is_forbidden(place: Path) -> None:
+    with scratch.make_folder() as made:
+        (made / "a" / "b").mkdir(parents=True)
+        (made / "a").chmod(0)
+    assert not made.exists()
+    shutil.rmtree(place)
