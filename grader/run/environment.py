@@ -1,29 +1,45 @@
-"""The environment variables of a run: nothing of the user's that changes ROS or Python."""
+"""The environment variables of a run: none of the user's but those that Python and ROS stand on.
+
+Whoever grades may have tokens in his environment (a CI job has), which are none of a submission's
+business, and settings that would change a run. So variables are let through by name, not kept out.
+"""
 
 from __future__ import annotations
 
 import os
+import site
 from collections.abc import Mapping
 from pathlib import Path
 
-#: Variables that change how ROS or Python works: the user's are not for graded runs ...
-PERSONAL = (
-    *("CYCLONEDDS_", "FASTDDS_", "FASTRTPS_", "RCL_", "RCUTILS_", "RMW_", "ROS_"),
-    *("PYTHON", "PYTEST_"),  # pytest's changes with every test
+#: Where programs, libraries and packages are found.
+PLACES = (
+    *("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FALLBACK_LIBRARY_PATH"),
+    *("VIRTUAL_ENV", "CONDA_PREFIX"),
 )
-#: ... but for those that tell which ROS there is.
-KEPT = ("ROS_DISTRO", "ROS_PYTHON_CHECK_FIELDS", "ROS_PYTHON_VERSION", "ROS_VERSION")
+#: How times are told, and what a terminal can do, if one is asked for.
+MANNERS = ("TZ", "TERM")
+#: Which ROS there is, and where its packages are; how strict its messages are about their fields.
+ROS = (
+    *("ROS_DISTRO", "ROS_PYTHON_CHECK_FIELDS", "ROS_PYTHON_VERSION", "ROS_VERSION"),
+    *("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH"),
+)
+#: What no program of Windows starts without, or finds its libraries.
+WINDOWS = (
+    *("SYSTEMROOT", "SYSTEMDRIVE", "WINDIR", "COMSPEC", "PATHEXT", "OS"),
+    *("PROGRAMDATA", "PROGRAMFILES", "PROGRAMFILES(X86)", "COMMONPROGRAMFILES"),
+    *("NUMBER_OF_PROCESSORS", "PROCESSOR_ARCHITECTURE"),
+)
+KEPT = frozenset((*PLACES, *MANNERS, *ROS, *(WINDOWS if os.name == "nt" else ())))
 
 
 def lasting_environment() -> dict[str, str]:
     """What is the same in all runs, and all that Python and libraries look at where they start."""
-    env = {
-        name: value
-        for name, value in os.environ.items()
-        if name in KEPT or not name.startswith(PERSONAL)
-    }
+    env = {name: value for name, value in os.environ.items() if name in KEPT}
     if is_ros_sourced() and "PYTHONPATH" in os.environ:
         env["PYTHONPATH"] = os.environ["PYTHONPATH"]  # ROS's own packages are there
+    if site.ENABLE_USER_SITE:
+        # Python looks for packages below HOME, which is another in a run
+        env["PYTHONUSERBASE"] = site.getuserbase()
     return {
         **env,
         "SKIP_DEFAULT_XML": "1",  # Fast DDS reads no profile that lies in the current folder
@@ -39,13 +55,16 @@ def environment(folder: Path, isolated: Mapping[str, str]) -> dict[str, str]:
     """Environment variables for both processes of a run: nothing of the user's that changes it.
 
     Args:
-        folder: where ROS may log, and temporary files go.
+        folder: where ROS may log, temporary files go, and programs keep what is their user's.
         isolated: what the isolation adds.
     """
     (folder / "tmp").mkdir()
+    (folder / "home").mkdir()
     return {
         **lasting_environment(),
         **isolated,
+        "HOME": str(folder / "home"),
+        **({"USERPROFILE": str(folder / "home")} if os.name == "nt" else {}),
         "ROS_LOG_DIR": str(folder / "log"),
         "TMPDIR": str(folder / "tmp"),
     }

@@ -38,6 +38,58 @@ def test_nothing_of_the_user_s_ros_or_python_comes_along(
     assert environment.simulator_environment(env)["PYTHONPATH"] == str(ROOT)
 
 
+#: What is nobody's business, is the user's taste, or leads to what he has.
+SECRETS = (
+    *("GITHUB_TOKEN", "CI_JOB_TOKEN", "AWS_SECRET_ACCESS_KEY", "ACTIONS_RUNTIME_TOKEN"),
+    *("SSH_AUTH_SOCK", "DBUS_SESSION_BUS_ADDRESS", "XDG_RUNTIME_DIR", "DISPLAY", "XAUTHORITY"),
+    *("LD_PRELOAD", "GCONV_PATH", "MPLBACKEND", "UNHEARD_OF", "ROS_DOMAIN_ID", "HOME", "OLDPWD"),
+    *("PATH_TOKEN", "path", "TZ_", "LC_ALL", "LD_AUDIT", "PYTHONUSERBASE"),
+)
+
+
+def test_nothing_comes_along_but_what_is_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for name in SECRETS:
+        monkeypatch.setenv(name, "secret")
+    monkeypatch.setenv("TZ", "Asia/Tokyo")
+    env = environment.environment(tmp_path, {})
+    both = env | environment.simulator_environment(env) | environment.student_environment(env)
+    assert "secret" not in both.values()
+    assert env["TZ"] == "Asia/Tokyo"
+    assert env["PATH"] == os.environ["PATH"]
+    assert Path(env["HOME"]).is_dir()
+    assert Path(env["HOME"]).is_relative_to(tmp_path)
+
+
+def test_packages_that_the_user_has_installed_for_himself_are_found_in_another_home(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(environment.site, "ENABLE_USER_SITE", True)
+    monkeypatch.setattr(environment.site, "getuserbase", lambda: "/home/ada/.local")
+    assert environment.environment(tmp_path, {})["PYTHONUSERBASE"] == "/home/ada/.local"
+
+
+TELLS = """
+import os
+names = [name for name in os.environ if "TOKEN" in name]
+started_with = open("/proc/self/environ").read()
+print(names, "a-token" in started_with, os.path.expanduser("~") == os.environ["HOME"])
+"""
+
+
+@pytest.mark.parametrize("clock", [virtual_time, real_time])
+def test_a_token_never_reaches_a_submission_s_process(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock
+) -> None:
+    monkeypatch.setenv("GITHUB_TOKEN", "a-token")
+    script = tmp_path / "tells.py"
+    script.write_text(TELLS)
+    with open_submission(script) as submission:
+        recording = clock.run(submission, Plan(Limits(first_motion_s=1, rest_s=0.2, total_s=2)))
+    assert recording.output == "[] False True\n"
+
+
 def test_a_sourced_ros_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     monkeypatch.setenv("PYTHONPATH", "/opt/ros")

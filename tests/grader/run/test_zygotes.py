@@ -240,11 +240,15 @@ def test_a_zygote_that_never_comes_up_is_given_up(
 def test_a_changed_environment_is_another_zygote_s(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None
 ) -> None:
-    says = "import os; print(os.environ.get('MY_OWN'))"
+    says = "import os; print(os.environ.get('TZ'))"
+    monkeypatch.delenv("TZ", raising=False)
     assert graded(says, tmp_path).output == "None\n"
     before = list(zygotes._zygotes.values())
-    monkeypatch.setenv("MY_OWN", "1")
-    assert graded(says, tmp_path).output == "1\n"
+    monkeypatch.setenv("MY_OWN", "1")  # which no run would see
+    assert graded(says, tmp_path).output == "None\n"
+    assert list(zygotes._zygotes.values()) == before
+    monkeypatch.setenv("TZ", "Asia/Tokyo")
+    assert graded(says, tmp_path).output == "Asia/Tokyo\n"
     assert not set(before) & set(zygotes._zygotes.values())
     for each in before:
         each._process.wait(20)
