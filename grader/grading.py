@@ -28,6 +28,7 @@ from grader.run.processes import cores
 from grader.scenes import load_scene
 from grader.submission.imports import read_imports
 from grader.submission.opening import Submission, open_submission
+from grader.submission.private_copy import not_handed_in
 
 Progress = Callable[[float], None]
 AnyPath = str | os.PathLike[str]
@@ -172,7 +173,9 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         seed=used if starts else None,
         interfaces=scene.interfaces_for(imports.surely, imports.perhaps),
     )
-    return [nominal, *(replace(nominal, start=start, seed=None) for start in starts)]
+    varied = [replace(nominal, start=start, seed=None) for start in starts]
+    missing = not_handed_in(submission.name, submission.copy, (*imports.surely, *imports.perhaps))
+    return [replace(nominal, flags=(*submission.remarks, *missing)), *varied]
 
 
 @contextmanager
@@ -197,7 +200,7 @@ def start(
         try:
             return run(submission, plan, show)
         except GraderFailure:
-            return run(submission, replace(plan, flags=(REPEATED,)), show)
+            return run(submission, replace(plan, flags=(REPEATED, *plan.flags)), show)
 
     at_once = min(len(plans), max(LEAST_AT_ONCE, math.ceil(cores.share())))
     pool = ThreadPoolExecutor(max_workers=at_once)

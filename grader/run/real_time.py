@@ -51,7 +51,7 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
         exit_code=exit_code,
         wall_s=time.monotonic() - started,
         isolation=place.isolation,
-        output=student.output(),
+        output=submission.as_handed_in(student.output()),
     )
     return record(plan, trace, topics, ending)
 

@@ -88,7 +88,7 @@ def _try(
         if student.was_lost:
             raise GraderFailure("the process from which a submission's was forked has died")
         if message["say"] == "refused":
-            return None, message["reason"]
+            return None, submission.as_handed_in(message["reason"])
         marks.update(message["marks"])
         trace, topics = handover.fetch(place.recording, scene)
     how, flags = _judge(message, exit_code, patience)
@@ -98,8 +98,8 @@ def _try(
         exit_code=exit_code,
         wall_s=time.monotonic() - started,
         isolation=place.isolation,
-        output=student.output(),
-        flags=(*flags, *message["flags"]),
+        output=submission.as_handed_in(student.output()),
+        flags=tuple(map(submission.as_handed_in, (*flags, *message["flags"]))),
     )
     return record(plan, trace, topics, ending), ""
 

@@ -17,7 +17,7 @@ import errno
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from sys import stdlib_module_names
 from typing import Final
@@ -43,6 +43,7 @@ from grader.submission.folder import (
     near,
     top_of,
 )
+from grader.submission.private_copy import PrivateCopy, copy_privately
 from grader.submission.python_source import Source, read_source
 from grader.submission.setup_files import ConsoleScript, Package
 from grader.text import without_controls
@@ -82,14 +83,25 @@ class Submission:
     """What was handed in, and how it starts."""
 
     name: str  # as handed in: "alice.zip", "turtle_controller.py"
-    root: Path  # absolute; comes first on sys.path and is the working directory
+    root: Path  # in its copy, absolute; comes first on sys.path and is the working directory
     start: EntryPoint | Script
     found: str  # a sentence for the user: "console script turtle_controller in setup.py"
+    #: where its runs find it; None where it lies in place
+    copy: PrivateCopy | None = field(default=None, compare=False)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """For the result: what of it was left out."""
+        return self.copy.remarks if self.copy else ()
+
+    def as_handed_in(self, text: str) -> str:
+        """What a run of it has printed, with paths as if it had run where it was handed in."""
+        return self.copy.as_handed_in(text) if self.copy else text
 
 
 @contextmanager
 def open_submission(path: Path, executable: str | None = None) -> Iterator[Submission]:
-    """Find what to start; it stays in place until the context ends.
+    """Find what to start, in a copy that is there until the context ends.
 
     `executable` chooses among the console scripts or Python files of a folder or zip; a single
     .py file leaves no choice.
@@ -107,7 +119,16 @@ def open_submission(path: Path, executable: str | None = None) -> Iterator[Submi
             if error.errno not in _UNREADABLE:
                 raise
             raise _unreadable(path, error) from error
-        yield submission
+        yield _in_private(submission, path, scratch)
+
+
+def _in_private(submission: Submission, path: Path, scratch: Path) -> Submission:
+    """The same in a copy of its own."""
+    copy = copy_privately(path, submission.root, scratch)
+    start = submission.start
+    if isinstance(start, Script):
+        start = replace(start, path=copy.of(start.path))
+    return replace(submission, root=copy.of(submission.root), start=start, copy=copy)
 
 
 def _open(path: Path, executable: str | None, scratch: Path) -> Submission:

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from grader import scratch
 from grader.run import environment, real_time, virtual_time
 from grader.run.plan import Plan
+from grader.run.processes import domain
 from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
 from turtlesim_py.world.events import CmdVel
@@ -176,3 +178,113 @@ def test_the_recording_is_out_of_the_submission_s_reach(tmp_path: Path, clock) -
         recording = clock.run(submission, plan)
     assert recording.trace.of_kind(CmdVel)
     assert recording.output == ""
+
+
+#: What lies beside it, what it is called, where it stands, whether it can change what it is.
+LOOKS_ROUND = """
+import importlib, os, stat, sys
+print(__file__, os.getcwd(), sys.path[0], os.listdir())
+for name in ("bob", "turtlesim.msg"):
+    try:
+        print(getattr(importlib.import_module(name), "WHOSE", "installed"))
+    except ImportError as error:
+        print(error)
+modes = [stat.S_IMODE(os.stat(path).st_mode) for path in (".", __file__)]
+print([oct(mode) for mode in modes], os.path.exists("__pycache__"))
+raise ValueError("mine")
+"""
+
+
+@pytest.mark.parametrize("clock", [virtual_time, real_time])
+def test_a_submission_runs_in_a_copy_and_tells_of_where_it_was_handed_in(
+    tmp_path: Path, clock
+) -> None:
+    script = tmp_path / "alice.py"
+    script.write_text(LOOKS_ROUND)
+    for name in ("bob.py", "turtlesim.py"):
+        (tmp_path / name).write_text("WHOSE = 'a neighbour'\n")
+    with open_submission(script) as submission:
+        recording = clock.run(submission, Plan(Limits(first_motion_s=1, rest_s=0.2, total_s=2)))
+    assert recording.output.splitlines() == [
+        f"{script} {tmp_path} {tmp_path} ['alice.py']",
+        "No module named 'bob'",
+        "installed",
+        "['0o555', '0o444'] False",
+        "Traceback (most recent call last):",
+        f'  File "{script}", line 11, in <module>',
+        '    raise ValueError("mine")',
+        "ValueError: mine",
+    ]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "alice.py",
+        "bob.py",
+        "turtlesim.py",
+    ]
+
+
+LEAVES = """
+import os, tempfile
+here = os.environ["HOME"]
+os.makedirs(f"{here}/closed/in")
+os.chmod(f"{here}/closed", 0)
+os.mkfifo(f"{here}/pipe")
+os.symlink("/", f"{here}/all")
+os.mkfifo(os.path.join(tempfile.gettempdir(), "pipe"))
+for _ in range(300):
+    os.mkdir("d" * 50) if _ else os.chdir(here)
+    os.chdir("d" * 50) if _ else None
+print(here)
+"""
+
+
+def test_nothing_is_left_of_the_folder_of_a_run(tmp_path: Path) -> None:
+    script = tmp_path / "leaves.py"
+    script.write_text(LEAVES)
+    with open_submission(script) as submission:
+        for _ in range(2):
+            recording = virtual_time.run(submission, Plan(Limits(0.2, 0.2, 1)))
+            assert recording.run.exit_code == 0, recording.output
+            assert not Path(recording.output.strip()).parent.exists()
+    assert Path("/").is_dir()
+
+
+KEEPS_ALL_LOCKS = """
+import fcntl, glob, os, time
+told, tells = os.pipe()
+if os.fork() == 0:
+    os.setsid()
+    if os.fork():
+        os._exit(0)
+    kept = []
+    for path in glob.glob({home!r} + "/*.lock"):
+        kept.append(open(path))
+        try:
+            fcntl.flock(kept[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            pass
+    os.write(tells, b"kept")
+    while True:
+        time.sleep(1000)
+os.wait()
+print(os.read(told, 4))
+"""
+
+
+def test_locks_that_a_submission_has_taken_are_free_when_its_run_is_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where nothing but its process group keeps it from them; a sandbox hides them."""
+    home = tmp_path / "runs"
+    home.mkdir()
+    monkeypatch.setattr(scratch, "home", lambda: home)
+    for number in domain.DOMAINS:
+        (home / f"domain-{number}.lock").touch()
+    script = tmp_path / "keeps.py"
+    script.write_text(KEEPS_ALL_LOCKS.format(home=str(home)))
+    with open_submission(script) as submission:
+        recording = real_time.run(submission, Plan(Limits(1, 0.2, 2)))
+        assert recording.output == "b'kept'\n"
+        for number in domain.DOMAINS:
+            lock = scratch.take_lock(f"domain-{number}")
+            assert lock is not None
+            lock.close()

@@ -145,14 +145,12 @@ def test_a_submission_s_own_module_is_what_it_imports(
     (folder / own).write_text("MINE = 'mine'\n")
     name = own.partition("/")[0].removesuffix(".py") if "lib/" not in own else "std_srvs"
     (folder / "main.py").write_text(
-        f"import sys; sys.path.insert(0, {str(folder / 'lib')!r})\n"
+        "import os, sys; sys.path.insert(0, os.path.join(os.path.dirname(__file__), 'lib'))\n"
         f"import {name}; print(getattr({name}, 'MINE', 'installed'))\n"
     )
     recordings = []
     for _ in range(2):
-        with open_submission(folder / "main.py") as submission:
-            submission.root.joinpath(own).parent.mkdir(parents=True, exist_ok=True)
-            submission.root.joinpath(own).write_text("MINE = 'mine'\n")
+        with open_submission(folder, "main") as submission:
             recordings.append(virtual_time.run(submission, PLAN))
         cold(monkeypatch)
     warm, started = (recording.output for recording in recordings)

@@ -15,6 +15,7 @@ from grader.submission.opening import (
     Submission,
     open_submission,
 )
+from tests.grader.submission.copies import in_place
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
 GUARDED = NODE + '\n\nif __name__ == "__main__":\n    main()\n'
@@ -49,7 +50,7 @@ def pack(archive: Path, files: dict[str, str]) -> Path:
 
 def found_in(path: Path, executable: str | None = None) -> Submission:
     with open_submission(path, executable) as submission:
-        return submission
+        return in_place(submission)
 
 
 def refused(path: Path, executable: str | None = None) -> str:

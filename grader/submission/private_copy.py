@@ -1,0 +1,277 @@
+"""A copy of what was handed in, for its runs alone: they see nothing that lies beside it.
+
+A submission's process that ran in the place where it was handed in could read its neighbours, and
+write into them and into its own source. What it gets instead is a copy that it may only read, and
+that goes with the grading. People are shown paths as they were handed in.
+
+Of a folder come all files but what a system or a program has left there, as out of a zip. Links
+that stay inside remain links; what is no file, no folder and no such link is left out.
+"""
+
+from __future__ import annotations
+
+import errno
+import importlib.util
+import os
+import re
+import stat
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from sys import stdlib_module_names
+from typing import Final
+
+from grader.errors import SubmissionError
+from grader.submission.archive import MAX_BYTES
+from grader.submission.folder import HAND_IN, MAX_ENTRIES, is_generated, is_junk, listed
+from grader.text import without_controls
+
+MAX_LEVELS: Final = 32  # of folders; what lies deeper is left out
+_CHUNK_BYTES: Final = 1 << 20
+
+#: Folders in which nothing to start is looked for: they come last, if there is room for them.
+_LAST: Final = {"venv", "env", "test", "tests", "build", "install", "log"}
+#: What is wrong with one file, and not with the machine.
+_UNREADABLE: Final = (
+    *(errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENXIO),
+    *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
+)
+_BINARY: Final = getattr(os, "O_BINARY", 0)
+_READ: Final = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | _BINARY
+_WRITE: Final = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _BINARY
+#: Where the middle of a long output is missing; see `grader.run.processes.watched`.
+_LEFT_OUT: Final = re.compile(r"(\n\[\.\.\. \d+ bytes left out \.\.\.\]\n)")
+
+
+@dataclass(frozen=True)
+class PrivateCopy:
+    """Where a submission's runs find it.
+
+    Attributes:
+        folder: all of it, absolute, without links in its own path.
+        origin: what was handed in: the folder that it is of, or the zip.
+        prefix: how paths into it begin, the part of them that is another each time.
+        shown: what people are shown instead of that.
+        beside: where a single file was handed in; None for all else.
+        remarks: for the result: what was left out.
+    """
+
+    folder: Path
+    origin: Path
+    prefix: str
+    shown: str
+    beside: Path | None = None
+    remarks: tuple[str, ...] = ()
+
+    def of(self, path: Path) -> Path:
+        """Where in the copy a path is that was found; what is in it stays."""
+        if path.is_relative_to(self.folder):
+            return path
+        return self.folder / path.relative_to(self.origin)
+
+    def as_handed_in(self, text: str) -> str:
+        """What a run has printed, with the paths that it would have printed in the first place."""
+        text = text.replace(self.prefix, self.shown)
+        parts = _LEFT_OUT.split(text)
+        for at in range(0, len(parts) - 1, 2):  # a path may have been cut through
+            for size in range(len(self.prefix) - 1, 0, -1):
+                if parts[at].endswith(self.prefix[:size]):
+                    parts[at] = parts[at][:-size] + self.shown[:size]
+                    break
+            for size in range(len(self.prefix) - 1, 0, -1):
+                if parts[at + 2].startswith(self.prefix[-size:]):
+                    parts[at + 2] = self.shown[-size:] + parts[at + 2][size:]
+                    break
+        return "".join(parts)
+
+
+def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
+    """Copy what was handed in, unless it was unpacked or mended into a place of our own.
+
+    Args:
+        path: what was handed in.
+        root: where it was found to start; below `scratch` if that is our own already.
+        scratch: a folder for the copy, without links in its path.
+
+    Raises:
+        SubmissionError: it has too many files, or too large ones; or it is a file that is a link
+            to somewhere else.
+        OSError: something is wrong with the machine.
+    """
+    origin = path.resolve() if path.is_dir() else path.parent.resolve() / path.name
+    if root.is_relative_to(scratch):
+        own = scratch / root.relative_to(scratch).parts[0]
+        _close(own)
+        return PrivateCopy(own, origin, str(own), str(origin))
+    base = origin if path.is_dir() else origin.parent
+    copies = scratch / "copy"
+    folder = copies / (base.name or "submission")
+    folder.mkdir(parents=True)
+    copying = _Copying(base)
+    if path.is_dir():
+        copying.copy_all(folder)
+    else:
+        copying.copy_alone(origin, folder)
+    _close(copies)
+    return PrivateCopy(
+        folder,
+        base,
+        prefix=str(copies),
+        shown=str(base.parent).rstrip(os.sep),
+        beside=None if path.is_dir() else base,
+        remarks=copying.remarks(),
+    )
+
+
+def not_handed_in(name: str, copy: PrivateCopy | None, modules: Iterable[str]) -> tuple[str, ...]:
+    """Say which modules lie beside a single file that imports them, and so are missing.
+
+    Args:
+        name: what the file is called.
+        copy: of the file.
+        modules: the first parts of the names of what it imports and does not bring along.
+    """
+    if copy is None or (beside := copy.beside) is None:
+        return ()
+    found = [lying for module in modules if (lying := _lying(beside, module))]
+    remark = "{} lies beside {}, but was not handed in: grade the folder"
+    return tuple(without_controls(remark.format(each, name), "?") for each in found)
+
+
+def _lying(folder: Path, module: str) -> str:
+    """What of a folder an import would have found, if it finds nothing now; else ''."""
+    with suppress(ImportError, ValueError, OSError):  # no such name can be imported at all
+        for file, called in ((f"{module}.py", f"{module}.py"), (f"{module}/__init__.py", module)):
+            if (folder / file).is_file() and module not in stdlib_module_names:
+                spec = importlib.util.find_spec(module)
+                origin = "" if spec is None else spec.origin or ""
+                return called if not spec or Path(origin).is_relative_to(folder) else ""
+    return ""
+
+
+def _close(folder: Path) -> None:
+    """Let all in a folder be read and nothing written; links that lead out of it go."""
+    base = os.path.realpath(folder)
+    for at, folders, files in os.walk(folder, topdown=False):
+        for name in (*folders, *files):
+            path = Path(at, name)
+            mode = path.lstat().st_mode
+            if stat.S_ISLNK(mode):
+                if not Path(os.path.realpath(path)).is_relative_to(base):
+                    path.unlink()
+            elif stat.S_ISREG(mode):
+                path.chmod(0o555 if mode & stat.S_IXUSR else 0o444)
+        Path(at).chmod(0o555)
+
+
+@dataclass
+class _Copying:
+    """A copying in progress.
+
+    Attributes:
+        top: the folder that is copied, without links in its path.
+        entries: so many files, folders and links have been looked at.
+        size: so many bytes have been copied.
+        outside, failed: what was left out, and why.
+        pending, last: folders to be copied, into which, and how many levels down.
+    """
+
+    top: Path
+    entries: int = 0
+    size: int = 0
+    outside: list[str] = field(default_factory=list)
+    failed: list[str] = field(default_factory=list)
+    pending: list[tuple[Path, Path, int]] = field(default_factory=list)
+    last: list[tuple[Path, Path, int]] = field(default_factory=list)
+
+    def remarks(self) -> tuple[str, ...]:
+        """What to say about the copy."""
+        found = []
+        if self.outside:
+            found.append(f"not handed in, but links to somewhere else: {listed(self.outside)}")
+        if self.failed:
+            found.append(f"left out, since they cannot be copied: {listed(self.failed)}")
+        return tuple(without_controls(remark, "?") for remark in found)
+
+    def copy_alone(self, file: Path, into: Path) -> None:
+        """Copy one file."""
+        real = file.resolve()
+        if not real.is_relative_to(self.top):
+            raise SubmissionError(
+                f"{file.name} is a link to a place outside of its folder. Hand in the file itself."
+            )
+        self._copy_file(real, into / file.name)
+
+    def copy_all(self, into: Path) -> None:
+        """Copy the folder into an empty one."""
+        self.pending.append((self.top, into, 0))
+        self._go_on()
+        last = sorted(self._called(source) for source, _, _ in self.last)
+        self.pending = self.last
+        try:
+            self._go_on()
+        except SubmissionError:
+            self.failed += last
+
+    def _go_on(self) -> None:
+        while self.pending:
+            source, target, level = self.pending.pop()
+            with self._reading(source), os.scandir(source) as entries:
+                for entry in entries:
+                    self.entries += 1
+                    if self.entries > MAX_ENTRIES:
+                        raise SubmissionError(
+                            f"{self.top.name} holds more than {MAX_ENTRIES:,} files and folders, "
+                            f"too many for a submission. {HAND_IN}"
+                        )
+                    with self._reading(Path(entry.path)):
+                        self._copy(entry, target / entry.name, level + 1)
+
+    def _copy(self, entry: os.DirEntry[str], target: Path, level: int) -> None:
+        source = Path(entry.path)
+        if entry.is_symlink():
+            real = Path(os.path.realpath(source))
+            if real.is_relative_to(self.top):
+                target.symlink_to(os.path.relpath(real, source.parent))
+            else:
+                self.outside.append(self._called(source))
+        elif entry.is_dir():
+            if is_junk(entry.name) or is_generated(source):
+                return
+            if level > MAX_LEVELS:
+                raise OSError(errno.ENAMETOOLONG, "it lies too deep")
+            target.mkdir()
+            (self.last if entry.name in _LAST else self.pending).append((source, target, level))
+        elif entry.is_file():
+            self._copy_file(source, target)
+
+    def _copy_file(self, source: Path, target: Path) -> None:
+        """Copy what is an ordinary file also when it is opened, and not more than allowed."""
+        with os.fdopen(os.open(source, _READ), "rb") as reading:
+            mode = os.fstat(reading.fileno()).st_mode
+            if not stat.S_ISREG(mode):
+                raise OSError(errno.ENXIO, "it is no file any more")
+            permission = stat.S_IRWXU if mode & stat.S_IXUSR else stat.S_IRUSR | stat.S_IWUSR
+            with os.fdopen(os.open(target, _WRITE, permission), "wb") as writing:
+                while chunk := reading.read(_CHUNK_BYTES):
+                    self.size += len(chunk)
+                    if self.size > MAX_BYTES:
+                        raise SubmissionError(
+                            f"{self.top.name} has more than {MAX_BYTES / 1e6:g} MB, the limit for "
+                            "a submission. Leave out recordings and videos, and hand it in again."
+                        )
+                    writing.write(chunk)
+
+    @contextmanager
+    def _reading(self, source: Path) -> Iterator[None]:
+        """What is wrong with one file is its own matter."""
+        try:
+            yield
+        except OSError as error:
+            if error.errno not in _UNREADABLE:
+                raise
+            self.failed.append(self._called(source))
+
+    def _called(self, path: Path) -> str:
+        return str(path.relative_to(self.top))

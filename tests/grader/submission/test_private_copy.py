@@ -1,0 +1,242 @@
+"""Runs see a copy of what was handed in, that and no more, and people see what they know."""
+
+import os
+import shutil
+import socket
+import stat
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from grader import grading, scratch
+from grader.errors import SubmissionError
+from grader.exercise.loading import load_exercise
+from grader.submission import private_copy
+from grader.submission.opening import Submission, open_submission
+from grader.submission.private_copy import PrivateCopy
+
+NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n\n\nmain()\n"
+SETUP = "setup(entry_points={'console_scripts': ['turtle_controller = spiral.node:main']})\n"
+PACKAGE = {"setup.py": SETUP, "spiral/__init__.py": "", "spiral/node.py": NODE}
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Path:
+    """Where a teacher keeps what was handed in."""
+    folder = tmp_path / "home"
+    folder.mkdir()
+    return folder
+
+
+def lay(root: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return root
+
+
+def held(submission: Submission) -> list[str]:
+    """All that is in the copy."""
+    assert submission.copy is not None
+    folder = submission.copy.folder
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+
+
+def flags(submission: Submission) -> tuple[str, ...]:
+    return grading.plan(submission, load_exercise("turtlesim_challenge"))[0].flags
+
+
+def test_a_single_file_comes_alone(home: Path) -> None:
+    lay(home, {"alice.py": NODE, "bob.py": NODE, "turtlesim.py": "", "data.json": "{}"})
+    with open_submission(home / "alice.py") as submission:
+        assert held(submission) == ["alice.py"]
+        assert submission.root.name == "home"
+        assert not submission.root.is_relative_to(home)
+        assert submission.root.is_relative_to(scratch.home().resolve())
+        assert flags(submission) == ()
+    assert not submission.root.exists()
+
+
+def test_a_module_beside_a_single_file_is_missed_by_its_name(home: Path) -> None:
+    imports = "import helper, json, os\nfrom shapes.round import Spiral\n"
+    imports += "try:\n    import perhaps\nexcept ImportError: pass\n"
+    imports += "import numpy, rclpy, gone, data\n"
+    files = dict.fromkeys(("helper.py", "perhaps.py", "shapes/__init__.py", "numpy.py"), "")
+    lay(home, files | {"alice.py": imports + NODE, "json.py": "", "data/x.json": "", "bob.py": ""})
+    with open_submission(home / "alice.py") as submission:
+        assert flags(submission) == tuple(
+            f"{name} lies beside alice.py, but was not handed in: grade the folder"
+            for name in ("helper.py", "shapes", "perhaps.py")
+        )
+    with open_submission(home, "alice") as submission:
+        assert flags(submission) == ()
+        assert held(submission) == sorted(
+            [*files, "alice.py", "json.py", "bob.py", "data", "shapes", "data/x.json"]
+        )
+
+
+def test_a_package_comes_with_all_that_lies_in_it(home: Path) -> None:
+    files = {
+        **PACKAGE,
+        **dict.fromkeys(("resource/spiral", "config/x.yaml", "test/t.py", ".hidden", "log/l"), ""),
+    }
+    left = dict.fromkeys((".git/config", "__pycache__/a.pyc", "v/pyvenv.cfg", "v/lib/a.py"), "")
+    lay(home, files | left)
+    with open_submission(home) as submission:
+        assert submission.found == "console script turtle_controller in setup.py"
+        folders = {str(Path(name).parent) for name in files} - {"."}
+        assert held(submission) == sorted({*files, *folders})
+        assert flags(submission) == ()
+
+
+def test_the_copy_is_for_reading_only_and_what_was_executable_is(home: Path) -> None:
+    lay(home, PACKAGE | {"run.sh": "#!/bin/sh\n"})
+    (home / "run.sh").chmod(0o755)
+    archive = home.parent / "alice.zip"
+    with zipfile.ZipFile(archive, "w") as packed:
+        for name, text in PACKAGE.items():
+            packed.writestr(name, text)
+    for handed_in in (home, archive):
+        with open_submission(handed_in) as submission:
+            assert submission.copy is not None
+            for path in (submission.copy.folder, *submission.copy.folder.rglob("*")):
+                mode = stat.S_IMODE(path.stat().st_mode)
+                assert mode == (0o555 if path.is_dir() or path.name == "run.sh" else 0o444), path
+        assert not submission.root.exists()
+    (home / "run.sh").chmod(0o644)
+
+
+def test_links_that_stay_inside_stay_and_others_are_left_out_and_told(home: Path) -> None:
+    base = lay(home / "alice", PACKAGE)
+    lay(home, {"bob/node.py": NODE})
+    (base / "inner").symlink_to("spiral")
+    (base / "absolute.py").symlink_to(base / "spiral" / "node.py")
+    (base / "spiral" / "up").symlink_to("..")
+    (base / "out.py").symlink_to("../bob/node.py")
+    (base / "spiral" / "root").symlink_to("/")
+    (base / "zero").symlink_to("/dev/zero")
+    with open_submission(base) as submission:
+        root = submission.root
+        assert (root / "inner" / "node.py").read_text() == NODE
+        for path in root.rglob("*"):
+            if path.is_symlink():
+                assert path.resolve().is_relative_to(root)
+                assert not path.readlink().is_absolute()
+        assert {"inner", "absolute.py", "spiral/up"} < set(held(submission))
+        assert not {"out.py", "zero", "spiral/root"} & set(held(submission))
+        (flag,) = flags(submission)
+        assert flag.startswith("not handed in, but links to somewhere else: ")
+        assert all(name in flag for name in ("out.py", "zero", "spiral/root"))
+
+
+def test_a_file_that_is_a_link_to_somewhere_else_is_refused(home: Path) -> None:
+    lay(home, {"alice/node.py": NODE, "bob/node.py": NODE})
+    (home / "alice/link.py").symlink_to("../bob/node.py")
+    (home / "alice/same.py").symlink_to("node.py")
+    with (
+        pytest.raises(SubmissionError, match=r"link.py is a link to a place outside"),
+        open_submission(home / "alice/link.py"),
+    ):
+        pass
+    with open_submission(home / "alice/same.py") as submission:
+        assert held(submission) == ["same.py"]
+        assert (submission.root / "same.py").read_text() == NODE
+
+
+def test_what_is_no_file_is_left_out_and_not_waited_for(home: Path) -> None:
+    lay(home, {"node.py": NODE})
+    os.mkfifo(home / "pipe.py")
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(home / "socket"))
+        with open_submission(home) as submission:
+            assert held(submission) == ["node.py"]
+
+
+def test_a_folder_300_levels_deep_is_copied_as_far_as_anybody_looks(home: Path) -> None:
+    lay(home, {"node.py": NODE})
+    deep = home.joinpath(*["d"] * 300)
+    deep.mkdir(parents=True)
+    with open_submission(home) as submission:
+        assert len(held(submission)) == 1 + private_copy.MAX_LEVELS
+        assert "cannot be copied" in flags(submission)[0]
+
+
+def test_names_of_all_kinds_are_copied(home: Path) -> None:
+    names = ["[b]x[b].txt", "\x1b[31m.txt", "a\nb", os.fsdecode(b"\xff\xfe.txt"), "n" * 255]
+    lay(home, {"node.py": NODE} | dict.fromkeys(names, ""))
+    with open_submission(home) as submission:
+        assert held(submission) == sorted(["node.py", *names])
+
+
+@pytest.mark.parametrize(("limit", "value"), [("MAX_ENTRIES", 3), ("MAX_BYTES", 100)])
+def test_too_much_is_refused_but_for_what_needs_not_come(
+    home: Path, monkeypatch: pytest.MonkeyPatch, limit: str, value: int
+) -> None:
+    monkeypatch.setattr(private_copy, limit, value)
+    lay(home, {"node.py": NODE, **dict.fromkeys(("env/a", "env/b", "env/c"), "x" * 200)})
+    with open_submission(home) as submission:
+        assert "node.py" in held(submission)
+        assert flags(submission) == ("left out, since they cannot be copied: env",)
+    (home / "env").rename(home / "data")
+    with pytest.raises(SubmissionError, match=r"limit|too many"), open_submission(home):
+        pass
+
+
+def test_a_file_of_a_terabyte_is_not_read_to_its_end(home: Path) -> None:
+    lay(home, {"node.py": NODE})
+    with (home / "big").open("wb") as file:
+        file.truncate(1 << 40)
+    with pytest.raises(SubmissionError, match="more than 200 MB"), open_submission(home):
+        pass
+
+
+def test_what_is_wrong_with_the_machine_is_not_blamed_on_the_submission(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    really_open = os.open
+
+    def full(path: Path | str, flags: int, *more: int, dir_fd: int | None = None) -> int:
+        if flags & os.O_CREAT and Path(path).name == "node.py":
+            raise OSError(28, "No space left on device")
+        return really_open(path, flags, *more, dir_fd=dir_fd)
+
+    lay(home, {"node.py": NODE})
+    monkeypatch.setattr(private_copy.os, "open", full)
+    with pytest.raises(OSError, match="No space left"), open_submission(home):
+        pass
+
+
+def test_paths_are_told_as_they_were_handed_in(home: Path) -> None:
+    lay(home, PACKAGE)
+    for handed_in, shown in ((home, home), (home / "spiral/node.py", home / "spiral")):
+        with open_submission(handed_in) as submission:
+            text = f'File "{submission.root}/node.py", line 1\n{submission.root}'
+            assert submission.as_handed_in(text) == f'File "{shown}/node.py", line 1\n{shown}'
+            assert str(submission.root) not in submission.as_handed_in(text)
+    archive = shutil.make_archive(str(home.parent / "alice"), "zip", home)
+    with open_submission(Path(archive)) as submission:
+        told = submission.as_handed_in(f"{submission.root}/spiral/node.py")
+        assert told == f"{archive}/spiral/node.py"
+
+
+def test_a_package_that_lacks_its_init_file_is_told_by_its_own_path(home: Path) -> None:
+    lay(home, {"setup.py": SETUP, "spiral/node.py": NODE})
+    with open_submission(home) as submission:
+        told = submission.as_handed_in(f"{submission.root}/spiral/node.py")
+        assert told == f"{home}/spiral/node.py"
+        assert (submission.root / "spiral/__init__.py").exists()
+
+
+def test_a_path_that_was_cut_through_tells_nothing_of_the_copy() -> None:
+    prefix, shown = "/tmp/runs/run-0123456789ab/copy", "/home/ada"
+    copy = PrivateCopy(Path(prefix) / "x", Path(shown) / "x", prefix, shown)
+    note = "\n[... 7 bytes left out ...]\n"
+    for at in range(1, len(prefix)):
+        text = f"{prefix} {prefix[:at]}{note}{prefix[at:]}/x {prefix}"
+        told = copy.as_handed_in(text)
+        assert told.startswith(f"{shown} {shown[:at]}\n[")
+        assert told.endswith(f"/x {shown}")
+        assert "0123" not in told and "89ab" not in told
+        assert note in told
