@@ -48,7 +48,7 @@ def lay_out() -> dict[str, tuple[Path, str]]:
     shutil.copytree(ROOT / "tests" / "submissions", FIXTURES)
     found: dict[str, tuple[Path, str]] = {}
     for path in sorted(FIXTURES.rglob("*.py")):
-        if path.stem not in ("mutants", "spiral"):
+        if path.stem != "mutants":
             is_square = path.stem.startswith("square")
             found[path.stem] = (path, "square" if is_square else "turtlesim_challenge")
     for name, text in {
