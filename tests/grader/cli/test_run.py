@@ -295,7 +295,8 @@ def test_a_simulator_that_dies_is_the_graders_failure_and_leaves_no_result(tmp_p
 def test_a_killed_grader_takes_both_processes_along(tmp_path, exercise):
     out = tmp_path / "out"
     slow = tmp_path / "slow.py"
-    slow.write_text("import pathlib\npathlib.Path('up').touch()\nwhile True: pass\n")
+    up = str(tmp_path / "up")
+    slow.write_text(f"import pathlib\npathlib.Path({up!r}).touch()\nwhile True: pass\n")
     process = start(slow, out, "--exercise", str(exercise))
     grader = psutil.Process(process.pid)
     wait_for(grader, SIMULATOR, tmp_path / "up")
