@@ -26,7 +26,6 @@ from grader.run import real_time, virtual_time
 from grader.run.plan import Plan
 from grader.run.processes import cores
 from grader.scenes import load_scene
-from grader.submission.imports import read_imports
 from grader.submission.opening import Submission, open_submission
 from grader.submission.private_copy import not_handed_in
 
@@ -165,7 +164,7 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
     """
     starts = exercise.starts(seed)
     used = exercise.varied.seed if seed is None else seed
-    imports = read_imports(submission)
+    imports = submission.imports
     scene = load_scene(exercise.scene)
     nominal = Plan(
         exercise.limits,

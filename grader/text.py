@@ -58,6 +58,14 @@ def clip(text: str, limit: int) -> str:
     return text if len(text) <= limit else text[: limit - 1] + "…"
 
 
+def clip_inside(text: str, limit: int) -> str:
+    """The same in one line: start and end of a text that has more than `limit` characters."""
+    if len(text) <= limit:
+        return text
+    half = (limit - 1) // 2
+    return f"{text[:half]}…{text[-half:]}"
+
+
 def clip_middle(text: str, limit: int) -> str:
     """The start and the end of a text that has more than about `limit` characters."""
     if len(text) <= limit:

@@ -50,6 +50,9 @@ def points(text: str) -> float:
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
     # What can begin before a run belongs here: from here on imports take their time.
+    from grader.submission import reader
+
+    reader.warm()
     if args.time == "virtual":
         from grader.run import zygotes
 
@@ -65,4 +68,5 @@ def main(args: argparse.Namespace) -> int:
 
     for _ in each_save(args.submission):
         grade_one.grade_and_go_on(args)
+        reader.warm()
     return 0

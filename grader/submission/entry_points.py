@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.submission.folder import HandedIn, files_below, listed, near
+from grader.submission.folder import HandedIn, files_below, listed, near, shown
 from grader.submission.python_source import read_source
 from grader.submission.setup_files import SETUP_FILES, ConsoleScript, Package, read_package
 
@@ -60,8 +60,8 @@ class Packages:
     def _twice(self, matching: list[_Choice]) -> SubmissionError:
         where = listed(self.handed_in.called(script.file) for _, script in matching)
         return SubmissionError(
-            f"{self.handed_in.name} has the console script {matching[0][1].name} more than once: "
-            f"{where}. Hand in only one of these packages."
+            f"{self.handed_in.name} has the console script {shown(matching[0][1].name)} more than "
+            f"once: {where}. Hand in only one of these packages."
         )
 
     def _several(self, names: list[str]) -> SubmissionError:
@@ -82,15 +82,17 @@ def find_packages(handed_in: HandedIn, files: list[Path]) -> Packages:
     """Read the set-up files among `files`; not those below a folder that has a console script."""
     readable: list[Package] = []
     faults: list[SubmissionError] = []
+    have_script: set[Path] = set()
     for folder in dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES):
-        if any(found.scripts and folder.is_relative_to(found.folder) for found in readable):
+        if not have_script.isdisjoint((folder, *folder.parents)):
             continue
         try:
-            package = read_package(folder, handed_in.base)
+            package = read_package(folder, handed_in)
         except SubmissionError as fault:
             faults.append(fault)
         else:
             readable += [package] if package else []
+            have_script |= {folder} if package and package.scripts else set()
     return Packages(handed_in, tuple(readable), tuple(faults))
 
 
@@ -105,6 +107,7 @@ def find_module(handed_in: HandedIn, package: Package, script: ConsoleScript) ->
     for root in roots:
         for file in (root / inside / "__init__.py", root / f"{inside}.py"):
             if file.is_file():
+                handed_in.must_hold(file)
                 _must_define(handed_in, script, file)
                 folders = list(inside.parents)[:-1]  # the last is root itself
                 bare = [f for f in folders if not (root / f / "__init__.py").exists()]
@@ -117,7 +120,7 @@ def no_such_executable(
 ) -> SubmissionError:
     """Say that nothing has the name that was asked for."""
     return SubmissionError(
-        f"{handed_in.name} has no {kind} {executable}; it has: {listed(names)}. "
+        f"{handed_in.name} has no {kind} {shown(executable)}; it has: {listed(names)}. "
         "Choose one of these with --executable NAME, or correct the name."
     )
 
@@ -134,7 +137,7 @@ def _must_define(handed_in: HandedIn, script: ConsoleScript, file: Path) -> None
         return
     names = dict.fromkeys([*near(wanted, source.defined), *source.defined])
     raise SubmissionError(
-        f"{handed_in.called(file)} defines no function {wanted} "
+        f"{handed_in.called(file)} defines no function {shown(wanted)} "
         f"(it defines: {listed(names) or 'nothing'}). {_starts(handed_in, script)}: "
         "give the function that name, or correct the entry point."
     )
@@ -143,10 +146,11 @@ def _must_define(handed_in: HandedIn, script: ConsoleScript, file: Path) -> None
 def _no_module(
     handed_in: HandedIn, package: Package, script: ConsoleScript, expected: Path
 ) -> SubmissionError:
-    files = [handed_in.called(f) for f in files_below(package.folder) if f.suffix == ".py"]
+    found = [file for file in files_below(package.folder) if file.suffix == ".py"]
     wanted = handed_in.called(expected)
-    same_name = [file for file in files if Path(file).name == expected.name]
-    others = [file for file in files if Path(file).name not in ("setup.py", "__init__.py")]
+    same_name = [handed_in.called(file) for file in found if file.name == expected.name]
+    nodes = (file for file in found if file.name not in ("setup.py", "__init__.py"))
+    others = [handed_in.called(file) for file in nodes]
     meant = list(dict.fromkeys(near(wanted, others) + same_name))
     there = f"Near: {listed(meant)}." if meant else f"Python files: {listed(others) or 'none'}."
     return SubmissionError(
@@ -156,5 +160,5 @@ def _no_module(
 
 
 def _starts(handed_in: HandedIn, script: ConsoleScript) -> str:
-    target = f"{script.module}:{script.function}"
-    return f"{handed_in.called(script.file)} starts {script.name} by {target}"
+    target = shown(f"{script.module}:{script.function}")
+    return f"{handed_in.called(script.file)} starts {shown(script.name)} by {target}"

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-import difflib
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path, PurePath
 from typing import Final
 
 from grader.errors import SubmissionError
+from grader.text import clip_inside, without_controls
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
 MAX_ENTRIES: Final = 10_000  # files and folders that are looked at
 MAX_SOURCE_BYTES: Final = 1_000_000  # a Python or set-up file larger than this is not read here
+MAX_BYTES: Final = 200_000_000  # of all files together, where they are unpacked or copied
+MAX_SHOWN: Final = 300  # characters of a name in a message
+
+_NEAR_NAMES: Final = 200  # that a name is compared with: the time goes with the cube of their
+_NEAR_LENGTH: Final = 100  # length
 
 HAND_IN: Final = "Hand in a .py file, the folder of your package, or a .zip of it."
 
@@ -30,7 +37,19 @@ class HandedIn:
 
     def called(self, path: Path) -> str:
         """Name a path of the submission in a message."""
-        return str(path.relative_to(self.base))
+        return shown(path.relative_to(self.base))
+
+    def must_hold(self, file: Path) -> None:
+        """Refuse a file that is a link to somewhere else: what lies there is not the student's.
+
+        Raises:
+            SubmissionError: it is one.
+        """
+        if not Path(os.path.realpath(file)).is_relative_to(os.path.realpath(self.base)):
+            raise SubmissionError(
+                f"{self.called(file)} is a link to a place outside of {self.name}. "
+                "Hand in the file itself in that place."
+            )
 
 
 def is_junk(name: str) -> bool:
@@ -54,11 +73,17 @@ def is_generated(folder: Path) -> bool:
 def top_of(folder: Path) -> Path:
     """Go down from a folder while it holds nothing but one other."""
     for _ in range(MAX_DEPTH):
-        entries = [entry for entry in folder.iterdir() if not is_junk(entry.name)]
+        counting = (entry for entry in folder.iterdir() if not is_junk(entry.name))
+        entries = list(islice(counting, 2))
         if len(entries) != 1 or entries[0].is_symlink() or not entries[0].is_dir():
             break
         folder = entries[0]
     return folder
+
+
+def entries_of(folder: Path, limit: int) -> list[Path]:
+    """List a folder, sorted; not more than one entry above the limit."""
+    return sorted(islice(folder.iterdir(), limit + 1))
 
 
 def files_below(top: Path) -> list[Path]:
@@ -77,17 +102,22 @@ def files_below(top: Path) -> list[Path]:
     for _ in range(MAX_DEPTH):
         below: list[Path] = []
         for folder in level:
-            entries = sorted(entry for entry in folder.iterdir() if not is_junk(entry.name))
-            seen += len(entries)
+            everything = entries_of(folder, MAX_ENTRIES)
+            seen += len(everything)
             if seen > MAX_ENTRIES:
-                raise SubmissionError(
-                    f"{top.name} holds more than {MAX_ENTRIES:,} files and folders, too many for "
-                    f"a submission. {HAND_IN}"
-                )
+                raise _too_many(top)
+            entries = [entry for entry in everything if not is_junk(entry.name)]
             files += [entry for entry in entries if entry.is_file()]
             below += [entry for entry in entries if _is_searched(entry)]
         level = below
     return files
+
+
+def _too_many(top: Path) -> SubmissionError:
+    return SubmissionError(
+        f"{shown(top.name)} holds more than {MAX_ENTRIES:,} files and folders, too many for a "
+        f"submission. {HAND_IN}"
+    )
 
 
 def _is_searched(entry: Path) -> bool:
@@ -105,15 +135,58 @@ def read_bounded(path: Path) -> bytes | None:
     return data if len(data) <= MAX_SOURCE_BYTES else None
 
 
+def copy(top: Path, into: Path) -> None:
+    """Copy what of a folder belongs to a submission: files, folders, and links as links.
+
+    Raises:
+        SubmissionError: there are more than MAX_ENTRIES, or more than MAX_BYTES in them.
+        OSError: something cannot be read.
+    """
+    import shutil  # here: few submissions are copied
+
+    seen = size = 0
+    pending = [(top, into)]
+    while pending:
+        source, target = pending.pop()
+        target.mkdir()
+        for entry in entries_of(source, MAX_ENTRIES):
+            seen += 1
+            if seen > MAX_ENTRIES:
+                raise _too_many(top)
+            if is_junk(entry.name):
+                continue
+            if entry.is_symlink():
+                (target / entry.name).symlink_to(entry.readlink())
+            elif entry.is_dir():
+                pending += [] if is_generated(entry) else [(entry, target / entry.name)]
+            elif entry.is_file():  # no pipe, socket or device: they would be waited for
+                size += entry.stat().st_size
+                if size > MAX_BYTES:
+                    raise SubmissionError(
+                        f"{shown(top.name)} has more than {MAX_BYTES / 1e6:g} MB, the limit for a "
+                        f"submission. {HAND_IN}"
+                    )
+                shutil.copy2(entry, target / entry.name)
+
+
+def shown(name: str | PurePath) -> str:
+    """A name of a student's in a message: in one line, and not longer than anybody reads."""
+    return clip_inside(without_controls(str(name), "?"), MAX_SHOWN)
+
+
 def listed(names: Iterable[str], limit: int = 10) -> str:
     """Join names as in "a, b, c and 4 more"."""
     every = list(names)
-    if len(every) <= limit:
-        return ", ".join(every)
-    return f"{', '.join(every[:limit])} and {len(every) - limit} more"
+    first = ", ".join(map(shown, every[:limit]))
+    return first if len(every) <= limit else f"{first} and {len(every) - limit} more"
 
 
 def near(wanted: str, names: Sequence[str]) -> list[str]:
     """Pick the names that `wanted` may have meant: a typing error or another case; best first."""
-    by_folded = {name.casefold(): name for name in reversed(names)}
+    import difflib  # here: most submissions name what is there
+
+    if len(wanted) > _NEAR_LENGTH:
+        return []
+    some = islice((name for name in names if len(name) <= _NEAR_LENGTH), _NEAR_NAMES)
+    by_folded = {name.casefold(): name for name in reversed(list(some))}
     return [by_folded[name] for name in difflib.get_close_matches(wanted.casefold(), by_folded)]

@@ -4,44 +4,26 @@ from __future__ import annotations
 
 import ast
 from collections import deque
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Final
 
-from grader.submission.folder import read_bounded
-from grader.submission.opening import EntryPoint, Submission
+from grader.submission.folder import read_bounded, shown
 from grader.submission.python_source import parse
-from grader.text import without_controls
+from grader.submission.start import EntryPoint, Imports, Script
 
 #: What runs together with the statement that it stands in, once and in any case.
 _ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)
 _BODIES: Final = (ast.stmt, ast.ExceptHandler, ast.match_case)
 
 
-@dataclass(frozen=True)
-class Imports:
-    """The modules, by the first part of their names, that are not the submission's own.
-
-    Each with the place of its first import ("file.py, line 3"), in the order of these.
-
-    Attributes:
-        surely: imported whenever the submission is run.
-        perhaps: only if a function is called, a condition holds, another import fails.
-    """
-
-    surely: dict[str, str] = field(default_factory=dict)
-    perhaps: dict[str, str] = field(default_factory=dict)
-
-
-def read_imports(submission: Submission) -> Imports:
+def read_imports(root: Path, start: EntryPoint | Script) -> Imports:
     """Read what is started, and what of the submission that imports in turn.
 
     A file that cannot be read or parsed tells nothing: the run shows what is wrong with it. Nor
     does a name in a string that is given to importlib.
     """
     found = Imports()
-    root, start = submission.root, submission.start
     pending: deque[tuple[Path, str, bool]] = deque()  # file, its package, whether surely loaded
     if isinstance(start, EntryPoint):
         pending.extend((*file, True) for file in _files(root, start.module))
@@ -61,7 +43,7 @@ def read_imports(submission: Submission) -> Imports:
                 if not _files(root, top):
                     where = f"{file.relative_to(root)}, line {node.lineno}"
                     names = found.surely if surely else found.perhaps
-                    names.setdefault(top, without_controls(where, "?"))
+                    names.setdefault(top, shown(where))
     return found
 
 
@@ -103,13 +85,15 @@ def _files(root: Path, module: str) -> list[tuple[Path, str]]:
     for part in module.split("."):
         own = f"{package}.{part}" if package else part
         candidates = ((folder / part / "__init__.py", own), (folder / f"{part}.py", package))
-        files += [candidate for candidate in candidates if _is_file(candidate[0])][:1]
+        files += [candidate for candidate in candidates if _is(candidate[0], Path.is_file)][:1]
         folder, package = folder / part, own
+        if not _is(folder, Path.is_dir):
+            break
     return files
 
 
-def _is_file(path: Path) -> bool:
+def _is(path: Path, kind: Callable[[Path], bool]) -> bool:
     try:
-        return path.is_file()
+        return kind(path)
     except OSError:  # a name that is too long
         return False

@@ -19,7 +19,6 @@ UNKNOWN: Final = object()  # the value of an expression that only a run could te
 _MAX_LENGTH: Final = 10_000  # of a folded string or list: "a = b + b" forty times over is a bomb
 _MUTATORS: Final = {"append", "clear", "extend", "insert", "pop", "remove", "setdefault", "update"}
 _NAMES_UNSEEN: Final = {"exec", "globals", "locals", "setattr", "vars"}  # may define any name
-_UNPARSED_GUARD: Final = re.compile(rb"""^if\b.*__name__.*['"]__main__['"]""", re.MULTILINE)
 _UNPARSED_MAIN: Final = re.compile(rb"^(async\s+)?def\s+main\b", re.MULTILINE)
 
 
@@ -53,7 +52,7 @@ def parse(data: bytes, file_name: str) -> ast.Module:
             )  # "invalid escape sequence" is for the student's own run
             return ast.parse(data, file_name)
     except (ValueError, RecursionError, MemoryError) as error:
-        raise SyntaxError(str(error) or "nested too deeply") from error
+        raise SyntaxError(str(error) or "nested too deeply, or too large") from error
 
 
 def read_source(path: Path) -> Source:
@@ -69,10 +68,21 @@ def read_source(path: Path) -> Source:
     except SyntaxError:
         return Source(
             parses=False,
-            has_guard=bool(_UNPARSED_GUARD.search(data)),
+            has_guard=any(map(_looks_like_guard, data.splitlines())),
             has_main=bool(_UNPARSED_MAIN.search(data)),
         )
     return _seen(tree)
+
+
+def _looks_like_guard(line: bytes) -> bool:
+    """Tell whether a line begins as `if __name__ == "__main__"` does, without a look at the rest.
+
+    In steps, since an expression for all of it would try each `__name__` with each `__main__`.
+    """
+    if not re.match(rb"if\b", line):
+        return False
+    _, name, rest = line.partition(b"__name__")
+    return bool(name) and re.search(rb"""['"]__main__['"]""", rest) is not None
 
 
 def _seen(tree: ast.Module) -> Source:
@@ -136,8 +146,10 @@ class Constants:
     def value(self, node: ast.expr) -> object:
         """Fold an expression to str, None, list or dict; else UNKNOWN."""
         match node:
-            case ast.Constant(value=str() | None as value):
-                return value
+            case ast.Constant(value=str() as value):
+                return _short(value)
+            case ast.Constant(value=None):
+                return None
             case ast.Name(id=name):
                 return self._named(name)
             case ast.JoinedStr(values=parts):

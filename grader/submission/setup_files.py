@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import ast
-import configparser
+import os
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, TypeVar
 
 from grader.errors import SubmissionError
-from grader.submission.folder import MAX_SOURCE_BYTES, read_bounded
+from grader.submission.folder import MAX_SOURCE_BYTES, HandedIn, read_bounded, shown
 from grader.submission.python_source import UNKNOWN, Constants, parse
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
@@ -51,9 +50,9 @@ class Package:
         lies_in = Path(self.package_folders.get(package, ""))
         single = [str(lies_in.parent)] if lies_in.name == package else []
         folder = self.folder.resolve()
-        roots = [
-            (folder / name).resolve() for name in (*single, *(self.source_folders or (".", "src")))
-        ]
+        names = (*single, *(self.source_folders or (".", "src")))
+        # os.path: links that lead in a circle are no exception there
+        roots = [Path(os.path.realpath(folder / name)) for name in names if "\0" not in name]
         return [root for root in dict.fromkeys(roots) if root.is_relative_to(folder)] or [folder]
 
 
@@ -68,16 +67,20 @@ class _Said:
     searched: list[str] = field(default_factory=list)  # find_packages(where=…)
 
 
-def read_package(folder: Path, base: Path) -> Package | None:
-    """Read the set-up files in a folder; None without any. Messages name them from `base` on.
+class _Unreadable(Exception):
+    """A file that is not written in its language."""
+
+
+def read_package(folder: Path, handed_in: HandedIn) -> Package | None:
+    """Read the set-up files in a folder; None without any.
 
     Raises:
-        SubmissionError: one does not parse, or has an entry that is no `name = module:function`;
-            no tool could install such a package.
+        SubmissionError: one does not parse, or has an entry that is no `name = module:function`,
+            so that no tool could install the package; or it is a link to somewhere else.
     """
     readers = zip(SETUP_FILES, (_read_pyproject, _read_setup_py, _read_setup_cfg), strict=True)
     said = {
-        folder / name: _read(folder / name, base, read)
+        folder / name: _read(folder / name, handed_in, read)
         for name, read in readers
         if (folder / name).is_file()
     }
@@ -86,7 +89,7 @@ def read_package(folder: Path, base: Path) -> Package | None:
     scripts: dict[str, ConsoleScript] = {}
     for file, words in said.items():
         for name, target in words.scripts:
-            scripts.setdefault(name, _console_script(name, target, file, base))
+            scripts.setdefault(name, _console_script(name, target, file, handed_in))
     folders = {name: lies_in for words in said.values() for name, lies_in in words.folders.items()}
     searched = [name for words in said.values() for name in words.searched]
     return Package(
@@ -101,8 +104,9 @@ def read_package(folder: Path, base: Path) -> Package | None:
     )
 
 
-def _read(file: Path, base: Path, read: Callable[[bytes], _Said]) -> _Said:
-    called = file.relative_to(base)
+def _read(file: Path, handed_in: HandedIn, read: Callable[[bytes], _Said]) -> _Said:
+    handed_in.must_hold(file)
+    called = handed_in.called(file)
     data = read_bounded(file)
     if data is None:
         raise SubmissionError(
@@ -113,11 +117,11 @@ def _read(file: Path, base: Path, read: Callable[[bytes], _Said]) -> _Said:
     except SyntaxError as error:
         where = f", line {error.lineno}" if error.lineno else ""
         raise SubmissionError(
-            f"{called} does not parse{where}: {error.msg}. "
+            f"{called} does not parse{where}: {shown(error.msg)}. "
             "Correct it until `colcon build` succeeds."
         ) from error
-    except (tomllib.TOMLDecodeError, configparser.Error, UnicodeDecodeError) as error:
-        why = " ".join(str(error).split())
+    except (_Unreadable, UnicodeDecodeError) as error:
+        why = shown(" ".join(str(error).split()))
         raise SubmissionError(f"{called} cannot be read: {why}. Correct that line.") from error
     except RecursionError as error:
         raise SubmissionError(
@@ -125,13 +129,13 @@ def _read(file: Path, base: Path, read: Callable[[bytes], _Said]) -> _Said:
         ) from error
 
 
-def _console_script(name: str, target: str, file: Path, base: Path) -> ConsoleScript:
+def _console_script(name: str, target: str, file: Path, handed_in: HandedIn) -> ConsoleScript:
     match = _TARGET.fullmatch(target.strip())
     if not name or match is None:
-        found = f"{name} = {target}" if name else target
+        found = shown(f"{name} = {target}" if name else target)
         hint = " A comma seems to be missing between two entries." if "=" in target else ""
         raise SubmissionError(
-            f"{file.relative_to(base)} has the console script '{found}'.{hint} "
+            f"{handed_in.called(file)} has the console script '{found}'.{hint} "
             "Expected 'name = package.module:function', "
             "for example 'turtle_controller = my_package.turtle_controller:main'."
         )
@@ -180,9 +184,14 @@ def _hear_scripts(scripts: object, said: _Said) -> None:
 
 
 def _read_setup_cfg(data: bytes) -> _Said:
+    import configparser  # here: not every submission has one
+
     parser = configparser.RawConfigParser(strict=False)
     parser.optionxform = str  # type: ignore[assignment, method-assign]  # script names keep their case
-    parser.read_string(data.decode("utf-8-sig"))
+    try:
+        parser.read_string(data.decode("utf-8-sig"))
+    except configparser.Error as error:
+        raise _Unreadable(str(error)) from error
     scripts = parser.get("options.entry_points", "console_scripts", fallback="")
     folders = _entries(
         parser.get("options", "package_dir", fallback="").replace(",", "\n").splitlines()
@@ -196,7 +205,12 @@ def _read_setup_cfg(data: bytes) -> _Said:
 
 
 def _read_pyproject(data: bytes) -> _Said:
-    document = tomllib.loads(data.decode("utf-8-sig"))
+    import tomllib  # here: not every submission has one
+
+    try:
+        document = tomllib.loads(data.decode("utf-8-sig"))
+    except tomllib.TOMLDecodeError as error:
+        raise _Unreadable(str(error)) from error
     setuptools = _table(document, "tool", "setuptools")
     poetry = _table(document, "tool", "poetry")
     where = _table(setuptools, "packages", "find").get("where")

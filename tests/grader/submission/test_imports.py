@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.submission.imports import Imports, read_imports
-from grader.submission.opening import EntryPoint, Script, Submission
+from grader.submission.imports import read_imports
+from grader.submission.start import EntryPoint, Imports, Script
 
 FALLBACK = """
 try:
@@ -27,11 +27,11 @@ def lay(folder: Path, files: dict[str, str]) -> None:
 
 def of_file(folder: Path, text: str) -> Imports:
     lay(folder, {"node.py": text})
-    return read_imports(Submission("node.py", folder, Script(folder / "node.py"), ""))
+    return read_imports(folder, Script(folder / "node.py"))
 
 
 def of_module(folder: Path, module: str) -> Imports:
-    return read_imports(Submission("package", folder, EntryPoint(module, "main"), ""))
+    return read_imports(folder, EntryPoint(module, "main"))
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 import os
 import zipfile
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -263,46 +262,6 @@ def test_a_pipe_called_like_a_python_file_is_not_waited_for(tmp_path: Path) -> N
     assert "not an ordinary file" in refused(tmp_path / "a.py")
 
 
-@pytest.mark.parametrize("name", ["node.py", "spiral/node.py"])
-def test_an_unreadable_file_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
-    lay(tmp_path, {"node.py": NODE} if name == "node.py" else PACKAGE)
-    forbid(monkeypatch, tmp_path / name)
-    assert refused(tmp_path).startswith(f"{name} cannot be read: Permission denied.")
-
-
-def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
-    """Make a file unreadable, also for root."""
-    really_open: Callable[..., object] = Path.open
-
-    def open_or_not(self: Path, *args: object, **options: object) -> object:
-        if self == path:
-            raise PermissionError(13, "Permission denied", str(self))
-        return really_open(self, *args, **options)
-
-    monkeypatch.setattr(Path, "open", open_or_not)
-
-
-def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("grader.submission.opening.unpack", full)
-    archive = pack(tmp_path / "a.zip", {"node.py": NODE})
-    with pytest.raises(OSError, match="No space left"), open_submission(archive):
-        pass
-
-
 def test_a_message_has_no_control_characters(tmp_path: Path) -> None:
     text = refused(lay(tmp_path, {"\x1b[31mred.txt": ""}))
     assert "?[31mred.txt" in text
-
-
-def test_a_folder_with_too_many_files_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("grader.submission.folder.MAX_ENTRIES", 2)
-    assert "more than 2 files" in refused(lay(tmp_path, dict.fromkeys(("a", "b", "c"), "")))

@@ -5,13 +5,14 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
+from grader.submission.folder import HandedIn
 from grader.submission.setup_files import Package, read_package
 
 
 def read(folder: Path, **files: str) -> Package:
     for name, text in files.items():
         (folder / name.replace("_dot_", ".")).write_text(text)
-    package = read_package(folder, folder)
+    package = read_package(folder, HandedIn("pkg", folder))
     assert package is not None
     return package
 
@@ -131,7 +132,7 @@ def test_pyproject_toml_has_the_last_word_on_a_name(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_set_up_files_is_no_package(tmp_path: Path) -> None:
-    assert read_package(tmp_path, tmp_path) is None
+    assert read_package(tmp_path, HandedIn("pkg", tmp_path)) is None
 
 
 def test_a_file_called_setup_py_need_not_be_one(tmp_path: Path) -> None:
@@ -174,7 +175,7 @@ def test_an_entry_that_no_tool_could_install_is_refused(
 def test_a_set_up_file_that_cannot_be_read_is_named(tmp_path: Path, name: str, text: str) -> None:
     (tmp_path / name).write_text(text)
     with pytest.raises(SubmissionError, match=f"^{name} ") as error:
-        read_package(tmp_path, tmp_path)
+        read_package(tmp_path, HandedIn("pkg", tmp_path))
     assert str(tmp_path) not in str(error.value)
 
 
@@ -183,7 +184,7 @@ def test_a_set_up_file_may_hold_bytes_that_are_not_text_in_its_comments_only(
 ) -> None:
     (tmp_path / "setup.cfg").write_bytes(b"\xff")
     with pytest.raises(SubmissionError, match=r"^setup\.cfg cannot be read: 'utf-8'"):
-        read_package(tmp_path, tmp_path)
+        read_package(tmp_path, HandedIn("pkg", tmp_path))
 
 
 @pytest.mark.parametrize(

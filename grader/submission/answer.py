@@ -1,0 +1,140 @@
+"""What the process that reads a submission answers: one line of JSON, taken for what it is and
+nothing else, and before it lines that say where it is.
+"""
+
+from __future__ import annotations
+
+import json
+from itertools import islice
+from pathlib import Path
+from typing import Any, Final
+
+from grader import strict_json
+from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
+from grader.submission.start import EntryPoint, Imports, Script, Submission
+
+#: How a line begins that tells where the process is; a string in JSON follows.
+AT: Final = b"at "
+#: No line is longer.
+MAX_BYTES: Final = 1_000_000
+#: So many modules are told, of those that are imported surely and of the others.
+_MAX_MODULES: Final = 500
+_MAX_NAME: Final = 200
+
+_REFUSALS: Final = {each.whose: each for each in (SubmissionError, UsageError)}
+
+
+def at(place: str) -> bytes:
+    """The line that says where the process is."""
+    return AT + json.dumps(place).encode() + b"\n"
+
+
+def found(submission: Submission) -> bytes:
+    """The answer of one who has found what to start."""
+    start = submission.start
+    return _line(
+        {
+            "name": submission.name,
+            "root": str(submission.root),
+            "start": {"module": start.module, "function": start.function}
+            if isinstance(start, EntryPoint)
+            else {"path": str(start.path), "function": start.function},
+            "found": submission.found,
+            "surely": _some(submission.imports.surely),
+            "perhaps": _some(submission.imports.perhaps),
+        }
+    )
+
+
+def refused(error: GraderError) -> bytes:
+    """The answer of one who cannot use the submission."""
+    return _line({"refused": error.whose, "message": error.message})
+
+
+def unable(error: OSError) -> bytes:
+    """The answer of one whose machine does not work."""
+    return _line({"errno": error.errno, "message": error.strerror or str(error)})
+
+
+def short_of_memory() -> bytes:
+    """The answer of one who has no memory left."""
+    return _line({"short_of": "memory"})
+
+
+def failed(what: str) -> bytes:
+    """The answer of one who has made a mistake."""
+    return _line({"failed": what[-4000:]})
+
+
+def parsed(line: bytes) -> dict[str, Any] | None:
+    """An answer as data; None if that is none."""
+    if len(line) > MAX_BYTES or not line.endswith(b"\n"):
+        return None
+    try:
+        data = strict_json.loads(line.decode("ascii"))
+    except (ValueError, RecursionError):
+        return None
+    return data if isinstance(data, dict) else None
+
+
+def is_short_of_memory(said: dict[str, Any]) -> bool:
+    """Whether an answer is that there is no memory left."""
+    return said == {"short_of": "memory"}
+
+
+def decoded(said: dict[str, Any]) -> Submission:
+    """What was found.
+
+    Raises:
+        SubmissionError, UsageError, OSError: that was the answer.
+        GraderFailure: the process has made a mistake.
+    """
+    match said:
+        case {"refused": str(whose), "message": str(message)} if whose in _REFUSALS:
+            raise _REFUSALS[whose](message)
+        case {"errno": int() | None as number, "message": str(message)}:
+            raise OSError(number, message)
+        case {"failed": str(what)}:
+            raise GraderFailure(f"the submission could not be read: {what}")
+        case {
+            "name": str(name),
+            "root": str(root),
+            "start": dict(start),
+            "found": str(sentence),
+            "surely": dict(surely),
+            "perhaps": dict(perhaps),
+        }:
+            imports = Imports(_texts(surely), _texts(perhaps))
+            return Submission(name, Path(root), _start(start), sentence, imports)
+    raise _nonsense()
+
+
+def _start(said: dict[str, Any]) -> EntryPoint | Script:
+    match said:
+        case {"module": str(module), "function": str(function)}:
+            return EntryPoint(module, function)
+        case {"path": str(path), "function": str() | None as function}:
+            return Script(Path(path), function)
+    raise _nonsense()
+
+
+def _texts(said: dict[str, Any]) -> dict[str, str]:
+    if not all(isinstance(text, str) for text in said.values()):
+        raise _nonsense()
+    return said
+
+
+def _nonsense() -> GraderFailure:
+    return GraderFailure("the submission could not be read: the answer makes no sense")
+
+
+def _some(modules: dict[str, str]) -> dict[str, str]:
+    named = ((name, where) for name, where in modules.items() if len(name) <= _MAX_NAME)
+    return dict(islice(named, _MAX_MODULES))
+
+
+def _line(data: dict[str, Any]) -> bytes:
+    line = json.dumps(data).encode() + b"\n"
+    if len(line) > MAX_BYTES:
+        raise ValueError(f"an answer of {len(line)} bytes")
+    return line

@@ -1,0 +1,65 @@
+"""What a submission is once it has been read: what to start, from where, and what it imports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from grader.submission.private_copy import PrivateCopy
+
+
+@dataclass(frozen=True)
+class EntryPoint:
+    """Import `module`, call `function` without arguments."""
+
+    module: str
+    function: str  # may be dotted: "Controller.main"
+
+
+@dataclass(frozen=True)
+class Script:
+    """Run the file as `__main__`.
+
+    With a `function`, load the file by its path under another name instead, and call that: the
+    file does not start itself, and its name cannot be imported.
+    """
+
+    path: Path  # absolute
+    function: str | None = None
+
+
+@dataclass(frozen=True)
+class Imports:
+    """The modules, by the first part of their names, that are not the submission's own.
+
+    Each with the place of its first import ("file.py, line 3"), in the order of these.
+
+    Attributes:
+        surely: imported whenever the submission is run.
+        perhaps: only if a function is called, a condition holds, another import fails.
+    """
+
+    surely: dict[str, str] = field(default_factory=dict)
+    perhaps: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What was handed in, and how it starts."""
+
+    name: str  # as handed in: "alice.zip", "turtle_controller.py"
+    root: Path  # in its copy, absolute; comes first on sys.path and is the working directory
+    start: EntryPoint | Script
+    found: str  # a sentence for the user: "console script turtle_controller in setup.py"
+    imports: Imports = field(default_factory=Imports, compare=False)
+    #: where its runs find it; None where it lies in place
+    copy: PrivateCopy | None = field(default=None, compare=False)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """For the result: what of it was left out."""
+        return self.copy.remarks if self.copy else ()
+
+    def as_handed_in(self, text: str) -> str:
+        """What a run of it has printed, with paths as if it had run where it was handed in."""
+        return self.copy.as_handed_in(text) if self.copy else text

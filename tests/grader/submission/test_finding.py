@@ -1,0 +1,65 @@
+"""What is found, and what is refused, with the system as it is not in an ordinary test."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from grader.errors import SubmissionError
+from grader.submission.finding import find
+from tests.grader.submission.test_opening import NODE, PACKAGE, lay
+
+
+@pytest.fixture
+def scratch(tmp_path: Path) -> Path:
+    folder = tmp_path / "scratch"
+    folder.mkdir()
+    return folder
+
+
+def refused(path: Path, scratch: Path) -> str:
+    with pytest.raises(SubmissionError) as error:
+        find(path, None, scratch)
+    return str(error.value)
+
+
+@pytest.mark.parametrize("name", ["node.py", "spiral/node.py"])
+def test_an_unreadable_file_is_named(
+    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    handed_in = lay(tmp_path / "in", {"node.py": NODE} if name == "node.py" else PACKAGE)
+    forbid(monkeypatch, handed_in / name)
+    assert refused(handed_in, scratch).startswith(f"{name} cannot be read: Permission denied.")
+
+
+def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
+    """Make a file unreadable, also for root."""
+    really_open: Callable[..., object] = Path.open
+
+    def open_or_not(self: Path, *args: object, **options: object) -> object:
+        if self == path:
+            raise PermissionError(13, "Permission denied", str(self))
+        return really_open(self, *args, **options)
+
+    monkeypatch.setattr(Path, "open", open_or_not)
+
+
+def test_a_fault_of_the_grader_is_not_blamed_on_the_submission(
+    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("grader.submission.archive.unpack", full)
+    (tmp_path / "a.zip").touch()
+    with pytest.raises(OSError, match="No space left"):
+        find(tmp_path / "a.zip", None, scratch)
+
+
+def test_a_folder_with_too_many_files_is_refused(
+    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("grader.submission.folder.MAX_ENTRIES", 2)
+    assert "more than 2 files" in refused(
+        lay(tmp_path / "in", dict.fromkeys(("a", "b", "c"), "")), scratch
+    )
