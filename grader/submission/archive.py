@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import lzma
 import re
 import stat
@@ -13,10 +14,12 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.submission.folder import is_junk, marks_generated
+from grader.submission.folder import MAX_BYTES, is_junk, marks_generated, shown
 
-MAX_BYTES: Final = 200_000_000  # of all members together, unpacked
-MAX_MEMBERS: Final = 10_000
+MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
+MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more
+#: Of the list of members, all of them. It is read at once, and becomes 50 times as large.
+MAX_LIST_BYTES: Final = 6_000_000
 _CHUNK_BYTES: Final = 1 << 16
 
 _ENCRYPTED: Final = 0x1  # bit 0 of the general purpose flags (APPNOTE.TXT 4.4.4)
@@ -35,24 +38,53 @@ _PACK_AGAIN: Final = "Pack your .py file or package folder into a new .zip and h
 _Member = tuple[PurePosixPath, zipfile.ZipInfo]
 
 
+class _ListTooLong(Exception):
+    """More was to be read at once than the list of a zip's members may have."""
+
+
+class _Bounded(io.BufferedReader):
+    """A file of which zipfile cannot read much at once; only the list of the members is that."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(io.FileIO(path))
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Read as any file does; but not more than the longest list.
+
+        Raises:
+            _ListTooLong: it would be more.
+        """
+        if size is not None and size > MAX_LIST_BYTES:
+            raise _ListTooLong
+        data = super().read(MAX_LIST_BYTES + 1 if size is None or size < 0 else size)
+        if len(data) > MAX_LIST_BYTES:
+            raise _ListTooLong
+        return data
+
+
 def unpack(archive: Path, into: Path) -> None:
     """Write the files of a zip below `into`; caches, venvs and colcon's output stay out.
 
     Raises:
         SubmissionError: it is empty, damaged, encrypted or too large, or it reaches outside.
     """
-    name = archive.name
+    name = shown(archive.name)
     size = archive.stat().st_size
     if size == 0:
         raise SubmissionError(f"{name} is empty (0 bytes). {_PACK_AGAIN}")
     if size > MAX_BYTES:
         raise _too_large(name)
     try:
-        with zipfile.ZipFile(archive) as packed:
+        with _Bounded(archive) as file, zipfile.ZipFile(file) as packed:
             _write(name, packed, _members(name, packed.infolist()), into)
+    except _ListTooLong as error:
+        raise SubmissionError(
+            f"{name} lists too many files, or too long names: its list has more than "
+            f"{MAX_LIST_BYTES / 1e6:g} MB. {_PACK_AGAIN}"
+        ) from error
     except NotImplementedError as error:
         raise SubmissionError(
-            f"{name} is packed in a way that cannot be read here ({error}). {_PACK_AGAIN}"
+            f"{name} is packed in a way that cannot be read here ({shown(str(error))}). {_PACK_AGAIN}"
         ) from error
     except _DAMAGED as error:
         raise _damaged(name, str(error) or "it ends too early") from error
@@ -63,7 +95,7 @@ def unpack(archive: Path, into: Path) -> None:
 
 
 def _damaged(name: str, why: str) -> SubmissionError:
-    return SubmissionError(f"{name} cannot be unpacked as a zip file: {why}. {_PACK_AGAIN}")
+    return SubmissionError(f"{name} cannot be unpacked as a zip file: {shown(why)}. {_PACK_AGAIN}")
 
 
 def _too_large(name: str) -> SubmissionError:
@@ -101,10 +133,15 @@ def _members(name: str, infos: list[zipfile.ZipInfo]) -> list[_Member]:
 def _inside(name: str, member: str) -> PurePosixPath:
     """Turn a member's name into a path; some Windows programs write it with backslashes."""
     text = member.replace("\\", "/")
+    if len(text) > MAX_NAME:
+        raise SubmissionError(
+            f"{name} holds a name of {len(text):,} characters ({shown(member)}); the limit is "
+            f"{MAX_NAME:,}. {_PACK_AGAIN}"
+        )
     path = PurePosixPath(text)
     if path.is_absolute() or ".." in path.parts or re.match("[A-Za-z]:/", text):
         raise SubmissionError(
-            f"{name} holds {member}, which would be written outside of its own folder. "
+            f"{name} holds {shown(member)}, which would be written outside of its own folder. "
             f"{_PACK_AGAIN}"
         )
     return path
@@ -113,16 +150,16 @@ def _inside(name: str, member: str) -> PurePosixPath:
 def _must_be_plain(name: str, path: PurePosixPath, info: zipfile.ZipInfo) -> None:
     if info.flag_bits & _ENCRYPTED:
         raise SubmissionError(
-            f"{name} is encrypted: {path} asks for a password. Pack it again without a password."
+            f"{name} is encrypted: {shown(path)} asks for a password. Pack it again without a password."
         )
     kind = stat.S_IFMT(info.external_attr >> 16)
     if kind == stat.S_IFLNK:
         raise SubmissionError(
-            f"{name} holds {path} as a symbolic link. "
+            f"{name} holds {shown(path)} as a symbolic link. "
             "Pack it again with the file itself in that place."
         )
     if kind not in (0, stat.S_IFREG):
-        raise SubmissionError(f"{name} holds {path}, which is not an ordinary file. {_PACK_AGAIN}")
+        raise SubmissionError(f"{name} holds {shown(path)}, which is not an ordinary file. {_PACK_AGAIN}")
 
 
 def _write(name: str, packed: zipfile.ZipFile, members: list[_Member], into: Path) -> None:

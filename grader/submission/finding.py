@@ -129,8 +129,10 @@ def _missing(path: Path) -> UsageError:
 def _unreadable(path: Path, error: OSError) -> SubmissionError:
     base, culprit = path.resolve(), Path(error.filename or path)
     called = culprit.relative_to(base) if base in culprit.parents else path
+    is_long = error.errno == errno.ENAMETOOLONG
     return SubmissionError(
-        f"{shown(called)} cannot be read: {error.strerror}. Check its permissions, and hand it in again."
+        f"{shown(called)} cannot be read: {error.strerror}. "
+        f"{'Shorten its name' if is_long else 'Check its permissions'}, and hand it in again."
     )
 
 

@@ -7,12 +7,12 @@ from typing import Final
 
 from grader.submission.folder import MAX_BYTES
 
-#: Address space [bytes]. A file of MAX_SOURCE_BYTES of ordinary Python takes some 200 MB.
-MEMORY_BYTES: Final = 768_000_000
+#: Address space [bytes]. A file of MAX_SOURCE_BYTES of ordinary Python takes some 150 MB.
+MEMORY_BYTES: Final = 512_000_000
 #: Of a processor [s]. An ordinary submission takes 0.1 s, a zip of MAX_BYTES two.
 CPU_S: Final = 10
 #: On the clock [s], for what waits instead of computing, or a machine that is too busy.
-WALL_S: Final = 60
+WALL_S: Final = 120
 
 
 def take() -> None:
