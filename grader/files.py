@@ -1,10 +1,17 @@
-"""Files that are written whole or not at all, so that nobody reads a half of one."""
+"""Files that are written whole or not at all, so that nobody reads a half of one.
+
+A path that the caller names is taken as he means it: a link stays a link, a pipe is written to
+(`write`). What has a name of ours, in a folder for results, takes the place of whatever stands
+there (`put`): the folder may have come with a submission, and no link in it is to lead us away.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import re
+import stat
+import uuid
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -157,10 +164,96 @@ def withdraw(path: Path) -> None:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
 
 
+def put(path: Path, content: bytes) -> None:
+    """Write a file of ours, whole or not at all, in the place of whatever has its name.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    try:
+        _write_beside(path, content)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
+def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] = ()) -> None:
+    """Find out whether `put` will work, without changing anything.
+
+    Args:
+        schema, inputs: as of `check_replaceable`; without a schema an older file of this name is
+            taken for ours.
+
+    Raises:
+        UsageError: it will not; or an older file is not ours.
+    """
+    mode = _mode(path)
+    if mode is not None and stat.S_ISDIR(mode):
+        raise UsageError(f"cannot write {path}: it is a folder; expected a file, or nothing")
+    if mode is not None and stat.S_ISREG(mode) and schema is not None:
+        check_replaceable(path, schema, inputs)
+    check_writable(path.parent / uuid.uuid4().hex)
+
+
+def check_can_fill(folder: Path) -> None:
+    """Find out whether a folder of ours can be made, or filled anew, after `clear`.
+
+    Raises:
+        UsageError: it cannot.
+    """
+    mode = _mode(folder)
+    if mode is not None and not (stat.S_ISDIR(mode) or stat.S_ISLNK(mode)):
+        raise UsageError(f"cannot write into {folder}: it is a file; expected a folder, or nothing")
+    check_writable((folder.parent if mode is None or stat.S_ISLNK(mode) else folder) / "new")
+
+
+def check_leads_nowhere_else(folder: Path, foreign: Path) -> None:
+    """Refuse a folder whose path goes through a link that others have laid.
+
+    Args:
+        foreign: a folder with what others have handed in.
+
+    Raises:
+        UsageError: it does.
+    """
+    base = os.path.realpath(foreign)
+    whole = Path(os.path.abspath(folder))  # noqa: PTH100  resolving would follow the link
+    for at in (whole, *whole.parents):
+        if at.is_symlink() and Path(os.path.realpath(at.parent)).is_relative_to(base):
+            raise UsageError(
+                f"cannot write into {folder}: {at} is a link that lies with the submission; name "
+                "the folder itself, or another"
+            )
+
+
+def clear(path: Path) -> None:
+    """Remove what has a name of ours and is no folder; of a link, the link.
+
+    Raises:
+        UsageError: it cannot be removed.
+    """
+    mode = _mode(path)
+    if mode is not None and not stat.S_ISDIR(mode):
+        try:
+            path.unlink(missing_ok=True)
+        except OSError as error:
+            raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
+def _mode(path: Path) -> int | None:
+    """What stands at a path, itself and not what it may lead to; None if nothing does."""
+    try:
+        return path.lstat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
 def _write_beside(path: Path, data: bytes) -> None:
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
+    unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished.touch(exist_ok=False)  # not through a link that somebody has laid there
         unfinished.write_bytes(data)
         unfinished.replace(path)
     except BaseException:

@@ -18,6 +18,12 @@ _CONTROLS = re.compile(
 )
 _REPLACEMENT = "\ufffd"
 
+#: What the runners of GitHub and Azure obey in what a step prints, in any case of letters: words at
+#: the start of a line after `::`, and words anywhere after `##[` or `##vso[`. In a narrow terminal
+#: any word may come to stand at the start of a line.
+_COMMANDS = re.compile(r"^([^\S\n]*)::|##(?=\[|vso\[)", re.MULTILINE | re.IGNORECASE)
+_COMMANDS_WRAPPED = re.compile(r"::(?=[a-z-]+[ :])|##(?=\[|vso\[)", re.IGNORECASE)
+
 
 def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str:
     """The text with `sign` for each character that a terminal, a log or XML would stumble over.
@@ -29,8 +35,17 @@ def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str
 
 
 def plain(text: str) -> str:
-    r"""The text without colours and control characters; `\n` is its only line break."""
-    return without_controls(_LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", text)), keep="\t\n")
+    r"""The text without colours, control characters and commands for a runner of CI.
+
+    `\n` is its only line break.
+    """
+    text = without_controls(_LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", text)), keep="\t\n")
+    return _COMMANDS.sub(lambda match: f"{match[1]}: :" if match[0].endswith(":") else "# #", text)
+
+
+def for_terminal(text: str) -> str:
+    """The text as it may be printed, however it is wrapped; what colours it must not read it."""
+    return _COMMANDS_WRAPPED.sub(lambda match: " ".join(match[0]), plain(text))
 
 
 def plain_all(value: Any) -> Any:

@@ -40,9 +40,10 @@ ALLOWED = {
     "grader/package.xml": [r"for the turtlesim challenge"],
     "grader/cli/__init__.py": [r"Grade the turtlesim challenge"],
     "grader/cli/grade_one.py": [r"alice/turtle_controller\.py"],
-    "grader/submission/opening.py": [r"turtle_controller"],
+    "grader/submission/finding.py": [r"turtle_controller"],
     "grader/submission/entry_points.py": [r"turtle_controller"],
     "grader/submission/setup_files.py": [r"turtle_controller"],
+    "grader/submission/start.py": [r"turtle_controller"],
 }
 
 #: The name of a class of elements in the page, whose bytes are to stay as they were.

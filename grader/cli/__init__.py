@@ -21,6 +21,7 @@ try:  # somebody may think better of it at once
 
     from grader.cli import error_file
     from grader.errors import CheckFailed, GraderError, GraderFailure, UsageError
+    from grader.text import for_terminal
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
     sys.exit(130)
@@ -55,7 +56,7 @@ def _main(words: Sequence[str]) -> int:
     try:
         args = _parser(words).parse_args(words)
     except error_file.Misuse as error:
-        print(f"{error.usage}{error.prog}: error: {error}", file=sys.stderr)
+        print(f"{error.usage}{error.prog}: error: {for_terminal(str(error))}", file=sys.stderr)
         return _misused(error, error_file.look_for(words))
     from grader.run.processes import watched
 
@@ -80,17 +81,19 @@ def _main(words: Sequence[str]) -> int:
         return _ended(error, args)
     except Exception as error:
         _say("The grader failed; this is not the submission's fault. Please report:")
-        traceback.print_exc()
+        print(for_terminal(traceback.format_exc()), end="", file=sys.stderr)
         what = "".join(traceback.format_exception_only(error)).strip()
         return _ended(GraderFailure(f"unexpected: {what}"), args)
 
 
 def _say(red: str, message: str = "") -> None:
     from rich.console import Console  # here: most calls have nothing to say
-    from rich.markup import escape
+    from rich.text import Text
 
-    console = Console(stderr=True, soft_wrap=True, highlight=False)
-    console.print(f"[red]{red}[/] {escape(message)}" if message else f"[red]{red}[/]")
+    said = Text(red, "red")
+    if message:
+        said.append(f" {for_terminal(message)}", "default")
+    Console(stderr=True, soft_wrap=True, highlight=False).print(said)
 
 
 def _parser(words: Sequence[str]) -> error_file.Parser:
@@ -110,7 +113,7 @@ def _misused(error: error_file.Misuse, args: Namespace) -> int:
     try:
         error_file.prepare(args)
     except UsageError as unwritable:
-        print(f"grader: {unwritable}", file=sys.stderr)
+        print(f"grader: {for_terminal(str(unwritable))}", file=sys.stderr)
         return error.exit_code
     return _ended(error, args)
 
@@ -120,5 +123,5 @@ def _ended(error: GraderError, args: Namespace, exit_code: int | None = None) ->
     try:
         error_file.write(error, args)
     except UsageError as unwritten:
-        print(f"grader: {unwritten}", file=sys.stderr)
+        print(f"grader: {for_terminal(str(unwritten))}", file=sys.stderr)
     return error.exit_code if exit_code is None else exit_code

@@ -17,6 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
+from rich.text import Text
 
 from grader import files, grading
 from grader.cli import error_file, progress
@@ -28,9 +29,11 @@ from grader.recording.recording import Recording, Recordings
 from grader.result.result import ARTIFACTS, FAMILY, Result
 from grader.run.processes import cores
 from grader.submission.opening import Submission, open_submission
+from grader.text import for_terminal
 
 #: What is not needed before a run is over.
 LATER = ("grader.recording.bag", "grader.reports.page.html", "grader.reports.terminal")
+RESULT, PAGE = "result.json", "report.html"
 
 
 def grade_and_go_on(args: argparse.Namespace) -> None:
@@ -40,7 +43,7 @@ def grade_and_go_on(args: argparse.Namespace) -> None:
     try:
         grade(args)
     except GraderError as error:
-        messages.print(error.message, markup=False, soft_wrap=True)
+        messages.print(Text(for_terminal(error.message)), soft_wrap=True)
         error_file.write(error, args)
     messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
 
@@ -49,6 +52,10 @@ def grade(args: argparse.Namespace) -> int:
     """Grade once; the exit code."""
     exercise = load_exercise(args.exercise)
     out: Path = args.out or _default_out(args.submission)
+    if args.out is None:
+        files.check_leads_nowhere_else(out, Path.cwd())
+    handed_in: Path = args.submission
+    files.check_leads_nowhere_else(out, handed_in if handed_in.is_dir() else handed_in.parent)
     with ExitStack() as held:
         with open_submission(args.submission, args.executable) as submission:
             result, recordings = _run_and_judge(args, submission, exercise, out, held)
@@ -60,7 +67,7 @@ def _run_and_judge(
 ) -> tuple[Result, Recordings]:
     """Run a submission, judge it, and keep its recordings; `held` holds what is written to."""
     messages = Console(stderr=True, highlight=False)
-    messages.print(f"Found: {submission.found}", markup=False, soft_wrap=True)
+    messages.print(Text(for_terminal(f"Found: {submission.found}")), soft_wrap=True)
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
     _prepare(out, args.json, error_file.inputs(args), held)
     messages.print(f"Running it beside a simulator, in {args.time} time ...")
@@ -110,17 +117,18 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     from grader.reports import Report, render, terminal
 
     nominal, console = recordings.nominal, Patient()
-    (out / ARTIFACTS["canvas"]).write_bytes(nominal.png["window"])
-    (out / ARTIFACTS["output"]).write_text(nominal.output, encoding="utf-8")
-    result.write(out / "result.json")
+    files.put(out / ARTIFACTS["canvas"], nominal.png["window"])
+    files.put(out / ARTIFACTS["output"], nominal.output.encode("utf-8", "replace"))
+    result.put(out / RESULT)
     if args.json:
         result.write(args.json)
     report = Report.of(result, out, recordings)
-    page = out / "report.html"
-    files.write(page, render("html", [report]))
+    page = out / PAGE
+    files.put(page, render("html", [report]).encode("utf-8"))
     try:
         terminal.show(report, console)
-        console.print(f"The page with picture and plots: {page}", highlight=False, soft_wrap=True)
+        where = Text(for_terminal(f"The page with picture and plots: {page}"))
+        console.print(where, highlight=False, soft_wrap=True)
     except BrokenPipeError:  # rich before 13.8 leaves it to us
         console.on_broken_pipe()
     return int(args.fail_under is not None and result.score < args.fail_under)
@@ -154,13 +162,18 @@ def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path], held: ExitSta
     Raises:
         UsageError: one of the places cannot be written; nothing has changed then.
     """
-    written = [out / "result.json", *([copy] if copy else [])]
     read = list(inputs)
-    for path in written:
-        files.check_writable(path)
-        files.check_replaceable(path, FAMILY, read)
-    for path in written:
-        files.make_folder(path.parent)
+    files.check_can_put(out / RESULT, FAMILY, read)
+    for name in (ARTIFACTS["canvas"], ARTIFACTS["output"], PAGE):
+        files.check_can_put(out / name)
+    files.check_can_fill(out / ARTIFACTS["recording"])
+    if copy:
+        files.check_writable(copy)
+        files.check_replaceable(copy, FAMILY, read)
+        files.make_folder(copy.parent)
+    files.make_folder(out)
     held.enter_context(files.sole_writer(out))
-    for path in written:
-        files.withdraw(path)
+    files.clear(out / RESULT)
+    files.clear(out / ARTIFACTS["recording"])
+    if copy:
+        files.withdraw(copy)

@@ -9,7 +9,8 @@ from grader.recording.recording import Recording
 from grader.scenes import load_scene
 from grader.text import without_controls
 
-_FRAME = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)', re.MULTILINE)
+# blanks of one line only: lines of nothing would be gone through again from each of them
+_FRAME = re.compile(r'^[^\S\n]*File "(?P<file>[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
 
 

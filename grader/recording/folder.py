@@ -97,10 +97,13 @@ class Unsaved:
         """Put all of them in place of older ones, of which none is left."""
         _withdraw(self._folder)  # comes back as the last file of all
         for number in range(1, self._varied_runs + 1):
-            _put(self._of(number), self._folder / f"varied_{number}")
+            into = self._folder / f"varied_{number}"
+            if into.is_symlink():
+                into.unlink()
+            _put(self._of(number), into)
         for number in _varied(self._folder):
             older = self._folder / f"varied_{number}"
-            if number > self._varied_runs and (older / RUN).exists():
+            if number > self._varied_runs and not older.is_symlink() and (older / RUN).exists():
                 shutil.rmtree(older)
         _put(self._of(0), self._folder)
 
@@ -164,7 +167,8 @@ def _unfinished(folder: Path) -> Iterator[Path]:
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     place = folder / UNFINISHED
-    shutil.rmtree(place, ignore_errors=True)
+    _clear(place)
+    place.mkdir()
     try:
         yield place
     finally:
@@ -172,6 +176,18 @@ def _unfinished(folder: Path) -> Iterator[Path]:
         if is_new:
             with suppress(OSError):  # it holds what was put there
                 folder.rmdir()
+
+
+def _clear(place: Path) -> None:
+    """Remove what is left of a save that was cut off; of a link, which none of ours is, the link.
+
+    Raises:
+        OSError: it cannot be removed.
+    """
+    if place.is_symlink() or (place.exists() and not place.is_dir()):
+        place.unlink()
+    elif place.exists():
+        shutil.rmtree(place)
 
 
 def _put(made: Path, folder: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,6 +14,10 @@ from grader.reports.report import Report
 from grader.reports.wording import word
 
 _BEFORE = ("submission", "exercise", "score", "max_score")
+#: Also in the wide letters of Chinese, Japanese and Korean.
+_BEGIN_FORMULAS = (*"=+-@", *"\uff1d\uff0b\uff0d\uff20")
+#: Where a comma is the sign before decimals, spreadsheets cut the line at a semicolon.
+_CUT_BEFORE_FORMULA = re.compile(r"(; ?)(?=[=+@\-\uff1d\uff0b\uff0d\uff20])")
 _AFTER = ("outcome", "first_to_mend", "flags", "trace_sha256", "folder")
 
 
@@ -82,6 +87,7 @@ def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
 
 
 def _cell(value: str) -> str:
-    """A text in one line that no spreadsheet takes for a formula."""
-    value = text.one_line(value)
-    return f"'{value}" if value.startswith(("=", "+", "-", "@")) else value
+    """A text in one line that no spreadsheet takes for a formula, wherever it cuts the line."""
+    value = text.one_line(text.plain(value))
+    value = _CUT_BEFORE_FORMULA.sub(r"\1'", value)
+    return f"'{value}" if value.startswith(_BEGIN_FORMULAS) else value

@@ -94,4 +94,5 @@ def _canvas_here(report: Report) -> str:
     path = report.beside.canvas_path
     if path is None or not path.is_relative_to(Path.cwd()):
         return ""
-    return path.relative_to(Path.cwd()).as_posix()
+    name = path.relative_to(Path.cwd()).as_posix()
+    return name if name == text.plain(name) and "]]" not in name else ""

@@ -15,7 +15,7 @@ from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
 from grader.reports.beside import Beside, StillInMemory
 from grader.reports.wording import where, word
-from grader.result.result import Result
+from grader.result.result import Result, RunSummary
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
@@ -23,6 +23,7 @@ from grader.scenes.scene import Scene
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
 _TEXT_LIMIT = 2000
 _POINTS_LIMIT = 20
+_FLAGS_LIMIT = 50
 
 
 @dataclass(frozen=True)
@@ -71,8 +72,8 @@ class Report:
         self.submission = text.one_line(shown.submission) or "(no name)"
         self.score = float(shown.score)
         self.max_score = float(shown.max_score)
-        self.run = shown.run
-        self.varied_runs = shown.varied_runs
+        self.run = _few_flags(shown.run)
+        self.varied_runs = tuple(map(_few_flags, shown.varied_runs))
         names = _distinct([text.one_line(verdict.check) for verdict in shown.verdicts])
         self.verdicts = tuple(map(_shown, shown.verdicts, names))
         self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))
@@ -164,6 +165,14 @@ class Report:
     def output(self) -> str:
         """What the node printed in the nominal run."""
         return text.plain(self.beside.output)
+
+
+def _few_flags(run: RunSummary) -> RunSummary:
+    """A run with no more flags than anybody reads, none longer than that."""
+    flags = [text.clip(flag, _TEXT_LIMIT) for flag in run.flags[:_FLAGS_LIMIT]]
+    if more := len(run.flags) - len(flags):
+        flags.append(f"and {more} more")
+    return replace(run, flags=tuple(flags))
 
 
 def _shown(verdict: Verdict, name: str) -> Verdict:

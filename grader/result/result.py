@@ -159,6 +159,14 @@ class Result:
         """
         files.write(Path(path), json_file.text(self.to_json()))
 
+    def put(self, path: Path) -> None:
+        """Write it in the place of whatever has this name; see `files.put`.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
+        files.put(path, json_file.text(self.to_json()).encode("utf-8"))
+
 
 def build(
     submission: str,

@@ -1,5 +1,6 @@
-"""What the process that reads a submission answers: one line of JSON, taken for what it is and
-nothing else, and before it lines that say where it is.
+"""What the process that reads a submission answers: one line of JSON, and nothing else is taken.
+
+Before it come lines that say where it is.
 """
 
 from __future__ import annotations

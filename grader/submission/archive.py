@@ -84,7 +84,8 @@ def unpack(archive: Path, into: Path) -> None:
         ) from error
     except NotImplementedError as error:
         raise SubmissionError(
-            f"{name} is packed in a way that cannot be read here ({shown(str(error))}). {_PACK_AGAIN}"
+            f"{name} is packed in a way that cannot be read here ({shown(str(error))}). "
+            f"{_PACK_AGAIN}"
         ) from error
     except _DAMAGED as error:
         raise _damaged(name, str(error) or "it ends too early") from error
@@ -150,7 +151,8 @@ def _inside(name: str, member: str) -> PurePosixPath:
 def _must_be_plain(name: str, path: PurePosixPath, info: zipfile.ZipInfo) -> None:
     if info.flag_bits & _ENCRYPTED:
         raise SubmissionError(
-            f"{name} is encrypted: {shown(path)} asks for a password. Pack it again without a password."
+            f"{name} is encrypted: {shown(path)} asks for a password. "
+            "Pack it again without a password."
         )
     kind = stat.S_IFMT(info.external_attr >> 16)
     if kind == stat.S_IFLNK:
@@ -159,7 +161,9 @@ def _must_be_plain(name: str, path: PurePosixPath, info: zipfile.ZipInfo) -> Non
             "Pack it again with the file itself in that place."
         )
     if kind not in (0, stat.S_IFREG):
-        raise SubmissionError(f"{name} holds {shown(path)}, which is not an ordinary file. {_PACK_AGAIN}")
+        raise SubmissionError(
+            f"{name} holds {shown(path)}, which is not an ordinary file. {_PACK_AGAIN}"
+        )
 
 
 def _write(name: str, packed: zipfile.ZipFile, members: list[_Member], into: Path) -> None:

@@ -117,9 +117,7 @@ def _advice(path: Path) -> str:
 def _missing(path: Path) -> UsageError:
     folder = path.parent
     if not folder.is_dir():
-        return UsageError(
-            f"{shown(path)} does not exist: there is no folder {shown(folder)}."
-        )
+        return UsageError(f"{shown(path)} does not exist: there is no folder {shown(folder)}.")
     there = islice((entry.name for entry in folder.iterdir()), MAX_ENTRIES)
     meant = near(path.name, sorted(there))
     advice = f"Did you mean {listed(meant)}?" if meant else "Check the name and the folder."

@@ -17,16 +17,23 @@ _ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)
 _BODIES: Final = (ast.stmt, ast.ExceptHandler, ast.match_case)
 
 
-def read_imports(root: Path, start: EntryPoint | Script) -> Imports:
+def read_imports(root: Path, start: EntryPoint | Script, only: Path | None = None) -> Imports:
     """Read what is started, and what of the submission that imports in turn.
 
     A file that cannot be read or parsed tells nothing: the run shows what is wrong with it. Nor
     does a name in a string that is given to importlib.
+
+    Args:
+        only: the one file that was handed in, if it is one: what lies beside it is none of it.
     """
+
+    def files(module: str) -> list[tuple[Path, str]]:
+        return [each for each in _files(root, module) if only is None or each[0] == only]
+
     found = Imports()
     pending: deque[tuple[Path, str, bool]] = deque()  # file, its package, whether surely loaded
     if isinstance(start, EntryPoint):
-        pending.extend((*file, True) for file in _files(root, start.module))
+        pending.extend((*file, True) for file in files(start.module))
     else:
         pending.append((start.path, "", True))
     seen: set[tuple[Path, bool]] = set()
@@ -38,9 +45,9 @@ def read_imports(root: Path, start: EntryPoint | Script) -> Imports:
         for node, always in _statements(file):
             surely = is_loaded and always
             for module in _modules(node, package):
-                pending.extend((*loaded, surely) for loaded in _files(root, module))
+                pending.extend((*loaded, surely) for loaded in files(module))
                 top = module.partition(".")[0]
-                if not _files(root, top):
+                if not files(top):
                     where = f"{file.relative_to(root)}, line {node.lineno}"
                     names = found.surely if surely else found.perhaps
                     names.setdefault(top, shown(where))

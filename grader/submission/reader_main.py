@@ -36,7 +36,9 @@ def _answer(request: dict[str, Any]) -> bytes:
     _tell_what_is_read(path if path.is_dir() else path.parent, scratch / "unpacked")
     try:
         found = find(path, request["executable"], scratch)
-        return answer.found(replace(found, imports=read_imports(found.root, found.start)))
+        only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
+        imports = read_imports(found.root, found.start, only)
+        return answer.found(replace(found, imports=imports))
     except (SubmissionError, UsageError) as error:
         return answer.refused(error)
     except OSError as error:
