@@ -28,6 +28,7 @@ from grader.submission.opening import Submission
 WAITS_FOR_EVER = "every thread of the node waits for something that will not come"
 STUCK = "the node waits for something that can no longer happen; its output says where"
 STOPPED = "the node's process was stopped (SIGSTOP), and nobody let it go on"
+FLOODING = "the node sent so much that the simulator used more than {:.0f} s of processor time"
 PATIENCE = Patience()
 #: What runs as the simulator's process.
 MODULE = zygotes.MODULE
@@ -141,6 +142,8 @@ def _judge(ending: Message, exit_code: int | None, patience: Patience) -> tuple[
         return "time_limit", [
             f"the node used more than {patience.run_cpu_s:.0f} s of processor time"
         ]
+    if silence == "flooding":
+        return "killed", [FLOODING.format(patience.simulator_cpu_s)]
     if silence == "broken":
         return "killed", []
     return outcome(ending["reason"], exit_code), []

@@ -107,6 +107,10 @@ class Simulation(Protocol):
     def is_at_rest(self) -> bool:
         """Whether what is driven has moved, and does not now."""
 
+    @property
+    def flags(self) -> tuple[str, ...]:
+        """Remarks for the result: what the submission asked for and did not get."""
+
     def record(self) -> None:
         """Record from the next tick on; inputs are recorded from the beginning."""
 

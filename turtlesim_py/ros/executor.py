@@ -6,7 +6,7 @@ than everything else in a tick. This one keeps its wait set until the node's ent
 
 from __future__ import annotations
 
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from typing import Any
 
@@ -24,16 +24,24 @@ from turtlesim_py.ros.arrivals import Arrivals
 #: warning in the log, and old goals that can be forgotten.
 QUIET_SPINS = 16
 
+#: Told the name of what was served, and the exception.
+OnFailure = Callable[[str, Exception], None]
+
 
 class TickExecutor:
     """Serves the subscriptions, services and waitables of one node; it has no others.
 
     It never waits: the pacer does. It stands where rclpy's nodes keep their executor, because
     that is what they `wake` when an entity appears or disappears.
+
+    Args:
+        on_failure: called with the exception of a callback, or of what takes a message for it;
+            without one, it is raised in `spin_some`.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, on_failure: OnFailure | None = None) -> None:
         self._node = node
+        self._on_failure = on_failure
         self._wait_set: Any = None
         self._subscriptions: dict[int, Subscription] = {}
         self._services: dict[int, Service] = {}
@@ -58,7 +66,7 @@ class TickExecutor:
 
         In rclcpp's order: subscriptions, services, waitables (actions and QoS events), those of a
         kind as they were created. A burst of commands is therefore consumed one a tick, as in the
-        original. Exceptions of callbacks are raised to the caller.
+        original. What fails hinders none of the others.
         """
         if self._wait_set is None:
             self._collect()
@@ -76,12 +84,20 @@ class TickExecutor:
         # What is not in these dictionaries belongs to an action.
         for pointer in subscriptions:
             if pointer in self._subscriptions:
-                _take_message(self._subscriptions[pointer])
+                self._serve(_take_message, self._subscriptions[pointer])
         for pointer in services:
             if pointer in self._services:
-                _take_request(self._services[pointer])
+                self._serve(_take_request, self._services[pointer])
         for waitable in ready:
-            _take_data(waitable)
+            self._serve(_take_data, waitable)
+
+    def _serve(self, take: Callable[[Any], None], entity: Any) -> None:
+        try:
+            take(entity)
+        except Exception as error:
+            if self._on_failure is None:
+                raise
+            self._on_failure(_name(entity), error)
 
     def _something_may_have_arrived(self) -> bool:
         # after a look that found something: it takes one of each only, there may be more
@@ -98,7 +114,7 @@ class TickExecutor:
                 wait_set.clear_entities()
                 wait_set.add_subscription(subscription.handle)
                 wait_set.wait(patience_ns)
-                _take_message(subscription)
+                self._serve(_take_message, subscription)
                 return
 
     def wake(self) -> None:
@@ -148,6 +164,13 @@ class TickExecutor:
         )
 
 
+def _name(entity: Any) -> str:
+    for attribute in ("topic", "srv_name"):
+        if name := getattr(entity, attribute, ""):
+            return str(name)
+    return "an action"
+
+
 # What a callback of the same tick has destroyed raises InvalidHandle and is left alone.
 
 
@@ -168,8 +191,12 @@ def _take_request(service: Service) -> None:
     except InvalidHandle:
         return
     if header is not None:
-        response = service.callback(request, service.srv_type.Response())
-        service.send_response(response, header)
+        response = service.srv_type.Response()
+        try:
+            response = service.callback(request, response)
+        finally:  # an empty answer is better than none: somebody waits for it
+            with suppress(InvalidHandle):
+                service.send_response(response, header)
 
 
 def _take_data(waitable: Waitable) -> None:

@@ -31,6 +31,8 @@ from turtlesim_py.world.turtle import Reading
 
 #: The longest name that rotate_absolute's hidden services add to a turtle's.
 LONGEST_SUFFIX = "/rotate_absolute/_action/cancel_goal"
+#: So much is logged of what an exception says [characters]: it may quote a whole request.
+LONGEST_COMPLAINT = 500
 #: How the original listens to changes of parameters.
 PARAMETER_EVENTS_QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -85,7 +87,7 @@ class TurtlesimNode(RclcppNode):
         self.create_service(Empty, "reset", self._on_reset)
         self.create_service(self.interfaces.Spawn, "spawn", self._on_spawn)
         self.create_service(self.interfaces.Kill, "kill", self._on_kill)
-        self.tick_executor = TickExecutor(self)
+        self.tick_executor = TickExecutor(self, self.on_failure)
 
     def destroy_node(self) -> None:
         """Leave the graph."""
@@ -138,6 +140,11 @@ class TurtlesimNode(RclcppNode):
         self._last_ns = now_ns
         self.arena.now_ns = now_ns + self._set_back_ns
 
+    def on_failure(self, what: str, error: Exception) -> None:
+        """A message or request could not be served: that ends nothing."""
+        found = f"{type(error).__name__}: {error}"
+        self.get_logger().error(f"Cannot serve [{what}]: {found[:LONGEST_COMPLAINT]}")
+
     # Parameters -------------------------------------------------------------------------------
 
     def _declare_sprite(self) -> str:
@@ -187,6 +194,10 @@ class TurtlesimNode(RclcppNode):
         self._sync_endpoints()
         return response
 
+    def accepts_goal(self) -> bool:
+        """Whether a turtle may be told to turn; like the original, always."""
+        return True
+
     # Helpers ----------------------------------------------------------------------------------
 
     def _problem_with_name(self, name: str) -> str:
@@ -205,7 +216,9 @@ class TurtlesimNode(RclcppNode):
         self._drop_endpoints(self._endpoints.keys() - self.arena.turtles.keys())
         for name in self.arena.turtles:
             if name not in self._endpoints:
-                self._endpoints[name] = TurtleEndpoints(self, self.interfaces, self.arena, name)
+                self._endpoints[name] = TurtleEndpoints(
+                    self, self.interfaces, self.arena, name, self.accepts_goal
+                )
 
     def _drop_endpoints(self, names: set[str]) -> None:
         for name in names:

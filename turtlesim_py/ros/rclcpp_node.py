@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from rcl_interfaces.msg import (
@@ -11,6 +11,8 @@ from rcl_interfaces.msg import (
     ParameterDescriptor,
     SetParametersResult,
 )
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
@@ -26,6 +28,11 @@ Value = TypeVar("Value", bound=bool | int | float | str)
 OFFERED = "New publisher discovered on topic '{}', offering incompatible QoS. "
 REQUESTED = "New subscription discovered on topic '{}', requesting incompatible QoS. "
 NO_MESSAGES = "No messages will be sent to it. Last incompatible policy: {}_QOS_POLICY"
+
+#: The types that a parameter can have, as numbers of rcl_interfaces/msg/ParameterType; what rclcpp
+#: says of others, before it aborts.
+TYPES = frozenset(kind.value for kind in Parameter.Type)
+UNKNOWN_TYPE = "Unknown type: {}"
 
 #: What a value of a type looks like on the command line.
 IN_WORDS: dict[type, str] = {
@@ -45,6 +52,13 @@ class UnusableParameter(ValueError):
 
 class RclcppNode(Node):
     """A node whose refusals and warnings read like those of a C++ node."""
+
+    def __init__(self, name: str, **more: Any) -> None:
+        super().__init__(name, **more)
+        # rclpy's own raise an exception over a value of a type that ROS does not have
+        setters = {SetParameters: self._on_set, SetParametersAtomically: self._on_set_atomically}
+        for service in self.services:
+            service.callback = setters.get(service.srv_type, service.callback)
 
     # Parameters -------------------------------------------------------------------------------
 
@@ -106,6 +120,21 @@ class RclcppNode(Node):
                 reason = f"parameter '{parameter.name}' cannot be set because it was not declared"
                 return SetParametersResult(successful=False, reason=reason)
         return super().set_parameters_atomically(parameter_list)
+
+    def _on_set(self, request: Any, response: Any) -> Any:
+        response.results = [self._set([message]) for message in request.parameters]
+        return response
+
+    def _on_set_atomically(self, request: Any, response: Any) -> Any:
+        response.result = self._set(request.parameters)
+        return response
+
+    def _set(self, messages: Sequence[ParameterMessage]) -> SetParametersResult:
+        for message in messages:
+            if message.value.type not in TYPES:
+                reason = UNKNOWN_TYPE.format(message.value.type)
+                return SetParametersResult(successful=False, reason=reason)
+        return self.set_parameters_atomically(list(map(Parameter.from_parameter_msg, messages)))
 
     def _apply_descriptor(
         self,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from rclpy.action import ActionServer, CancelResponse
+from collections.abc import Callable
+
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 from rclpy.node import Node
 
@@ -17,12 +19,20 @@ RESULT_TIMEOUT_S = 10
 class RotateAction:
     """Passes goals and cancel requests on to the arena, and what comes of them to the clients.
 
-    Every goal and every request is accepted. In rclpy an execute callback turns a goal into a
-    result; here the world does, in the middle of its ticks, so there is no such callback, and
-    `finish` sets the state and the waiting result itself.
+    Every request is accepted, and every goal where nobody says otherwise. In rclpy an execute
+    callback turns a goal into a result; here the world does, in the middle of its ticks, so there
+    is no such callback, and `finish` sets the state and the waiting result itself.
     """
 
-    def __init__(self, node: Node, interfaces: Interfaces, arena: Arena, turtle: str) -> None:
+    def __init__(
+        self,
+        node: Node,
+        interfaces: Interfaces,
+        arena: Arena,
+        turtle: str,
+        accepts: Callable[[], bool],
+    ) -> None:
+        """`accepts` is asked before each goal."""
         self._type = interfaces.RotateAbsolute
         self._arena = arena
         self._turtle = turtle
@@ -32,10 +42,16 @@ class RotateAction:
             self._type,
             f"{turtle}/rotate_absolute",
             execute_callback=lambda _: None,  # never called, but required
+            goal_callback=lambda _: GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT,
             handle_accepted_callback=self._on_goal,
             cancel_callback=self._on_cancel,
             result_timeout=RESULT_TIMEOUT_S,
         )
+
+    @property
+    def known(self) -> int:
+        """How many goals are known: what runs, and what has ended and can still be asked for."""
+        return len(self._server._goal_handles)
 
     def feedback(self, event: GoalFeedback) -> None:
         """Tell a goal's client how far it still is."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from struct import Struct
 from typing import Any
 
@@ -36,7 +37,14 @@ class TurtleEndpoints:
         action: `rotate_absolute`.
     """
 
-    def __init__(self, node: RclcppNode, interfaces: Interfaces, arena: Arena, name: str) -> None:
+    def __init__(
+        self,
+        node: RclcppNode,
+        interfaces: Interfaces,
+        arena: Arena,
+        name: str,
+        accepts_goal: Callable[[], bool],
+    ) -> None:
         self._node = node
         self._arena = arena
         self._name = name
@@ -58,7 +66,7 @@ class TurtleEndpoints:
                 (interfaces.TeleportRelative, "teleport_relative", self._on_teleport_relative),
             )
         ]
-        self.action = RotateAction(node, interfaces, arena, name)
+        self.action = RotateAction(node, interfaces, arena, name, accepts_goal)
 
     def publish(self, reading: Reading) -> None:
         """Send a tick's pose and colour."""

@@ -24,6 +24,8 @@ from turtlesim_py.world.turtle import TICK_S
 
 #: Pictures a second, unless the parameter says otherwise.
 DEFAULT_RATE_HZ = 10.0
+#: The least rate means: one picture, and then none as long as the node lives.
+LONGEST_PERIOD_NS = 1e18
 
 
 def declare_parameters(node: RclcppNode) -> None:
@@ -64,7 +66,7 @@ class Window:
         late_ns = self._arena.now_ns - self._due_ns
         if late_ns < 0 or self._rate_hz == 0.0:
             return
-        period_ns = round(1e9 / self._rate_hz)
+        period_ns = round(min(1e9 / self._rate_hz, LONGEST_PERIOD_NS))
         # counted from when it was due: waiting for a tick does not make pictures rarer
         self._due_ns += period_ns if late_ns < period_ns else late_ns + period_ns
         raw = self._raw.get_subscription_count()
@@ -89,14 +91,17 @@ class Window:
                 self._due_ns = 0
 
     def _on_save(self, _: Any, response: Any) -> Any:
-        folder = Path(self._node.get_parameter("canvas_folder").value).expanduser().resolve()
+        folder = Path(self._node.get_parameter("canvas_folder").value)
         try:
+            folder = folder.expanduser().resolve()
             folder.mkdir(parents=True, exist_ok=True)
-            path = _next_free(folder)
+            path = _reserve_next(folder)
             save_png(self._picture(), path)
-        except OSError as error:
+        # a home that nobody has, a circle of links, a name that no file can have
+        except (OSError, RuntimeError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else str(error)
             response.success = False
-            response.message = f"cannot write the canvas to {folder}: {error.strerror}"
+            response.message = f"cannot write the canvas to {folder}: {why}"
         else:
             response.success = True
             response.message = str(path)
@@ -121,9 +126,14 @@ def _compressed_image(pixels: NDArray[np.uint8]) -> CompressedImage:
     return CompressedImage(format="png", data=array("B", file.getvalue()))
 
 
-def _next_free(folder: Path) -> Path:
-    """canvas_001.png, or the first number that is not taken yet."""
+def _reserve_next(folder: Path) -> Path:
+    """Make canvas_001.png, or the first number that is not taken yet; a link is taken too."""
     number = 1
-    while (path := folder / f"canvas_{number:03}.png").exists():
-        number += 1
-    return path
+    while True:
+        path = folder / f"canvas_{number:03}.png"
+        try:
+            path.touch(exist_ok=False)
+        except FileExistsError:
+            number += 1
+        else:
+            return path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, Final
 
 from grader.recording.recording import PublishedTopic
 from grader.run.lockstep.endpoints import deserialized
@@ -11,12 +11,24 @@ from grader.run.lockstep.protocol import EndpointInfo, Interests, Parcel, Parcel
 from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
 from grader.run.simulator.published_topics import USUAL
 
+#: The longest message that a reader takes [bytes]; DDS has no limit, a parameter of such a length
+#: has no use.
+LONGEST_MESSAGE: Final = 2_000_000
+#: So much may lie in all readers [bytes] before what is longer than LARGE is not taken any more.
+MOST_UNREAD, LARGE = 64_000_000, 4_096
+#: So much may wait for its way to the student's side [bytes] until that is asked to take it.
+MOST_OUTGOING = 32_000_000
+#: Different topics of the student's side that are kept for the result.
+MOST_TOPICS = 1_000
+
 
 class SimulatorEndpoints(EndpointRegistry):
     """All of them, with the numbers by which the student's side knows them."""
 
-    def __init__(self, now_ns: Callable[[], int]) -> None:
+    def __init__(self, now_ns: Callable[[], int], flag: Callable[[str], None]) -> None:
+        """`flag` keeps remarks for the result."""
         super().__init__(now_ns)
+        self._flag = flag
         self.tick = 0
         #: since the last call of `take_outgoing` something was sent that may be waited for
         self.answered = False
@@ -25,6 +37,8 @@ class SimulatorEndpoints(EndpointRegistry):
         self._added: list[EndpointInfo] = []
         self._removed: list[int] = []
         self._outgoing: Parcels = []
+        self._outgoing_bytes = 0
+        self._unread_bytes = 0  # at most: what was taken since is not subtracted
         self._read = frozenset[str]()
         self._published: dict[str, str] = {}
         self._may_have_unread = True
@@ -66,7 +80,11 @@ class SimulatorEndpoints(EndpointRegistry):
             if endpoint.name in types and endpoint.kind == "topic":
                 types[endpoint.name].add(endpoint.type)
         # as the graph shows it: of several types on a topic, ours too, the first
-        self._published |= {topic: min(kinds) for topic, kinds in types.items()}
+        for topic, kinds in types.items():
+            if topic in self._published or len(self._published) < MOST_TOPICS:
+                self._published[topic] = min(kinds)
+            else:
+                self._flag(f"the node published on more than {MOST_TOPICS} topics")
 
     def is_read(self, writer: Writer) -> bool:
         """Whether the student's side reads what this writer writes."""
@@ -113,30 +131,49 @@ class SimulatorEndpoints(EndpointRegistry):
 
     def _send(self, writer: Writer, client: int, number: int, data: bytes) -> None:
         self._outgoing.append(Parcel(self._numbers[writer], client, number, self.tick, data))
-        self.answered = self.answered or not writer.is_stream
+        self._outgoing_bytes += len(data)
+        # a reply of more than a few pictures is as if there was something to wait for
+        is_answer = not writer.is_stream or self._outgoing_bytes > MOST_OUTGOING
+        self.answered = self.answered or is_answer
 
     def take_outgoing(self) -> Parcels:
         """What was sent to the student's side since the last call."""
         parcels, self._outgoing = self._outgoing, []
+        self._outgoing_bytes = 0
         self.answered = False
         return parcels
 
-    def receive(self, parcels: Parcels) -> list[str]:
-        """Take what the student's side has sent; the channels on which it was unreadable."""
-        unreadable = []
+    def receive(self, parcels: Parcels) -> None:
+        """Take what the student's side has sent."""
         self._may_have_unread = True
         for endpoint, client, number, _, data in parcels:
             reader = self._by_number.get(endpoint)
             if not isinstance(reader, Reader):
                 continue  # gone meanwhile
+            if not self._has_room(len(data)):
+                self._flag(f"messages on {reader.channel} were too long or too many to be taken")
+                continue
             try:
                 deserialized(data, reader.message)
             except Exception:  # of rclpy's C++
-                unreadable.append(reader.channel)
+                self._flag(f"a message on {reader.channel} could not be read")
                 continue
             asked_by = client if reader.kind == "request" else None
             reader.items.append(Arrived(data, self.now_ns(), number, asked_by))
-        return unreadable
+
+    def _has_room(self, length: int) -> bool:
+        """Whether a message of this length may be taken beside what is not yet read."""
+        if length <= LARGE:
+            return True
+        if length > LONGEST_MESSAGE:
+            return False
+        if self._unread_bytes + length > MOST_UNREAD:
+            waiting = (len(item.data) for reader in self.readers for item in reader.items)
+            self._unread_bytes = sum(waiting)
+        if self._unread_bytes + length > MOST_UNREAD:
+            return False
+        self._unread_bytes += length
+        return True
 
     def has_unread(self) -> bool:
         """Whether something waits to be served."""

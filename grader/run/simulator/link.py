@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import mmap
 import os
 import select
 import socket
 import time
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
@@ -35,6 +37,13 @@ CPU_LOOK_S = 1.0
 MOST_FLAGS = 20
 #: More packets than a mailbox holds; who fills it while it is emptied has to wait.
 MOST_MAIL = 2_000
+#: The longest packet that is taken from a submission's process.
+LIMIT_BYTES = 8_000_000
+#: Nobody changes the size of the page: a process could fill the memory of the machine with it.
+SEALS = fcntl.F_SEAL_SEAL | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW
+#: The kernel's letters for what a process does; see `usage`.
+WANTS_PROCESSOR, HAS_ENDED = "R", ("", "Z", "X")
+NONSENSE = "its process sent what ours never sends"
 
 
 @dataclass(frozen=True)
@@ -46,14 +55,19 @@ class Patience:
     Attributes:
         stall_cpu_s: it has stalled when it says nothing for so much of its own processor time,
         start_cpu_s: or for so much while it still imports.
-        asleep_s: it waits for something outside of virtual time when it sleeps for so long.
+        asleep_s: it waits for something outside of virtual time when it sleeps for so long,
+        all_asleep_s: or for so long in a whole run, not counting naps.
         run_cpu_s: so much of its own processor time a whole run may take.
+        simulator_cpu_s: so much the simulator may take for what the submission sends; beside one
+            that drives a turtle it takes about one second.
     """
 
     stall_cpu_s: float = 6.0
     start_cpu_s: float = 20.0
     asleep_s: float = 6.0
+    all_asleep_s: float = 60.0
     run_cpu_s: float = 120.0
+    simulator_cpu_s: float = 60.0
 
 
 class Refused(Exception):
@@ -64,7 +78,8 @@ class StudentLink:
     """Hears a submission's process for as long as there is something to hear.
 
     Attributes:
-        silence: why nothing comes any more: '', `gone`, `stalled`, `stopped`, `slow`, `broken`.
+        silence: why nothing comes any more: '', `gone`, `stalled`, `stopped`, `slow`, `broken`,
+            `flooding` - it keeps the simulator from its work.
         waits: `for ever` - it waits for something that will not come, as a program may that has
             done its work; `stuck` - in a callback, where it must not.
         flags: remarks for the result.
@@ -74,22 +89,27 @@ class StudentLink:
         self.silence = ""
         self.waits: Literal["", "for ever", "stuck"] = ""
         self.flags: list[str] = []
+        link.setblocking(False)
         self._link = link
-        self._packets = PacketReader(link)
+        self._packets = PacketReader(link, LIMIT_BYTES)
         self._pid = pid
-        self._poll = select.poll()
-        self._poll.register(link, select.POLLIN)
+        self._may_read, self._may_send = select.poll(), select.poll()
+        self._may_read.register(link, select.POLLIN)
+        self._may_send.register(link, select.POLLOUT)
         self._patience = patience
         self._look_at_s = time.monotonic() + CPU_LOOK_S
         self._stall_cpu_s = patience.start_cpu_s
-        self._progress = os.memfd_create("progress")
+        self._asleep_s = 0.0
+        self._cpu_before_s = time.process_time()
+        self._progress = os.memfd_create("progress", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
         os.ftruncate(self._progress, mmap.PAGESIZE)
+        fcntl.fcntl(self._progress, fcntl.F_ADD_SEALS, SEALS)
 
     def introduce(self, table: Table) -> None:
         """Say the first word, and hand out what `mail` and `reached` read."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         ours.setblocking(False)
-        self._mailbox, self._mail = ours, PacketReader(ours)
+        self._mailbox, self._mail = ours, PacketReader(ours, LIMIT_BYTES)
         with suppress(OSError), theirs:
             socket.send_fds(self._link, [encode(table)], [self._progress, theirs.fileno()])
 
@@ -98,37 +118,50 @@ class StudentLink:
         os.close(self._progress)
         self._mailbox.close()
 
-    def mail(self) -> Parcels:
-        """What the submission has sent since the last call; also when it is dead."""
-        found: Parcels = []
+    def mail(self) -> Iterator[Parcels]:
+        """What the submission has sent since the last call, by packets; also when it is dead."""
         with suppress(OSError):  # there is no more, or nobody
             for _ in range(MOST_MAIL):
-                data = self._mail.read()
-                if data == b"":
-                    break
-                found += self._read_mail(data) if data else []
-        return found
-
-    def _read_mail(self, data: bytes) -> Parcels:
-        try:
-            packet = decode(data)
-        except ProtocolError:
-            packet = None
-        if not isinstance(packet, Mail):
-            self._break("its process sent what ours never sends")
-            return []
-        return packet.parcels
+                if self.silence == "broken":
+                    return
+                try:
+                    data = self._mail.read()
+                    if data == b"":
+                        return
+                    packet = decode(data) if data else Mail([])
+                except ProtocolError:
+                    packet = None
+                if isinstance(packet, Mail):
+                    yield packet.parcels
+                else:
+                    self._break(NONSENSE)
 
     def reached(self) -> int:
         """The tick that the submission's process says that it has reached; also when it is dead."""
-        data = os.pread(self._progress, PROGRESS.size, 0)  # it may have cut the page off
-        return int(PROGRESS.unpack(data)[0]) if len(data) == PROGRESS.size else 0
+        return int(PROGRESS.unpack(os.pread(self._progress, PROGRESS.size, 0))[0])
 
     def send(self, packet: Packet) -> None:
-        """Say something; that nobody listens is noticed when receiving."""
+        """Say something; that nobody is there is noticed when receiving.
+
+        Who asks and does not read the answer is waited for as one that says nothing.
+        """
         with suppress(OSError):
             for piece in pieces(encode(packet)):
-                self._link.send(piece)
+                while not self.silence and not self._send(piece):
+                    self._await_reader()
+
+    def _send(self, piece: bytes) -> bool:
+        try:
+            self._link.send(piece)
+        except BlockingIOError:
+            return False
+        return True
+
+    def _await_reader(self) -> None:
+        try:
+            self._wait(self._may_send)
+        except Refused:
+            self._break("its process does not read what it has asked for")
 
     def receive(self) -> Interests | Advance | None:
         """The next request; None when there will be no other: see `silence`.
@@ -137,17 +170,19 @@ class StudentLink:
             Refused: the submission does what virtual time cannot follow.
         """
         while not self.silence:
-            if not self._wait():
+            if not self._wait(self._may_read):
                 return None
             try:
                 data = self._packets.read()
                 if data is None:
                     continue  # there is more of it
                 packet = decode(data) if data else None
+            except BlockingIOError:
+                continue
             except OSError:
                 packet = None
             except ProtocolError:
-                self._break("its process sent what ours never sends")
+                self._break(NONSENSE)
                 break
             match packet:
                 case None:
@@ -185,26 +220,31 @@ class StudentLink:
         self.silence = "broken"
         self.flag(why)
 
-    def _wait(self) -> bool:
-        """Wait for a packet; False if none will come."""
-        if self._poll.poll(LOOK_MS):
+    def _wait(self, poll: select.poll) -> bool:
+        """Wait until the link can be read, or written; False if it never will."""
+        if poll.poll(LOOK_MS):
             return not self._is_slow()
         used_s = last_used_s = usage.look(self._pid).cpu_s
-        asleep_since = time.monotonic()
-        while not self._poll.poll(LOOK_MS):
+        asleep_since = now = time.monotonic()
+        patience = self._patience
+        while not poll.poll(LOOK_MS):
             seen, now = usage.look(self._pid), time.monotonic()
             if seen.cpu_s - used_s > self._stall_cpu_s:
                 self.silence = "stalled"
                 return False
-            if seen.cpu_s > last_used_s or not (seen.is_stopped or seen.sleeps):
+            if seen.cpu_s > last_used_s or seen.state == WANTS_PROCESSOR:
                 last_used_s, asleep_since = seen.cpu_s, now
-            if now - asleep_since > self._patience.asleep_s:
+            if now - asleep_since > min(patience.asleep_s, patience.all_asleep_s - self._asleep_s):
                 if seen.is_stopped:
                     self.silence = "stopped"
+                    return False
+                if seen.state in HAS_ENDED:  # a descendant holds the link
+                    self.silence = "gone"
                     return False
                 raise Refused(
                     "the submission waits for something outside of Python's and ROS's own waiting"
                 )
+        self._asleep_s += now - asleep_since
         return True
 
     def _is_slow(self) -> bool:
@@ -214,4 +254,6 @@ class StudentLink:
             self._look_at_s = now + CPU_LOOK_S
             if usage.look(self._pid).cpu_s > self._patience.run_cpu_s:
                 self.silence = "slow"
-        return self.silence == "slow"
+            elif time.process_time() - self._cpu_before_s > self._patience.simulator_cpu_s:
+                self.silence = "flooding"
+        return bool(self.silence)

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import json
 import math
-import signal
 import socket
 import sys
 import time
@@ -25,7 +24,7 @@ from rclpy.signals import SignalHandlerOptions
 from grader.run import handover
 from grader.run.plan import Plan
 from grader.run.processes.line import take_up
-from grader.run.processes.parent import die_with_parent
+from grader.run.simulator import precautions
 from grader.run.simulator.published_topics import EVENTS, PublishedTopics
 from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
@@ -34,6 +33,9 @@ from grader.scenes.scene import Hooks, Reason
 LOOK_TICKS = 63
 #: How long the clock of the run waits for the submission's first node [s].
 FIRST_NODE_S = 8.0
+#: So many times as long as the run's ticks may last they may take, and so much longer [s].
+SLOWEST, OVERTIME_S = 2.0, 10.0
+OVERTIME = "the run was ended: the simulator was kept from ticking at its pace"
 
 
 class GradedSimulator:
@@ -45,7 +47,10 @@ class GradedSimulator:
         self._scene = load_scene(plan.scene)
         self._simulation = self._scene.simulate(plan.limits, plan.start, Hooks(), plan.interfaces)
         self._topics = PublishedTopics(self._simulation.node)
+        self._limits = plan.limits
+        self._flags: list[str] = []
         self._running = False
+        self._end_at_s = math.inf
         self._start_at_s = math.inf
         self._ticks = 0
 
@@ -63,14 +68,18 @@ class GradedSimulator:
             reason = self._simulation.tick()
             if self._running:
                 self._look()
+                reason = reason or self._overtime()
             return not reason
 
         self._simulation.follow_wall_clock(tick)
         self._topics.look()
         handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.found())
-        self._say("done", reason=reason)
+        flags = [*self._simulation.flags, *self._flags]
+        self._say("done", reason=reason, flags=flags)
 
     def _start(self) -> None:
+        if not self._running:
+            self._end_at_s = time.monotonic() + SLOWEST * self._limits.total_s + OVERTIME_S
         self._running = True
         self._simulation.record()
 
@@ -79,6 +88,13 @@ class GradedSimulator:
         if self._ticks % LOOK_TICKS == 1:
             self._topics.look()
             self._say("progress", seconds=round(self._simulation.recorded_s, 1))
+
+    def _overtime(self) -> Reason:
+        """A turtle may be slow, but not without end."""
+        if time.monotonic() < self._end_at_s:
+            return ""
+        self._flags.append(OVERTIME)
+        return "time_limit"
 
     def _has_company(self) -> bool:
         """Whether the submission has a node; or it has had the time to make one."""
@@ -90,7 +106,7 @@ class GradedSimulator:
         has_node = self._simulation.node.count_publishers(EVENTS) > ours
         return time.monotonic() > self._start_at_s or has_node
 
-    def _say(self, what: str, **more: str | float) -> None:
+    def _say(self, what: str, **more: str | float | list[str]) -> None:
         self._link.setblocking(True)
         self._link.sendall(json.dumps({"say": what, **more}).encode() + b"\n")
         self._link.setblocking(False)
@@ -115,9 +131,7 @@ class GradedSimulator:
 
 def main(argv: list[str]) -> int:
     """Run one graded simulation; the grader reads the exit code."""
-    die_with_parent()
-    # Ctrl-C in a terminal reaches the whole group; the grader decides what happens then.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    precautions.take()
     link = take_up(argv[0])
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     GradedSimulator(link, Path(argv[1]), Plan.from_json(argv[2])).run()

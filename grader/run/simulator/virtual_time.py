@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import gc
 import json
-import signal
 import socket
 import time
 from pathlib import Path
@@ -31,7 +30,7 @@ from grader.run.lockstep.protocol import TICK_NS, Advance, Interests, Reply, Sta
 from grader.run.lockstep.times import EPOCH_NS
 from grader.run.plan import Plan
 from grader.run.processes import cores
-from grader.run.processes.parent import die_with_parent
+from grader.run.simulator import precautions
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import Foresight
 from grader.run.simulator.link import Patience, Refused, StudentLink
@@ -51,7 +50,7 @@ class Lockstep:
         self.now_ns = 0
         self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
         waitsets.install(_NoWaiting(self._clocks))
-        self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns)
+        self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, link.flag)
         endpoints.install(self._registry)
         actions.install()
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
@@ -95,7 +94,7 @@ class Lockstep:
             "silence": self._link.silence,
             "waits": self._link.waits,
             "was_at_rest": self._was_at_rest,
-            "flags": self._link.flags,
+            "flags": [*self._link.flags, *self._simulation.flags],
             "marks": self._marks,
         }
 
@@ -125,8 +124,8 @@ class Lockstep:
         return None
 
     def _take_mail(self) -> None:
-        for channel in self._registry.receive(self._link.mail()):
-            self._link.flag(f"a message on {channel} could not be read")
+        for parcels in self._link.mail():
+            self._registry.receive(parcels)
 
     def _catch_up(self, reached: int) -> None:
         """Live through the ticks that the student's side was told of before they were."""
@@ -203,8 +202,7 @@ class _NoWaiting:
 
 def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
-    die_with_parent()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    precautions.take()
     control = socket.socket(fileno=int(argv[0]))
     theirs = socket.socket(fileno=int(argv[3]))
     link = StudentLink(theirs, int(argv[4]), Patience(**json.loads(argv[6])))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from math import inf
 
 from grader.scenes.turtlesim.trace import Log, TurtleTrace
 from turtlesim_py.world import picture
@@ -17,8 +18,10 @@ from turtlesim_py.world.turtle import Reading
 class Recorder:
     """Listens to an arena; `take` belongs after each of its ticks."""
 
-    def __init__(self, arena: Arena) -> None:
+    def __init__(self, arena: Arena, most_logs: float = inf) -> None:
+        """Of the lines of the log, the first `most_logs` are kept."""
         self.ticks = 0
+        self._most_logs = most_logs
         self._arena = arena
         self._events: list[Event] = []
         self._logs: list[Log] = []
@@ -50,5 +53,5 @@ class Recorder:
         tick = self.ticks + 1
         if isinstance(notice, Event):
             self._events.append(replace(notice, tick=tick))
-        elif isinstance(notice, LogLine):
+        elif isinstance(notice, LogLine) and len(self._logs) < self._most_logs:
             self._logs.append(Log(tick, notice.severity, "turtlesim", notice.text))

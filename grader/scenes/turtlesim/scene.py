@@ -58,9 +58,9 @@ class Turtlesim:
 
     def preload(self) -> None:
         """Import the node, decode the picture of the turtle."""
-        from grader.scenes.turtlesim import simulation
+        from grader.scenes.turtlesim import graded_node, simulation  # noqa: F401
 
-        sprites.sprite(simulation.SPRITE)
+        sprites.sprite(graded_node.SPRITE)
 
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str

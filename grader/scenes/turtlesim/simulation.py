@@ -7,71 +7,15 @@ from copy import copy
 from itertools import count
 
 from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Start
+from grader.scenes.turtlesim.allowance import MOST_LOGS
 from grader.scenes.turtlesim.end_of_run import EndOfRun
+from grader.scenes.turtlesim.graded_node import GradedNode
 from grader.scenes.turtlesim.recorder import Recorder
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros import pacer
-from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.ros.turtle_endpoints import pose_bytes
-from turtlesim_py.world.arena import TICK_NS, Arena
+from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import TICK_S, Pose, Reading
-
-#: How often the node is served although nothing has come [ticks]: goals expire.
-SERVE_TICKS = 63
-#: What every turtle looks like; the node would choose one of many.
-SPRITE = "rolling"
-
-
-class HookedNode(TurtlesimNode):
-    """A turtlesim node that is served only where something has come, and tells when it was."""
-
-    def __init__(self, hooks: Hooks, interfaces: str) -> None:
-        self._hooks = hooks
-        parameters = [f"turtle_image:={SPRITE}"]
-        if interfaces:
-            parameters.append(f"interfaces:={interfaces}")
-        super().__init__(["--ros-args", *(word for text in parameters for word in ("-p", text))])
-
-    def serve(self, now_ns: int | None = None) -> int:
-        """Serve what has arrived, if anything has."""
-        if now_ns is None:
-            now_ns = int(self.get_clock().now().nanoseconds)
-        if not self._hooks.has_unread() and self.arena.ticks % SERVE_TICKS:
-            self._set_time(now_ns)
-            return now_ns
-        return super().serve(now_ns)
-
-    def foresee(self, most: int, is_certain: Callable[[dict[str, Pose]], bool]) -> Forecast:
-        """The poses of the next ticks, as far as nothing but driving happens.
-
-        Args:
-            is_certain: told the poses of a tick to come; False where that is not to be foreseen.
-        """
-        twins = self.arena.twins()
-        if twins is None or self.follows_ros_clock:
-            return Forecast((), [])
-        publishers = tuple(self._endpoints[twin.name].pose_publisher for twin in twins)
-        begin_ns = self.arena.now_ns
-        until_served = -self.arena.ticks % SERVE_TICKS
-        end_ns = begin_ns + min(most, until_served) * TICK_NS
-        ticks: list[tuple[bytes, ...]] = []
-        for now_ns in range(begin_ns, end_ns, TICK_NS):
-            poses: dict[str, Pose] = {}
-            for twin in twins:
-                if (pose := twin.foresee(now_ns)) is None:
-                    return Forecast(publishers, ticks)
-                poses[twin.name] = pose
-            if not is_certain(poses):
-                break
-            ticks.append(tuple(map(pose_bytes, poses.values())))
-        return Forecast(publishers, ticks)
-
-    def pass_tick(self, now_ns: int) -> dict[str, Reading]:
-        """As `tick` where there is nothing to serve, but nothing of the turtles is published."""
-        self._set_time(now_ns)
-        readings = self.arena.tick()
-        self._window.publish_if_due()
-        return readings
 
 
 class TurtlesimSimulation:
@@ -84,9 +28,9 @@ class TurtlesimSimulation:
     def __init__(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str = ""
     ) -> None:
-        self.node = HookedNode(hooks, interfaces)
+        self.node = GradedNode(hooks, interfaces)
         _place(self.node.arena, start)
-        self._recorder = Recorder(self.node.arena)
+        self._recorder = Recorder(self.node.arena, MOST_LOGS)
         self._end = EndOfRun(limits)
         self._records = False
 
@@ -94,6 +38,11 @@ class TurtlesimSimulation:
     def is_at_rest(self) -> bool:
         """Whether turtle1 has moved, and does not now."""
         return self._end.is_at_rest
+
+    @property
+    def flags(self) -> tuple[str, ...]:
+        """What the submission asked for and did not get."""
+        return self.node.allowance.flags
 
     @property
     def recorded_s(self) -> float:
@@ -114,8 +63,6 @@ class TurtlesimSimulation:
 
     def tick(self, now_ns: int | None = None) -> Reason:
         """Serve what has arrived, let a tick pass; why the run is over, or ''."""
-        if self.node.follows_ros_clock:
-            now_ns = None
         readings = self.node.tick(now_ns)
         return self._take(readings) if self._records else ""
 

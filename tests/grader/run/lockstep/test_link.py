@@ -32,7 +32,7 @@ def test_a_piece_that_is_none_is_an_error() -> None:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours, theirs:
         reader = PacketReader(ours)
-        theirs.send(MORE + b"begin")
+        theirs.send(MORE + bytes(PIECE_BYTES))
         assert reader.read() is None
         theirs.send(b"another packet")
         with pytest.raises(ProtocolError):
@@ -43,7 +43,7 @@ def test_who_goes_in_the_middle_of_a_packet_has_gone() -> None:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours:
         reader = PacketReader(ours)
-        theirs.send(MORE + b"begin")
+        theirs.send(MORE + bytes(PIECE_BYTES))
         theirs.close()
         assert reader.read() is None
         assert reader.read() == b""
@@ -54,3 +54,22 @@ def test_the_last_piece_alone_is_a_packet() -> None:
     with ours, theirs:
         theirs.send(LAST + b"all")
         assert PacketReader(ours).read() == b"all"
+
+
+def test_many_small_pieces_are_none_of_ours() -> None:
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with ours, theirs:
+        theirs.send(MORE + b"x")
+        with pytest.raises(ProtocolError):
+            PacketReader(ours).read()
+
+
+def test_a_packet_without_end_is_an_error() -> None:
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with ours, theirs:
+        reader = PacketReader(ours, limit_bytes=2 * PIECE_BYTES)
+        theirs.send(MORE + bytes(PIECE_BYTES))
+        assert reader.read() is None
+        theirs.send(MORE + bytes(PIECE_BYTES))
+        with pytest.raises(ProtocolError, match="more than"):
+            reader.read()

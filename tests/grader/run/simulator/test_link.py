@@ -6,6 +6,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import chain
 
 import pytest
 
@@ -63,18 +64,24 @@ def test_what_a_dead_process_has_mailed_and_reached_is_known(
     os.close(page)
     ends[1].close()
     assert heard.receive() is None
-    assert (heard.mail(), heard.reached()) == (parcels, 41)
+    assert (list(chain(*heard.mail())), heard.reached()) == (parcels, 41)
     heard.close()
 
 
-def test_a_page_that_was_cut_off_tells_nothing(ends: tuple[socket.socket, socket.socket]) -> None:
+@pytest.mark.parametrize("size", [0, 3, 10_000_000])
+def test_nobody_changes_the_size_of_the_page(
+    ends: tuple[socket.socket, socket.socket], size: int
+) -> None:
     heard = StudentLink(ends[0], os.getpid(), Patience())
     heard.introduce(Table(()))
     _, (page, mailbox), _, _ = socket.recv_fds(ends[1], 1000, 2)
-    os.ftruncate(page, 3)
+    with pytest.raises(PermissionError):
+        os.ftruncate(page, size)
+    with pytest.raises(PermissionError):
+        os.pwrite(page, b"x", 10_000)
     os.close(page)
     os.close(mailbox)
-    assert (heard.mail(), heard.reached()) == ([], 0)
+    assert (list(heard.mail()), heard.reached()) == ([], 0)
     heard.close()
 
 
@@ -88,7 +95,7 @@ def test_nonsense_in_the_mail_ends_the_conversation(
     with socket.socket(fileno=mailbox) as mail:
         mail.send(b"?")
         mail.send(encode(Advance(5, 1, 0)))
-        assert heard.mail() == []
+        assert list(heard.mail()) == []
     assert heard.silence == "broken"
     heard.close()
 

@@ -1,0 +1,184 @@
+"""The turtlesim node of a graded run: it can be foreseen, and gives each thing in its measure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+
+from grader.scenes.scene import Forecast, Hooks
+from grader.scenes.turtlesim.allowance import (
+    FIXED,
+    LONGEST_NAME,
+    MOST_ENTRIES,
+    MOST_GOALS,
+    MOST_PICTURES,
+    Allowance,
+)
+from turtlesim_py.ros.node import TurtlesimNode
+from turtlesim_py.ros.turtle_endpoints import pose_bytes
+from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.events import Event
+from turtlesim_py.world.notices import LogLine, Notice
+from turtlesim_py.world.turtle import Pose, Reading
+
+#: How often the node is served although nothing has come [ticks]: goals expire.
+SERVE_TICKS = 63
+#: What every turtle looks like; the node would choose one of many.
+SPRITE = "rolling"
+#: Where the entries of a request to a service for parameters are.
+ENTRIES = {
+    SetParameters: "parameters",
+    SetParametersAtomically: "parameters",
+    GetParameters: "names",
+    GetParameterTypes: "names",
+    DescribeParameters: "names",
+    ListParameters: "prefixes",
+}
+
+
+class GradedNode(TurtlesimNode):
+    """A turtlesim node that is served only where something has come, and within limits.
+
+    Attributes:
+        allowance: the limits, and what has been refused.
+    """
+
+    def __init__(self, hooks: Hooks, interfaces: str) -> None:
+        self._hooks = hooks
+        self.allowance = Allowance()
+        parameters = [f"turtle_image:={SPRITE}"]
+        if interfaces:
+            parameters.append(f"interfaces:={interfaces}")
+        super().__init__(["--ros-args", *(word for text in parameters for word in ("-p", text))])
+        self._confine()
+
+    def serve(self, now_ns: int | None = None) -> int:
+        """Serve what has arrived, if anything has."""
+        if now_ns is None:
+            now_ns = int(self.get_clock().now().nanoseconds)
+        is_quiet = not self._hooks.has_unread() and self.arena.ticks % SERVE_TICKS
+        if is_quiet or self.allowance.is_used_up:
+            self._set_time(now_ns)
+            return now_ns
+        return super().serve(now_ns)
+
+    def foresee(self, most: int, is_certain: Callable[[dict[str, Pose]], bool]) -> Forecast:
+        """The poses of the next ticks, as far as nothing but driving happens.
+
+        Args:
+            is_certain: told the poses of a tick to come; False where that is not to be foreseen.
+        """
+        twins = self.arena.twins()
+        if twins is None:
+            return Forecast((), [])
+        publishers = tuple(self._endpoints[twin.name].pose_publisher for twin in twins)
+        begin_ns = self.arena.now_ns
+        until_served = -self.arena.ticks % SERVE_TICKS
+        end_ns = begin_ns + min(most, until_served) * TICK_NS
+        ticks: list[tuple[bytes, ...]] = []
+        for now_ns in range(begin_ns, end_ns, TICK_NS):
+            poses: dict[str, Pose] = {}
+            for twin in twins:
+                if (pose := twin.foresee(now_ns)) is None:
+                    return Forecast(publishers, ticks)
+                poses[twin.name] = pose
+            if not is_certain(poses):
+                break
+            ticks.append(tuple(map(pose_bytes, poses.values())))
+        return Forecast(publishers, ticks)
+
+    def pass_tick(self, now_ns: int) -> dict[str, Reading]:
+        """As `tick` where there is nothing to serve, but nothing of the turtles is published."""
+        self._set_time(now_ns)
+        readings = self.arena.tick()
+        self._window.publish_if_due()
+        return readings
+
+    # What a submission may not do ----------------------------------------------------------
+
+    def _confine(self) -> None:
+        """Have the services ask first."""
+        for service in self.services:
+            if service.srv_type in ENTRIES:
+                where = ENTRIES[service.srv_type]
+                service.callback = partial(self._on_entries, service.callback, where)
+            elif service.srv_type is Trigger:
+                service.callback = partial(self._on_picture, service.callback)
+
+    def _on_entries(self, serve: Callable[..., Any], where: str, request: Any, answer: Any) -> Any:
+        if len(getattr(request, where)) > MOST_ENTRIES:
+            self.allowance.refuse(f"requests for more than {MOST_ENTRIES} parameters were refused")
+            return answer
+        return serve(request, answer)
+
+    def _on_picture(self, serve: Callable[..., Any], request: Any, answer: Any) -> Any:
+        if self.allowance.may_save():
+            return serve(request, answer)
+        answer.success = False
+        answer.message = f"a graded run has {MOST_PICTURES} pictures at most"
+        return answer
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """All but those that a run depends on."""
+        for parameter in parameter_list:
+            name, value = parameter.name, parameter.value
+            if name not in FIXED or value == (now := self.get_parameter(name).value):
+                continue
+            if type(value) is type(now):  # else there is a better reason
+                why = f"the parameter {name} cannot be set: {FIXED[name]}"
+                self.allowance.refuse(why)
+                return SetParametersResult(successful=False, reason=why)
+        return super().set_parameters_atomically(parameter_list)
+
+    def _on_spawn(self, request: Any, response: Any) -> Any:
+        # cut, it is as wrong as before
+        request.name = request.name[:LONGEST_NAME]
+        if why := self.allowance.why_not_hatch(len(self.arena.turtles)):
+            self.get_logger().error(f"Cannot spawn a turtle named [{request.name}]: {why}")
+            response.name = ""
+            return response
+        response = super()._on_spawn(request, response)
+        self.allowance.hatched += bool(response.name)
+        return response
+
+    def _on_kill(self, request: Any, response: Any) -> Any:
+        request.name = request.name[:LONGEST_NAME]
+        return super()._on_kill(request, response)
+
+    def _on_reset(self, request: Any, response: Any) -> Any:
+        if why := self.allowance.why_not_hatch(0):
+            self.get_logger().error(f"Cannot reset: {why}")
+            return response
+        self.allowance.hatched += 1
+        return super()._on_reset(request, response)
+
+    def accepts_goal(self) -> bool:
+        """Whether not too many are known."""
+        if sum(each.action.known for each in self._endpoints.values()) < MOST_GOALS:
+            return True
+        self.allowance.refuse(f"more than {MOST_GOALS} rotation goals in ten seconds were refused")
+        return False
+
+    def on_failure(self, what: str, error: Exception) -> None:
+        """As always; and the result tells it, for nothing should fail."""
+        self.allowance.refuse(f"the simulator could not serve {what}: {type(error).__name__}")
+        super().on_failure(what, error)
+
+    def _on_notice(self, notice: Notice) -> None:
+        if isinstance(notice, Event):
+            self.allowance.events += 1
+        if not isinstance(notice, LogLine) or self.allowance.may_log():
+            super()._on_notice(notice)
