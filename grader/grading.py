@@ -23,6 +23,7 @@ from grader.recording import folder as recording_folder
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
 from grader.run import real_time, virtual_time
+from grader.run.lost import SimulatorLost, judged_all_the_same
 from grader.run.plan import Plan
 from grader.run.processes import cores
 from grader.scenes import load_scene
@@ -196,10 +197,16 @@ def start(
 
     def run_twice_at_most(plan: Plan) -> Recording:
         show = progress if plan is plans[0] else None
+        again = replace(plan, flags=(REPEATED, *plan.flags))
         try:
             return run(submission, plan, show)
+        except SimulatorLost:
+            try:
+                return run(submission, again, show)
+            except SimulatorLost as lost:
+                return judged_all_the_same(again, lost)
         except GraderFailure:
-            return run(submission, replace(plan, flags=(REPEATED, *plan.flags)), show)
+            return run(submission, again, show)
 
     at_once = min(len(plans), max(LEAST_AT_ONCE, math.ceil(cores.share())))
     pool = ThreadPoolExecutor(max_workers=at_once)

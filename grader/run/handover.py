@@ -16,6 +16,8 @@ from grader.recording.recording import PublishedTopic
 from grader.scenes.scene import Scene, Trace
 
 _LENGTH = Struct("<Q")
+#: More than any run leaves; the grader's process holds it a few times over.
+MOST_BYTES = 256_000_000
 
 
 def leave(path: Path, scene: Scene, trace: Trace, topics: tuple[PublishedTopic, ...]) -> None:
@@ -24,19 +26,28 @@ def leave(path: Path, scene: Scene, trace: Trace, topics: tuple[PublishedTopic, 
     path.write_bytes(_LENGTH.pack(len(facts)) + facts + scene.encode(trace))
 
 
+def _topic(words: dict[str, str]) -> PublishedTopic:
+    topic = PublishedTopic(**words)
+    if not isinstance(topic.topic, str) or not isinstance(topic.type, str):
+        raise TypeError("a topic and its type are texts")
+    return topic
+
+
 def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
     """In the grader's process: read it from an open file descriptor.
 
     Raises:
         GraderFailure: it is not what `leave` writes.
     """
-    with open(file, "rb", closefd=False) as opened:
-        opened.seek(0)
-        data = opened.read()
     try:
+        with open(file, "rb", closefd=False) as opened:
+            opened.seek(0)
+            data = opened.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
+            raise ValueError(f"more than {MOST_BYTES} bytes")
         (length,) = _LENGTH.unpack_from(data)
         end = _LENGTH.size + length
-        topics = tuple(PublishedTopic(**words) for words in json.loads(data[_LENGTH.size : end]))
+        topics = tuple(map(_topic, json.loads(data[_LENGTH.size : end])))
         return scene.decode(data[end:]), topics
     except Exception as error:
         raise GraderFailure(f"the simulator left no recording: {error!s:.200}") from error

@@ -30,6 +30,8 @@ class Simulator:
     """The simulator's process, and the line to it."""
 
     def __init__(self, process: Watched, ours: socket.socket) -> None:
+        #: whether a submission has something to do with it
+        self.is_driven = False
         self._process = process
         self._socket = ours
         self._text = b""

@@ -16,6 +16,7 @@ from grader.recording.recording import Outcome, Recording
 from grader.run import handover, real_time, stage, zygotes
 from grader.run.finish import Ending, outcome, record
 from grader.run.lockstep import contract
+from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
 from grader.run.processes import cores, usage
 from grader.run.real_time import Progress
@@ -50,7 +51,8 @@ def run(
             each other (`met`), were connected by DDS (`connected`), ticked last (`over`).
 
     Raises:
-        GraderFailure: the simulator could not be started or died.
+        GraderFailure: the simulator could not be started or died; where the submission had said
+            something to it, as a `SimulatorLost`.
     """
     why = contract.lacking()
     if not why:
@@ -77,32 +79,45 @@ def _try(
         words = command(submission, scene.introduction, ours.fileno(), core_id)
         student = place.virtual_student(words, submission, pass_fds=(ours.fileno(),))
         ours.close()
+
+        def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
+            return Ending(
+                time="virtual",
+                outcome=how,
+                exit_code=exit_code,
+                wall_s=time.monotonic() - started,
+                isolation=place.isolation,
+                output=submission.as_handed_in(student.output()),
+                flags=tuple(map(submission.as_handed_in, flags)),
+            )
+
+        is_driven = False
         try:
-            more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
-            warm = zygotes.for_simulator(place.namespaces)
-            with start_simulator(MODULE, place, plan, theirs, *more, warm=warm) as simulator:
-                theirs.close()
-                message = _watch(simulator, student.pid)
-                exit_code = student.wait(2.0) if message.get("silence") == "gone" else None
-        finally:
-            student.end(gently=False)
-        if student.was_lost:
-            raise GraderFailure("the process from which a submission's was forked has died")
-        if message["say"] == "refused":
-            return None, submission.as_handed_in(message["reason"])
-        marks.update(message["marks"])
-        trace, topics = handover.fetch(place.recording, scene)
+            try:
+                more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
+                warm = zygotes.for_simulator(place.namespaces)
+                with start_simulator(MODULE, place, plan, theirs, *more, warm=warm) as simulator:
+                    theirs.close()
+                    try:
+                        message = _watch(simulator, student.pid)
+                    finally:
+                        is_driven = simulator.is_driven
+                    exit_code = student.wait(2.0) if message.get("silence") == "gone" else None
+            finally:
+                student.end(gently=False)
+            if student.was_lost:
+                raise GraderFailure("the process from which a submission's was forked has died")
+            if message["say"] == "refused":
+                return None, submission.as_handed_in(message["reason"])
+            marks.update(message["marks"])
+            trace, topics = handover.fetch(place.recording, scene)
+        except GraderFailure as failure:
+            if not is_driven or student.was_lost:
+                raise
+            raise SimulatorLost(failure, ending("killed", None)) from failure
     how, flags = _judge(message, exit_code, patience)
-    ending = Ending(
-        time="virtual",
-        outcome=how,
-        exit_code=exit_code,
-        wall_s=time.monotonic() - started,
-        isolation=place.isolation,
-        output=submission.as_handed_in(student.output()),
-        flags=tuple(map(submission.as_handed_in, (*flags, *message["flags"]))),
-    )
-    return record(plan, trace, topics, ending), ""
+    flags += message["flags"]
+    return record(plan, trace, topics, ending(how, exit_code, tuple(flags))), ""
 
 
 def command(
@@ -117,7 +132,8 @@ def command(
 def _watch(simulator: Simulator, student_pid: int) -> Message:
     """Wait for the end of the run, for as long as one of its processes does something."""
     used_s, since = -1.0, 0.0
-    while (message := simulator.next(0.2)) is None:
+    while (message := simulator.next(0.2)) is None or message["say"] == "met":
+        simulator.is_driven = simulator.is_driven or message is not None
         now_used_s = sum(usage.look(pid).cpu_s for pid in (simulator.pid, student_pid))
         if now_used_s != used_s:
             used_s, since = now_used_s, time.monotonic()

@@ -216,6 +216,9 @@ class Scene(Protocol):
             interfaces: from `interfaces_for`; '' for the usual ones.
         """
 
+    def untouched(self, start: Start | None) -> Trace:
+        """What a run leaves in which nothing could be recorded, not even the time."""
+
     def encode(self, trace: Trace) -> bytes:
         """A trace's bytes, for the way from the simulator's process to the grader's."""
 

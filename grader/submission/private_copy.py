@@ -23,8 +23,14 @@ from sys import stdlib_module_names
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.submission.archive import MAX_BYTES
-from grader.submission.folder import HAND_IN, MAX_ENTRIES, is_generated, is_junk, listed
+from grader.submission.folder import (
+    HAND_IN,
+    MAX_BYTES,
+    MAX_ENTRIES,
+    is_generated,
+    is_junk,
+    listed,
+)
 from grader.text import without_controls
 
 MAX_LEVELS: Final = 32  # of folders; what lies deeper is left out

@@ -17,6 +17,7 @@ import gc
 import json
 import socket
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -44,8 +45,12 @@ GARBAGE = 100_000
 class Lockstep:
     """Ticks a scene as its student's side asks, to the end of the run."""
 
-    def __init__(self, link: StudentLink, plan: Plan, shared_core: int) -> None:
+    def __init__(
+        self, link: StudentLink, plan: Plan, shared_core: int, on_met: Callable[[], None]
+    ) -> None:
+        """`on_met` is called when the submission's process has said its first word."""
         self._link = link
+        self._on_met = on_met
         self._core = shared_core
         self.now_ns = 0
         self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
@@ -114,7 +119,9 @@ class Lockstep:
     def _next_request(self) -> Advance | None:
         """The next `Advance`, after all that comes before it."""
         while (packet := self._link.receive()) is not None:
-            self._mark("met")
+            if "met" not in self._marks:
+                self._mark("met")
+                self._on_met()
             match packet:
                 case Interests():
                     self._registry.note(packet)
@@ -206,14 +213,17 @@ def main(argv: list[str]) -> int:
     control = socket.socket(fileno=int(argv[0]))
     theirs = socket.socket(fileno=int(argv[3]))
     link = StudentLink(theirs, int(argv[4]), Patience(**json.loads(argv[6])))
-    lockstep = Lockstep(link, Plan.from_json(argv[2]), int(argv[5]))
+
+    def say(what: str, **more: Any) -> None:
+        control.sendall(json.dumps({"say": what, **more}).encode() + b"\n")
+
+    lockstep = Lockstep(link, Plan.from_json(argv[2]), int(argv[5]), lambda: say("met"))
     gc.freeze()
     gc.set_threshold(GARBAGE)
     try:
         ending = lockstep.run()
         lockstep.save(Path(argv[1]))
-        message = {"say": "done", **ending}
+        say("done", **ending)
     except Refused as refusal:
-        message = {"say": "refused", "reason": str(refusal)}
-    control.sendall(json.dumps(message).encode() + b"\n")
+        say("refused", reason=str(refusal))
     return 0

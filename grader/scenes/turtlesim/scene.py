@@ -70,6 +70,12 @@ class Turtlesim:
 
         return TurtlesimSimulation(limits, start, hooks, interfaces)
 
+    def untouched(self, start: Start | None) -> Trace:
+        """No tick, an empty canvas, and the turtle where it began."""
+        from grader.scenes.turtlesim.driving import drive
+
+        return drive(lambda *_: None, 0, start)[0]
+
     def encode(self, made: Trace) -> bytes:
         """A trace's bytes."""
         return trace.encode(TurtleTrace.of(made))

@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,7 @@ from turtlesim_py.world.trajectory import Trajectory
 from turtlesim_py.world.turtle import TICK_S
 
 Pixels = npt.NDArray[np.uint8]
+Value = TypeVar("Value", int, str)
 #: The turtle that exercises are about.
 FIRST_TURTLE = "turtle1"
 
@@ -121,20 +123,43 @@ def decode(data: bytes) -> TurtleTrace:
     """
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
+            _refuse_packed(arrays.zip)
             facts = json.loads(arrays["facts"].tobytes())
             return TurtleTrace(
-                ticks=int(facts["ticks"]),
+                ticks=_of_type(int, facts["ticks"]),
                 events=tuple(map(inputs.from_json, facts["events"])),
                 trajectories={
-                    str(name): Trajectory.of_rows(arrays[f"rows_{n}"])
+                    _of_type(str, name): Trajectory.of_rows(_rows(arrays[f"rows_{n}"]))
                     for n, name in enumerate(facts["turtles"])
                 },
-                logs=tuple(Log(*line) for line in facts["logs"]),
+                logs=tuple(_log(*line) for line in facts["logs"]),
                 canvas=_pixels(arrays["canvas"], 4),
                 window=_pixels(arrays["window"], 3),
             )
     except Exception as error:  # numpy's reader may raise anything
         raise ValueError(f"no trace of turtlesim: {type(error).__name__}: {error}") from error
+
+
+def _refuse_packed(archive: zipfile.ZipFile) -> None:
+    """What is not packed is no longer than the bytes in which it lies."""
+    if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
+        raise ValueError("something in it is packed")
+
+
+def _of_type(kind: type[Value], value: Any) -> Value:
+    if type(value) is not kind:
+        raise TypeError(f"expected {kind.__name__}, found {value!r:.80}")
+    return value
+
+
+def _log(tick: Any, severity: Any, name: Any, text: Any) -> Log:
+    return Log(_of_type(int, tick), *(_of_type(str, word) for word in (severity, name, text)))
+
+
+def _rows(array: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    if array.dtype != np.float64:
+        raise ValueError(f"rows are {array.dtype}")
+    return array
 
 
 def _pixels(array: npt.NDArray[Any], channels: int) -> Pixels:
