@@ -14,10 +14,10 @@ from grader.run.plan import Plan
 from grader.scenes import load_scene
 from grader.text import without_controls
 
-#: For the result; the two are how it ended, and its last line.
+#: For the result, with how it ended and its last line.
 TWICE = (
-    "the simulator ended while the node was running, in both tries, and nothing was recorded: {}"
-    " ({}). What drives turtles cannot do that; if this node does nothing else, the grader is wrong"
+    "the simulator ended while the node was running, in both tries, and nothing was recorded: {}. "
+    "What drives turtles cannot do that; if this node does nothing else, the grader is wrong"
 )
 LONGEST_WORDS = 200
 
@@ -37,8 +37,10 @@ class SimulatorLost(GraderFailure):
 def judged_all_the_same(plan: Plan, lost: SimulatorLost) -> Recording:
     """The recording of a run that was lost twice: nothing has happened in it."""
     how, _, last_words = lost.message.partition(" Its last words:\n")
-    last_line = without_controls(last_words.strip().rpartition("\n")[2], "?")[:LONGEST_WORDS]
-    flag = TWICE.format(without_controls(how, "?").rstrip(".")[:LONGEST_WORDS], last_line or "-")
+    # what stands in brackets is ROS's log, and has the submission's words in it
+    lines = [line for line in last_words.splitlines() if line and not line.startswith("[")]
+    told = [without_controls(text, "?")[:LONGEST_WORDS] for text in (how.rstrip("."), *lines[-1:])]
+    flag = TWICE.format("; ".join(told))
     trace = load_scene(plan.scene).untouched(plan.start)
     ending = lost.ending
     return record(plan, trace, (), Ending(**{**vars(ending), "flags": (*ending.flags, flag)}))
