@@ -235,10 +235,13 @@ class TurtlesimNode(RclcppNode):
                     logger.warning(text)
                 else:
                     logger.error(text)
-            case GoalFeedback(turtle):
-                self._endpoints[turtle].action.feedback(notice)
-            case GoalResult(turtle):
-                self._endpoints[turtle].action.finish(notice)
+            case GoalFeedback(turtle) | GoalResult(turtle):
+                action = self._endpoints[turtle].action
+                tell: Any = action.feedback if isinstance(notice, GoalFeedback) else action.finish
+                try:
+                    tell(notice)
+                except Exception as error:  # in the middle of a tick, which goes on
+                    self.on_failure(f"{turtle}/rotate_absolute", error)
 
     def _log_positions(self) -> None:
         for name in sorted(self.arena.turtles):

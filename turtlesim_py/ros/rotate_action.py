@@ -7,6 +7,7 @@ from collections.abc import Callable
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 from rclpy.node import Node
+from rclpy.task import Future
 
 from turtlesim_py.ros.interfaces import Interfaces
 from turtlesim_py.world.arena import Arena
@@ -36,7 +37,9 @@ class RotateAction:
         self._type = interfaces.RotateAbsolute
         self._arena = arena
         self._turtle = turtle
-        self._running: dict[bytes, ServerGoalHandle] = {}
+        #: with the result that is waited for: rclpy forgets a goal whose number is that of one that
+        #: expires in the same moment
+        self._running: dict[bytes, tuple[ServerGoalHandle, Future]] = {}
         self._server = ActionServer(
             node,
             self._type,
@@ -56,12 +59,12 @@ class RotateAction:
     def feedback(self, event: GoalFeedback) -> None:
         """Tell a goal's client how far it still is."""
         message = self._type.Feedback(remaining=event.remaining_rad)
-        self._running[_key(event)].publish_feedback(message)
+        handle, _ = self._running[_key(event)]
+        handle.publish_feedback(message)
 
     def finish(self, event: GoalResult) -> None:
         """End a goal and send its result to those who wait for it."""
-        key = _key(event)
-        handle = self._running.pop(key)
+        handle, awaited = self._running.pop(_key(event))
         if event.status == "SUCCEEDED":
             handle.succeed()
         elif event.status == "ABORTED":
@@ -73,7 +76,7 @@ class RotateAction:
         response = self._type.Impl.GetResultService.Response(
             status=handle.status, result=self._type.Result(delta=event.delta_rad)
         )
-        self._server._result_futures[key].set_result(response)
+        awaited.set_result(response)
 
     def destroy(self) -> None:
         """Take the action off the graph."""
@@ -82,7 +85,7 @@ class RotateAction:
     def _on_goal(self, handle: ServerGoalHandle) -> None:
         handle._update_state(GoalEvent.EXECUTE)
         key = bytes(handle.goal_id.uuid)
-        self._running[key] = handle
+        self._running[key] = handle, self._server._result_futures[key]
         self._arena.rotate_absolute(self._turtle, handle.request.theta, key)
 
     def _on_cancel(self, handle: ServerGoalHandle) -> CancelResponse:

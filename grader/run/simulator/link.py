@@ -134,7 +134,7 @@ class StudentLink:
                 if isinstance(packet, Mail):
                     yield packet.parcels
                 else:
-                    self._break(NONSENSE)
+                    self.break_off(NONSENSE)
 
     def reached(self) -> int:
         """The tick that the submission's process says that it has reached; also when it is dead."""
@@ -161,7 +161,7 @@ class StudentLink:
         try:
             self._wait(self._may_send)
         except Refused:
-            self._break("its process does not read what it has asked for")
+            self.break_off("its process does not read what it has asked for")
 
     def receive(self) -> Interests | Advance | None:
         """The next request; None when there will be no other: see `silence`.
@@ -182,7 +182,7 @@ class StudentLink:
             except OSError:
                 packet = None
             except ProtocolError:
-                self._break(NONSENSE)
+                self.break_off(NONSENSE)
                 break
             match packet:
                 case None:
@@ -192,7 +192,7 @@ class StudentLink:
                 case Interests() | Advance():
                     return packet
                 case _:
-                    self._break("its process sent what only a simulator says")
+                    self.break_off("its process sent what only a simulator says")
         return None
 
     def flag(self, text: str) -> None:
@@ -216,9 +216,10 @@ class StudentLink:
             case Kind.FAILED:
                 raise Refused(text)
 
-    def _break(self, why: str) -> None:
+    def break_off(self, why: str) -> None:
+        """Hear nothing more of it, for it does what no process of ours does; `why` is a flag."""
         self.silence = "broken"
-        self.flag(why)
+        self.flags.append(why)  # it decides the run, however many there are
 
     def _wait(self, poll: select.poll) -> bool:
         """Wait until the link can be read, or written; False if it never will."""

@@ -40,6 +40,9 @@ from grader.scenes.scene import Hooks, Reason
 
 #: So many new objects are searched for garbage: what a run records stays to its end.
 GARBAGE = 100_000
+#: So many requests of a run may let no time pass; most runs have none of these.
+MOST_VAIN = 100_000
+VAIN = f"its process made more than {MOST_VAIN} requests that let no time pass"
 
 
 class Lockstep:
@@ -65,7 +68,7 @@ class Lockstep:
         self._simulation = self._scene.simulate(plan.limits, plan.start, hooks, plan.interfaces)
         self._simulation.record()
         self._foresight = Foresight(self._simulation, self._registry)
-        self._tick = 0
+        self._tick = self._vain = 0
         self._reason: Reason = ""
         #: when the run reached which stage, on the machine's monotonic clock [s]
         self._marks: dict[str, float] = {}
@@ -84,8 +87,12 @@ class Lockstep:
                 self._take_mail()
             if self._link.waits:
                 self._note_rest()
+            before = self._tick
             self._advance(request)
             self._reply(request)
+            self._vain += self._tick == before
+            if self._vain > MOST_VAIN:
+                self._link.break_off(VAIN)
             if not self._reason:
                 request = self._next_request()
         if not self._reason:

@@ -1,0 +1,442 @@
+"""Feed a simulator's process with what no program of good will sends, and see whether it lives.
+
+    python scripts/fuzz_simulator.py ros|link|rtps [--seconds N] [--seed N]
+
+`ros`: every service, topic and part of an action of a `turtlesim_node`, over DDS, with values that
+are random, huge, or none. `link`: a graded simulator in virtual time, whose student's side sends
+mutated packets and mutated CDR. `rtps`: mutated copies of the packets that DDS itself exchanges, at
+the simulator's UDP ports; that needs a network of its own, and root or a user namespace:
+
+    unshare --user --map-root-user --net sh -c 'ip link set lo up; ... rtps'
+
+It prints counts, and ends with 1 if a process has died or does not answer any more.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import os
+import random
+import select
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+FLOATS = (0.0, -0.0, 1.0, 5e-324, 1e-38, 1e38, 1e308, -1e308, float("inf"), -float("inf"))
+TEXTS = ("", "turtle1", "t2", "a/b", "/", "~", "\0", "\x1b[31m", "ü" * 9, "[/b]", "use_sim_time")
+LENGTHS = (0, 1, 255, 256, 300, 300, 3_000, 3_000, 30_000)
+NAMES = ("background_r", "holonomic", "image_rate", "canvas_folder", "use_sim_time", "interfaces")
+
+
+def scalar(kind: str, chance: random.Random) -> Any:
+    """A value for a field of a basic type; what looks likely to break something, mostly."""
+    if kind in ("float", "double"):
+        number = chance.choice((*FLOATS, float("nan"), chance.uniform(-12, 12)))
+        return number if kind == "double" else struct.unpack("<f", _single(number))[0]
+    if kind == "boolean":
+        return chance.random() < 0.5
+    if kind == "string":
+        return chance.choice((*TEXTS, *NAMES, "x" * chance.choice(LENGTHS)))
+    if kind == "octet":
+        return bytes([chance.randrange(256)])
+    bits = int("".join(filter(str.isdigit, kind)))
+    low, high = (0, 2**bits - 1) if kind[0] == "u" else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+    return chance.choice((low, high, max(low, -1), 0, 1, 10, chance.randint(low, high)))
+
+
+def _single(number: float) -> bytes:
+    try:
+        return struct.pack("<f", number)
+    except OverflowError:
+        return struct.pack("<f", float("inf"))
+
+
+def filled(message: Any, chance: random.Random) -> Any:
+    """A message of this class with a value in each of its fields."""
+    made = message()
+    for name, kind in message.get_fields_and_field_types().items():
+        setattr(made, name, _value(kind, chance))
+    return made
+
+
+def _value(kind: str, chance: random.Random) -> Any:
+    element, _, rest = kind.removeprefix("sequence<").partition("<")[0].partition("[")
+    if kind.startswith("sequence<"):
+        element = kind.removeprefix("sequence<").rstrip(">").partition(",")[0]
+        length = chance.choice((0, 1, 2, 50))
+        return [_value(element, chance) for _ in range(length)]
+    if rest:
+        return [_value(element, chance) for _ in range(int(rest.rstrip("]")))]
+    if "/" in kind:
+        return filled(_message(*kind.split("/")), chance)
+    return scalar(kind, chance)
+
+
+def mutated(data: bytes, chance: random.Random) -> bytes:
+    """Bytes of which some have changed; also lengths, which are little-endian in 32 bits."""
+    changed = bytearray(data)
+    for _ in range(chance.choice((0, 1, 1, 2, 8))):
+        if not changed:
+            break
+        at = chance.randrange(len(changed))
+        match chance.randrange(5):
+            case 0:
+                changed[at] = chance.randrange(256)
+            case 1:
+                number = chance.choice(
+                    (0, 1, 0x7FFFFFFF, 0xFFFFFFFF, 0x10000, chance.getrandbits(32))
+                )
+                changed[at // 4 * 4 : at // 4 * 4 + 4] = struct.pack("<I", number)
+            case 2:
+                del changed[at:]
+            case 3:
+                changed[at:at] = chance.randbytes(chance.randrange(1, 40))
+            case 4:
+                changed[at : at + 3] = b"\xff\xfe\xc0"
+    return bytes(changed)
+
+
+def _message(package: str, name: str) -> Any:
+    action, _, part = name.partition("_")
+    if part in ("Goal", "Result", "Feedback"):
+        return getattr(getattr(importlib.import_module(f"{package}.action"), action), part)
+    return getattr(importlib.import_module(f"{package}.msg"), name)
+
+
+# Over DDS ---------------------------------------------------------------------------------------
+
+
+@contextmanager
+def simulator(folder: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A `turtlesim_node` in a process of its own."""
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with (
+        (Path(folder) / "log").open("wb") as log,
+        subprocess.Popen(
+            [sys.executable, "-m", "turtlesim_py.ros.node"],
+            cwd=folder,
+            env=env,
+            stdout=log,
+            stderr=log,
+        ) as process,
+    ):
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+class Caller:
+    """A node that finds what a simulator serves, and calls it."""
+
+    def __init__(self, chance: random.Random) -> None:
+        import rclpy
+
+        rclpy.init(args=[])
+        self.counts: Counter[str] = Counter()
+        self._rclpy, self._chance = rclpy, chance
+        self._node = rclpy.create_node("fuzzer")
+        self._clients: dict[str, Any] = {}
+        self._publishers: dict[str, Any] = {}
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._rclpy.shutdown()
+
+    def find(self) -> int:
+        """Look what there is now; how much that is."""
+        with suppress(Exception):  # it is not there yet
+            for topic, (kind, *_) in self._node.get_subscriber_names_and_types_by_node(
+                "turtlesim", "/"
+            ):
+                if topic not in self._publishers and len(self._publishers) < 50:
+                    made = self._node.create_publisher(_class(kind), topic, 10)
+                    self._publishers[topic] = made
+            for service, (kind, *_) in self._node.get_service_names_and_types_by_node(
+                "turtlesim", "/"
+            ):
+                if service not in self._clients and len(self._clients) < 200:
+                    self._clients[service] = self._node.create_client(_class(kind), service)
+        return len(self._clients)
+
+    def send(self) -> None:
+        """One message or request to each."""
+        for topic, publisher in self._publishers.items():
+            publisher.publish(filled(publisher.msg_type, self._chance))
+            self.counts[_plain(topic)] += 1
+        for name, client in self._clients.items():
+            if "describe_parameters" in name or client.service_is_ready():
+                future = client.call_async(filled(client.srv_type.Request, self._chance))
+                future.add_done_callback(lambda _: self.counts.update(["answers"]))
+                self.counts[_plain(name)] += 1
+        for _ in range(20):
+            self._rclpy.spin_once(self._node, timeout_sec=0.001)
+
+    def is_answered(self, patience_s: float = 20.0) -> bool:
+        """Whether a harmless question is answered."""
+        from rcl_interfaces.srv import ListParameters
+
+        client = self._node.create_client(ListParameters, "/turtlesim/list_parameters")
+        until = time.monotonic() + patience_s
+        while time.monotonic() < until:
+            future = client.call_async(ListParameters.Request())
+            self._rclpy.spin_until_future_complete(self._node, future, timeout_sec=2.0)
+            if future.done():
+                return True
+        return False
+
+
+def _class(kind: str) -> Any:
+    package, folder, name = kind.split("/")
+    module = importlib.import_module(f"{package}.{folder}")
+    if hasattr(module, name):
+        return getattr(module, name)
+    # "RotateAbsolute_SendGoal" of an action
+    action, _, part = name.partition("_")
+    if part in ("SendGoal", "GetResult"):
+        return getattr(getattr(module, action).Impl, f"{part}Service")
+    raise ValueError(f"no such type: {kind}")
+
+
+def _plain(name: str) -> str:
+    return "/".join(name.split("/")[2:]) if name.count("/") > 1 else name
+
+
+def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
+    """Call everything; the counts, and what went wrong."""
+    with tempfile.TemporaryDirectory() as folder, simulator(folder) as process:
+        caller = Caller(chance)
+        try:
+            until = time.monotonic() + 30
+            while not caller.find() and time.monotonic() < until:
+                time.sleep(0.1)
+            until = time.monotonic() + seconds
+            while time.monotonic() < until and process.poll() is None:
+                caller.find()
+                caller.send()
+            alive = process.poll() is None and caller.is_answered()
+        finally:
+            caller.close()
+        log = (Path(folder) / "log").read_text(errors="replace")
+        for line in log.splitlines():
+            if "Cannot serve [" in line:
+                caller.counts[line[line.index("Cannot") :][:150]] += 1
+        return caller.counts, "" if alive else f"it died or is deaf: {log[-2000:]}"
+
+
+# On the link ------------------------------------------------------------------------------------
+
+
+def fuzz_link(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
+    """Be the student's side of many runs; the counts, and what went wrong."""
+    counts: Counter[str] = Counter()
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        counts["runs"] += 1
+        if wrong := _run_on_link(chance, counts, until):
+            return counts, wrong
+    return counts, ""
+
+
+def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> str:
+    from grader.run.plan import Plan
+    from grader.run.simulator.link import Patience
+    from grader.scenes.scene import Limits
+
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    control, controlled = socket.socketpair()
+    recording = os.memfd_create("recording")
+    fds = (controlled.fileno(), theirs.fileno(), recording)
+    words = [
+        *(str(controlled.fileno()), f"/proc/self/fd/{recording}"),
+        *(Plan(Limits(3, 1, 30)).to_json(), str(theirs.fileno()), str(os.getpid()), "-1"),
+        json.dumps(asdict(Patience(simulator_cpu_s=20.0, all_asleep_s=2.0, asleep_s=1.0))),
+    ]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "grader.run.simulator.virtual_main", *words],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        cwd=tempfile.gettempdir(),
+        pass_fds=fds,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+    )
+    with process, ours, control:
+        theirs.close()
+        controlled.close()
+        os.close(recording)
+        with suppress(OSError):
+            _converse(ours, chance, counts, until)
+        ours.close()
+        said = b""
+        with suppress(OSError):
+            control.settimeout(60)
+            while chunk := control.recv(65536):
+                said += chunk
+        assert process.stderr is not None
+        complaint = process.stderr.read()
+        code = process.wait()
+    if code != 0 or not said:
+        return f"it ended with {code}, said {said!r}; {complaint[-3000:].decode(errors='replace')}"
+    message = json.loads(said.splitlines()[-1])
+    counts[f"{message['say']}, {message.get('silence', message.get('reason'))}"] += 1
+    counts.update(flag for flag in message.get("flags", ()) if "on request" not in flag)
+    if "virtual time itself" in message.get("reason", ""):
+        return f"{message}; {complaint[-3000:].decode(errors='replace')}"
+    return ""
+
+
+def _converse(
+    link: socket.socket, chance: random.Random, counts: Counter[str], until: float
+) -> None:
+    from grader.run.lockstep.link import pieces
+    from grader.run.lockstep.protocol import Advance, Interests, Mail, Parcel, Table, decode, encode
+
+    data, fds, _, _ = socket.recv_fds(link, 200_000, 2)
+    table = decode(data)
+    assert isinstance(table, Table)
+    page, mailbox = fds
+    readers = [entry for entry in table.added if not entry.writes]
+    requests = [(entry.id, *_samples(entry)) for entry in readers]
+    channels = tuple(entry.channel for entry in table.added if entry.writes)
+    is_rude = chance.random() < 0.5  # also packets that are none, which end the run
+    with socket.socket(fileno=mailbox) as mail:
+        mail.setblocking(False)
+        for turn in range(400):
+            if time.monotonic() > until:
+                break
+            parcels = [
+                Parcel(
+                    *(number, chance.choice((0, 1, 2**32 - 1)), chance.choice((0, 7, 2**64 - 1))),
+                    *(0, mutated(_cdr(kind, chance), chance)),
+                )
+                for number, kind in requests
+            ]
+            counts["messages"] += len(parcels)
+            packet = encode(Mail(parcels))
+            if is_rude and chance.random() < 0.02:
+                packet = mutated(packet, chance)
+            for piece in pieces(packet):
+                while not _is_sent(mail, piece):
+                    link.send(encode(Advance(0, 0, 0, True)))
+                    _drain(link)
+            os.pwrite(page, chance.randbytes(8), 0)
+            if chance.random() < 0.1:
+                link.send(encode(Interests(channels[: chance.randrange(len(channels))])))
+            ask = encode(Advance(2**40, 1, chance.choice((0, turn, 2**64 - 1)), True))
+            is_wrong = is_rude and chance.random() < 0.01
+            link.send(mutated(ask, chance) if is_wrong else ask)
+            counts["packets"] += 2
+            _drain(link)
+    os.close(page)
+
+
+def _is_sent(mail: socket.socket, piece: bytes) -> bool:
+    try:
+        mail.send(piece)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _samples(entry: Any) -> tuple[Any]:
+    kind = _class(entry.type)
+    return (getattr(kind, "Request", kind),)
+
+
+def _cdr(kind: Any, chance: random.Random) -> bytes:
+    from rclpy.serialization import serialize_message
+
+    try:
+        return bytes(serialize_message(filled(kind, chance)))
+    except Exception:  # a text that no message can have
+        return bytes(serialize_message(kind()))
+
+
+def _drain(link: socket.socket) -> None:
+    """Read what is there, and wait a little for the first of it."""
+    patience_s = 0.5
+    while select.select([link], [], [], patience_s)[0]:
+        if not link.recv(200_000):
+            raise ConnectionError
+        patience_s = 0.0
+
+
+# Below DDS --------------------------------------------------------------------------------------
+
+
+def fuzz_rtps(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
+    """Send mutated copies of all UDP packets on loopback to where they went."""
+    counts: Counter[str] = Counter()
+    sniffer = socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM, socket.htons(0x0800))
+    sniffer.bind(("lo", 0))
+    sniffer.setblocking(False)
+    sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    with tempfile.TemporaryDirectory() as folder, simulator(folder) as process, sniffer, sender:
+        caller = Caller(chance)
+        packets: list[tuple[bytes, int]] = []
+        try:
+            until = time.monotonic() + 30
+            while not caller.find() and time.monotonic() < until:
+                time.sleep(0.1)
+            ours = sender.getsockname()[1]
+            until = time.monotonic() + seconds
+            while time.monotonic() < until and process.poll() is None:
+                caller.find()
+                caller.send()
+                with suppress(BlockingIOError):
+                    while True:
+                        data = sniffer.recv(65536)
+                        head = (data[0] & 15) * 4
+                        source, target = struct.unpack_from("!HH", data, head)
+                        if data[9] == 17 and source != ours:
+                            packets.append((data[head + 8 :], target))
+                packets = packets[-3000:]
+                for _ in range(1000 if packets else 0):
+                    data, target = chance.choice(packets)
+                    with suppress(OSError):
+                        sender.sendto(mutated(data, chance), ("127.0.0.1", target))
+                        counts["packets"] += 1
+            time.sleep(1.0)
+            alive = process.poll() is None
+        finally:
+            caller.close()
+        counts["different packets"] = len(set(packets))
+        counts["messages"] = caller.counts.total()
+        log = (Path(folder) / "log").read_text(errors="replace")
+        return counts, "" if alive else f"it died with {process.poll()}: {log[-2000:]}"
+
+
+FUZZERS = {"ros": fuzz_ros, "link": fuzz_link, "rtps": fuzz_rtps}
+
+
+def main(argv: Sequence[str]) -> int:
+    """Fuzz for a while; 1 if something went wrong."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("where", choices=FUZZERS)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--seed", type=int, default=1)
+    args = parser.parse_args(argv)
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    counts, wrong = FUZZERS[args.where](args.seconds, random.Random(args.seed))
+    for what, count in sorted(counts.items()):
+        print(f"{count:9}  {what}")
+    print(wrong or "it lives")
+    return bool(wrong)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
