@@ -12,7 +12,7 @@ from grader.exercise.sentences import how_it_ended
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import ink, pens, shape
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, NAMES, Path
-from grader.exercises.turtlesim_challenge.stops import judge_stop
+from grader.exercises.turtlesim_challenge.stops import judge_start, judge_stop
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.events import CmdVel, SetPen
@@ -95,8 +95,16 @@ def spiral(recordings: Recordings, tolerances: Tolerances) -> Finding:
         missed.append(f"The path starts {start_m:.2f} m from the centre.")
         evidence.append(path.at(int(path.ticks[path.first]), "the start"))
     turns, other_way = shape.turns(path)
-    if turns >= tolerances["turns"] and other_way <= tolerances["wrong_way_share"]:
+    loops = shape.loops(path)
+    goes_round = loops.rounds >= tolerances["turns"] - shape.BEHIND_TURNS
+    turns_enough = turns >= tolerances["turns"] and other_way <= tolerances["wrong_way_share"]
+    if turns_enough and goes_round:
         share += tolerances["share_turns"]
+    elif turns_enough:
+        missed.append(
+            f"The turtle turned {turns:.1f} times, but its path goes only {loops.rounds:.1f} times "
+            f"round any centre; at least {tolerances['turns']:g} times are asked for."
+        )
     else:
         missed.append(
             f"It made {turns:.1f} turns, with {100 * other_way:.0f} % of the turning the other "
@@ -104,7 +112,11 @@ def spiral(recordings: Recordings, tolerances: Tolerances) -> Finding:
         )
     growth = shape.growth(path)
     grows = len(growth) > 0 and growth.min() >= tolerances["growth_m"]
-    if grows and growth.max() <= tolerances["gentle_m"]:
+    if grows and not (goes_round and loops.outside >= shape.MOSTLY):
+        missed.append("Going round, its path does not stay outside of what it has drawn before.")
+    elif grows and loops.farthest_m > tolerances["gentle_m"]:
+        missed.append(f"It came away from its last turn by {loops.farthest_m:.2f} m.")
+    elif grows and growth.max() <= tolerances["gentle_m"]:
         share += 1 - tolerances["share_start"] - tolerances["share_turns"]
     elif grows:
         missed.append(f"Its distance from the centre jumped by {growth.max():.2f} m in one turn.")
@@ -165,6 +177,11 @@ def edge_stop(recordings: Recordings, tolerances: Tolerances) -> Finding:
     number, worst = failed[0]
     if number == 0:
         return worst
+    away = _moved_away(recordings)
+    if away is not None:
+        return replace(
+            away, rationale=f"From the centre it {findings[0].rationale}. " + away.rationale
+        )
     return Finding(
         0,
         f"From the centre it {findings[0].rationale}, but not when it started elsewhere: "
@@ -186,6 +203,9 @@ def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
         )
     paths = [Path(recording, number) for number, recording in enumerate(recordings)]
     colorings = [pens.coloring(path, tolerances) for path in paths]
+    away = _moved_away(recordings)
+    if away is not None and colorings[0].share > 0:
+        return away
     telling = [n for n, coloring in enumerate(colorings) if coloring.tells or n == 0]
     worst = min(telling, key=lambda n: colorings[n].share)
     found, path = colorings[worst], paths[worst]
@@ -196,13 +216,23 @@ def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
     text = (
         f"{len(found.judged) - len(found.bad)} of {len(found.judged)} entries into a quadrant "
         f"gave the pen that quadrant's colour in time; the {len(found.own)} quadrants that were "
-        f"entered have {len(set(found.own.values()))} different colours."
+        f"entered have {found.different} different colours."
     )
     if worst:
         text = f"When the turtle started elsewhere (run {worst}): {text}"
     evidence = tuple(path.at(e.tick, f"enters quadrant {NAMES[e.quadrant]}") for e in found.bad[:5])
     help_ = "Compare the quadrant of each pose with the one before. Which is where?"
     return Finding(found.share, text, help_, evidence)
+
+
+def _moved_away(recordings: Recordings) -> Finding | None:
+    """Of the runs that start elsewhere, the first in which the turtle was brought away."""
+    for number, recording in enumerate(recordings.varied, start=1):
+        void = judge_start(Path(recording, number))
+        if void is not None:
+            told = f"The turtle started elsewhere (run {number}). {void.rationale}"
+            return replace(void, rationale=told)
+    return None
 
 
 def _in_varied_runs_too(recordings: Recordings) -> str:
@@ -213,13 +243,14 @@ def _in_varied_runs_too(recordings: Recordings) -> str:
 @checks(after=("moves",))
 def picture(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """Four quarters, each in a colour of its own."""
-    quarters = ink.quarters(ink.own_drawing(recordings.nominal))
+    background = ink.background(recordings.nominal)
+    quarters = ink.quarters(ink.own_drawing(recordings.nominal), background)
     empty = [NAMES[q] for q, quarter in quarters.items() if quarter.pixels < ink.LEAST_PIXELS]
     if empty:
         return Finding(
             0,
             f"There is next to nothing drawn in quadrant {', '.join(empty)}.",
-            "Draw on until the spiral fills the window.",
+            _how_to_draw(recordings.nominal),
         )
     mixed = [q for q, quarter in quarters.items() if quarter.share < tolerances["own_ink"]]
     if mixed:
@@ -238,6 +269,16 @@ def picture(recordings: Recordings, tolerances: Tolerances) -> Finding:
         )
     total = sum(quarter.pixels for quarter in quarters.values())
     return Finding(1, f"Four quarters, four colours, {total} painted pixels.")
+
+
+def _how_to_draw(recording: Recording) -> str:
+    calls = TurtleTrace.of(recording.trace).of_kind(SetPen)
+    if any(call.off for call in calls):
+        return "A pen that is off draws nothing: look at what your requests say of `off`."
+    background = ink.background(recording)
+    if any((call.r, call.g, call.b) == background for call in calls):
+        return "What is drawn in the colour of the background cannot be seen."
+    return "Draw on until the spiral fills the window."
 
 
 @checks(after=("moves",))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -62,16 +63,26 @@ class Path(DrivenPath):
     Attributes:
         trace: all that was recorded.
         foreign: the calls that ended stretches, as they came.
+        moved_away: of a run that starts elsewhere, the call because of which its stretch does not
+            begin where it was put; None: it does. Who brings the turtle back to the centre shows
+            nothing of what such a run is for.
         lost_tick: from here on the position is not a number, and the path ends; None: never.
     """
 
     def __init__(self, recording: Recording, number: int = 0) -> None:
         self.trace = TurtleTrace.of(recording.trace)
-        self.foreign = [event for event in self.trace.events if _is_foreign(event)]
+        self.foreign = list(_foreign(self.trace.events))
         whole = DrivenPath(recording, self.trace.trajectory(), number)
         self.lost_tick = None if whole.lost is None else int(whole.ticks[whole.lost])
         driven = whole.until_lost().longest_stretch(event.tick for event in self.foreign)
         super().__init__(recording, driven.way, number)
+        self.moved_away = self._moved_away()
+
+    def _moved_away(self) -> Event | None:
+        if self.recording.start is None or not len(self):
+            return None
+        before = [event for event in self.foreign if event.tick <= self.ticks[0]]
+        return before[-1] if before else None
 
     @property
     def free(self) -> slice:
@@ -110,10 +121,22 @@ class Path(DrivenPath):
         ]
 
 
-def _is_foreign(event: Event) -> bool:
-    match event:
-        case TeleportAbsolute(turtle=turtle) | TeleportRelative(turtle=turtle):
-            return turtle == FIRST_TURTLE
-        case Kill(name=name) | Spawn(name=name):
-            return name == FIRST_TURTLE
-    return isinstance(event, Reset)
+def _foreign(events: Iterable[Event]) -> Iterator[Event]:
+    """The calls that put turtle1 somewhere; one that asks for a name that is taken does nothing."""
+    is_there = True
+    for event in events:
+        match event:
+            case TeleportAbsolute(turtle=name) | TeleportRelative(turtle=name):
+                acts = name == FIRST_TURTLE
+            case Kill(name=name):
+                acts = name == FIRST_TURTLE
+                is_there = is_there and not acts
+            case Spawn(name=name):
+                acts = name == FIRST_TURTLE and not is_there
+                is_there = is_there or acts
+            case Reset():
+                acts = is_there = True
+            case _:
+                acts = False
+        if acts:
+            yield event

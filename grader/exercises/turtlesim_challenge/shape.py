@@ -1,17 +1,33 @@
-"""Whether a path is a spiral: where it starts, how it turns, how it grows."""
+"""Whether a path is a spiral: where it starts, how it turns, how it grows, what it goes round."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from grader.exercises.turtlesim_challenge.path import Path
+from grader.exercises.turtlesim_challenge.path import CENTRE_M, Path
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S
 
+#: A spiral goes round its centre a little less often than the turtle turns: it begins in the
+#: centre, where it has gone round nothing when it has turned by half a turn.
+BEHIND_TURNS = 0.5
+#: The share of a spiral's path that lies outside of its turn before: wobbles are no fault.
+MOSTLY = 0.9
+#: At how many places, evenly spread over all angles, a path is compared with its turn before.
+PLACES = 1000
+
 
 def turned(path: Path) -> Floats:
-    """How far the turtle has turned in each tick of its free way [rad], positive to the left."""
-    return path.angular[path.free] * TICK_S
+    """How far the turtle has turned in each tick of its free way [rad], positive to the left.
+
+    From -pi to pi: whoever commands a thousand turns a tick still looks in one direction only.
+    """
+    angles = path.angular[path.free] * TICK_S
+    angles = np.where(np.isfinite(angles), angles, 0.0)
+    wrapped = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
+    return np.where(np.abs(angles) > np.pi, wrapped, angles)
 
 
 def turns(path: Path) -> tuple[float, float]:
@@ -27,8 +43,56 @@ def turns(path: Path) -> tuple[float, float]:
 def growth(path: Path) -> Floats:
     """By how much the mean distance from the centre grows from each full turn to the next [m]."""
     angle = np.abs(np.cumsum(turned(path)))
-    turn = np.floor(angle / (2 * np.pi)).astype(int)
-    whole = int(turn.max()) if len(turn) else 0
-    distance = path.distance[path.free]
-    means = [float(distance[turn == k].mean()) for k in range(whole) if (turn == k).any()]
-    return np.diff(means) if len(means) > 1 else np.zeros(0)
+    turn = np.floor(angle / (2 * np.pi))
+    if not len(turn):
+        return np.zeros(0)
+    is_whole = turn < turn.max()
+    _, which, counts = np.unique(turn[is_whole], return_inverse=True, return_counts=True)
+    sums = np.bincount(which, weights=path.distance[path.free][is_whole], minlength=len(counts))
+    return np.diff(sums / counts)
+
+
+class Loops(NamedTuple):
+    """How a path goes round the centre that it goes round most often.
+
+    Attributes:
+        rounds: how often.
+        outside: the share of it, from the second round on, that is farther from the centre than
+            what was drawn in the same direction one round before; 1 where there is none.
+        farthest_m: the most by which it is farther [m].
+    """
+
+    rounds: float
+    outside: float
+    farthest_m: float
+
+
+def loops(path: Path) -> Loops:
+    """Look at the drawn line alone: how the turtle was heading does not matter.
+
+    Taken as the centre is that of the window, the beginning of the path, or its middle.
+    """
+    points = path.points[path.free]
+    if not len(points):
+        return Loops(0.0, 1.0, 0.0)
+    centres = ((CENTRE_M, CENTRE_M), points[0], points.mean(axis=0))
+    return max((_round(points - centre) for centre in centres), key=lambda found: found.rounds)
+
+
+def _round(points: Floats) -> Loops:
+    angle = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+    angle -= angle[0]
+    if angle[-1] < 0:
+        angle = -angle
+    rounds = float(angle[-1]) / (2 * np.pi)
+    distance = np.hypot(points[:, 0], points[:, 1])
+    # where it turns back for a while, what counts is the line that goes on
+    goes_on = angle >= np.maximum.accumulate(angle)
+    angle, distance = angle[goes_on], distance[goes_on]
+    if angle[-1] <= 2 * np.pi:
+        return Loops(rounds, 1.0, 0.0)
+    wider = distance - np.interp(angle - 2 * np.pi, angle, distance)
+    wider = wider[angle >= 2 * np.pi]
+    places = np.linspace(2 * np.pi, angle[-1], PLACES)
+    outside = np.interp(places, angle[angle >= 2 * np.pi], wider) > 0
+    return Loops(rounds, float(outside.mean()), float(wider.max()))

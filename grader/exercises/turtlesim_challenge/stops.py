@@ -7,12 +7,16 @@ from grader.exercise.sentences import how_it_ended
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.path import Path
 from turtlesim_py.world.events import CmdVel
+from turtlesim_py.world.turtle import TICK_S
 
 
 def judge_stop(path: Path, tolerances: Tolerances) -> Finding:
     """Whether a run ended at rest near an edge, by a command, without touching a wall."""
     run = path.recording.run
     ending = how_it_ended(path.recording)
+    void = judge_start(path)
+    if void is not None:
+        return void
     if path.wall is not None:
         touched = path.at(int(path.ticks[path.wall]), "it touches the wall here")
         return Finding(
@@ -58,6 +62,21 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Finding:
             (end,),
         )
     return Finding(1, f"stopped by a command, {gap:.2f} m from the wall", evidence=(end,))
+
+
+def judge_start(path: Path) -> Finding | None:
+    """Why a run that starts elsewhere counts for nothing; None: it counts."""
+    call = path.moved_away
+    if call is None:
+        return None
+    return Finding(
+        0,
+        f"This run does not count: at {call.tick * TICK_S:.2f} s your node had the turtle moved "
+        f"away from where it was put, by {call.op}.",
+        "Begin wherever the turtle is, and read from the pose where that is; reset, teleports, "
+        "kill and spawn put it somewhere else.",
+        (path.at(call.tick, f"put here by {call.op}"),),
+    )
 
 
 def _stands_still(command: CmdVel) -> bool:
