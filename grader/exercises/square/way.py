@@ -29,6 +29,8 @@ STILL_M = 1e-5
 SAME_SIDE_DEG = 30.0
 #: How often corners are looked at again; a polygon needs two or three looks.
 MOST_LOOKS = 10
+#: A way with more corners is no polygon that anybody meant, and is not looked at any closer.
+MOST_CORNERS = 300
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,7 @@ class Way(DrivenPath):
 
     Attributes:
         broken_by: why the way ends before the recording does; "" where it does not.
+        moved_away: whether it was put somewhere else before it drove off.
     """
 
     def __init__(self, recording: Recording, number: int = 0) -> None:
@@ -69,6 +72,7 @@ class Way(DrivenPath):
         path = whole.until_lost().begun_at(recording.start or USUAL_START)
         driven = (path.steps_m > STILL_M) & ~path.jumping
         first = int(np.argmax(driven)) - 1 if driven.any() else len(path) - 1
+        self.moved_away = bool(path.jumping[: first + 1].any())
         later = np.flatnonzero(path.jumping[first + 1 :])
         end = None
         if later.size:
@@ -147,7 +151,7 @@ def simplify(points: Floats, error_m: float) -> list[int]:
     """
     keep = {0, len(points) - 1}
     pending = [(0, len(points) - 1)]
-    while pending:
+    while pending and len(keep) <= MOST_CORNERS:
         first, last = pending.pop()
         middle, beside = farthest(points, first, last)
         if beside > error_m:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from grader.errors import CheckFailed
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
+from grader.exercises.square import way
 from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import drive, twist
@@ -181,8 +183,46 @@ class JumpsFirst(Legs):
         super().__call__(tick - 5, pose, arena)  # a node may need a moment
 
 
-def test_it_may_jump_before_it_drives():
-    assert scores(lambda: JumpsFirst(polygon([2] * 4))) == FULL
+class StartsAnewFirst(Legs):
+    def __call__(self, tick, pose, arena):
+        if tick == 1:
+            arena.reset()
+        super().__call__(tick - 5, pose, arena)
+
+
+class TakesAnotherFirst(Legs):
+    def __call__(self, tick, pose, arena):
+        if tick == 1:
+            arena.kill("turtle1")
+            arena.spawn(5.0, 5.0, 0.0, "turtle1")
+        super().__call__(tick - 5, pose, arena)
+
+
+@pytest.mark.parametrize("controller", [JumpsFirst, StartsAnewFirst, TakesAnotherFirst])
+def test_it_may_jump_before_it_drives_but_then_nothing_shows_that_it_starts_anywhere(controller):
+    verdicts = judged(lambda: controller(polygon([2] * 4)))
+    assert {name: verdict.score for name, verdict in verdicts.items()} == but(anywhere=0)
+    assert "does not count" in verdicts["anywhere"].rationale
+
+
+class Everywhere(Legs):
+    """Another direction and speed in each tick: a corner a tick."""
+
+    def __init__(self):
+        super().__init__([])
+
+    def __call__(self, tick, pose, arena):
+        chance = random.Random(tick)
+        twist(arena, chance.uniform(0, 200), chance.uniform(-200, 200))
+
+
+def test_a_way_of_a_thousand_corners_is_looked_at_as_far_as_anybody_would(monkeypatch):
+    looked = []
+    real = way.farthest
+    monkeypatch.setattr(way, "farthest", lambda *them: looked.append(1) or real(*them))
+    recording = drive(Everywhere(), 4000)
+    assert way.Way(recording).sides(load_exercise("square").tolerances)
+    assert len(looked) < 10 * 300 * 2
 
 
 # Wrong ones ---------------------------------------------------------------------------------------
