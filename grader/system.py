@@ -10,6 +10,7 @@ without it:
 | `has_supervision` | a submission is a group of processes (Windows: a tree), ended as such |
 | `has_proc` | processes are looked at through psutil |
 | `has_pidfd` | no zygote: each process of a run starts from nothing |
+| `has_limited_copies` | checks run in the grader's process, without limits |
 | `lacks_for_lockstep` | virtual time says what it lacks, and the run goes to real time |
 """
 
@@ -19,6 +20,7 @@ import ctypes
 import os
 import signal
 import socket
+import sys
 from pathlib import Path
 
 #: Where Linux shows its processes.
@@ -62,6 +64,14 @@ def has_pidfd() -> bool:
     except OSError:  # an old kernel, or one that is not to
         return False
     return True
+
+
+def has_limited_copies() -> bool:
+    """Whether a fork of this process is a process like any other, and can be limited.
+
+    Not on macOS, whose libraries do not survive it.
+    """
+    return hasattr(os, "fork") and sys.platform == "linux" and has_proc()
 
 
 def lacks_for_lockstep() -> list[str]:

@@ -27,7 +27,7 @@ def below(package: str, *names: str) -> set[str]:
 GROUND = below(
     "grader",
     *("errors", "text", "files", "locks", "scratch", "removal", "system"),
-    *("requirements", "strict_json"),
+    *("requirements", "strict_json", "limited"),
 )
 STATIONS = below(
     "grader",

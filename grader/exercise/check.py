@@ -8,18 +8,16 @@ that depends on a failed check is not judged, and says for which it waited.
 from __future__ import annotations
 
 import inspect
-import math
-import traceback
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from numbers import Real
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from grader.errors import CheckFailed
-from grader.exercise.foreign import contained
-from grader.exercise.verdict import Evidence, Finding, Verdict
-from grader.recording.recording import NominalAlone, NotOver, Recordings
+from grader.exercise.asking import Asked, NoFinding
+from grader.exercise.verdict import Finding, Verdict
+from grader.limited import LimitHit
+from grader.recording.recording import Recordings
 
 Tolerances = Mapping[str, Any]
 CheckFunction = Callable[[Recordings, Tolerances], Finding]
@@ -35,6 +33,10 @@ class Check:
     depends_on: tuple[str, ...]
 
 
+#: Asks a check, by its name, for its finding; see `grader.exercise.asking.Asked`.
+Ask = Callable[[str], Finding]
+
+
 class Checks:
     """The checks of one exercise, in the order of their definition."""
 
@@ -44,11 +46,10 @@ class Checks:
     def __iter__(self) -> Iterator[Check]:
         return iter(self._checks)
 
-    def wrapped(self, wrap: Callable[[Check], CheckFunction]) -> Checks:
-        """The same checks with other functions, e.g. to look at what they return."""
-        other = Checks()
-        other._checks = [replace(check, function=wrap(check)) for check in self]
-        return other
+    @property
+    def functions(self) -> Mapping[str, CheckFunction]:
+        """Their functions by their names."""
+        return {check.name: check.function for check in self}
 
     def __call__(
         self, *wrong: object, after: tuple[str, ...] = ()
@@ -101,6 +102,12 @@ def judge(
         CheckFailed: a check raised something, or returned what is no finding.
         KeyError: the exercise gives points to a check that does not exist.
     """
+    with Asked(checks.functions, recordings, tolerances) as asked:
+        return judge_by(asked, checks, points)
+
+
+def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:
+    """The same, by somebody who knows the findings; raises what `judge` raises."""
     known = {check.name: check for check in checks}
     verdicts: dict[str, Verdict] = {}
     for name in points:
@@ -108,52 +115,47 @@ def judge(
             raise KeyError(f"no check is named {name!r}; there are {', '.join(known)}")
     for check in known.values():
         if check.name in points:
-            verdicts[check.name] = judge_one(
-                check, float(points[check.name]), recordings, tolerances, verdicts
-            )
+            verdicts[check.name] = judge_one(check, float(points[check.name]), ask, verdicts)
     return [verdicts[name] for name in points]
 
 
-def judge_one(
-    check: Check,
-    max_score: float,
-    recordings: Recordings,
-    tolerances: Tolerances,
-    earlier: Mapping[str, Verdict],
-) -> Verdict:
+def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Verdict]) -> Verdict:
     """Run one check, if the `earlier` verdicts of those that it depends on allow it.
 
     Raises:
         CheckFailed: it raised something, or returned what is no finding.
         NotOver: it asked for a run that is not over.
     """
-    missing = [n for n in check.depends_on if n in earlier and earlier[n].status != "passed"]
-    if missing:
+
+    def not_judged(rationale: str, help: str) -> Verdict:
         return Verdict(
             check.name,
             check.title,
             "not_judged",
             0.0,
             max_score,
-            f"Not judged, because {' and '.join(repr(name) for name in missing)} did not pass.",
-            f"Look at {missing[0]!r} first.",
+            rationale,
+            help,
             (),
             check.depends_on,
         )
-    try:
-        with contained():
-            finding = check.function(recordings, tolerances)
-    except (KeyboardInterrupt, NotOver):
-        raise
-    except BaseException as error:  # SystemExit too: a check must not end us unjudged
-        raise CheckFailed(_told(check, error)) from error
-    is_alone = isinstance(recordings, NominalAlone)
-    wrong = wrong_with(finding, 1 if is_alone else len(list(recordings)))
-    if wrong:
-        raise CheckFailed(
-            f"the check {check.name!r} returned what it should not, so nothing was judged: "
-            f"{Path(check.function.__code__.co_filename).name}: {wrong}"
+
+    missing = [n for n in check.depends_on if n in earlier and earlier[n].status != "passed"]
+    if missing:
+        names = " and ".join(repr(name) for name in missing)
+        return not_judged(
+            f"Not judged, because {names} did not pass.", f"Look at {missing[0]!r} first."
         )
+    try:
+        finding = ask(check.name)
+    except LimitHit as hit:
+        return not_judged(
+            f"Not judged: the check {hit}. That is a fault of the exercise, not of the submission.",
+            "Tell whoever made the exercise: when the check is mended, the recording can be judged "
+            "again.",
+        )
+    except NoFinding as error:
+        raise CheckFailed(_told(check, error)) from error
     share = min(max(float(finding.share), 0.0), 1.0)
     passed = share >= 1.0
     return Verdict(
@@ -169,51 +171,10 @@ def judge_one(
     )
 
 
-def wrong_with(finding: object, runs: int) -> str:
-    """Why something that a check returned is no finding about so many runs; '' if it is one."""
-    if not isinstance(finding, Finding):
-        return f"returns a {type(finding).__name__}; expected a Finding"
-    share: object = finding.share
-    if not _is_number(share) or not -1e-9 <= float(share) <= 1 + 1e-9:  # type: ignore[arg-type]
-        return f"share: expected a number from 0 to 1, found {share!r}"
-    for name in ("rationale", "help"):
-        text = getattr(finding, name)
-        if not isinstance(text, str):
-            return f"{name}: expected a text, found {text!r}"
-    evidence: object = finding.evidence
-    if not isinstance(evidence, tuple):
-        return f"evidence: expected a tuple, found a {type(evidence).__name__}"
-    return next(filter(None, (_wrong_with_evidence(item, runs) for item in evidence)), "")
-
-
-def _wrong_with_evidence(item: object, runs: int) -> str:
-    if not isinstance(item, Evidence):
-        return f"evidence: expected Evidence, found a {type(item).__name__}"
-    for name in ("tick", "run"):
-        value = getattr(item, name)
-        if type(value) is not int or value < 0:
-            return f"evidence: {name}: expected a whole number from 0, found {value!r}"
-    for name in ("time_s", "x", "y"):  # JSON has no other numbers than finite ones
-        value = getattr(item, name)
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not math.isfinite(value) or (name == "time_s" and value < 0):
-            return f"evidence: {name}: expected a finite number, found {value!r}"
-    if not isinstance(item.note, str):
-        return f"evidence: note: expected a text, found {item.note!r}"
-    if item.run >= runs:
-        return f"evidence: there is no run {item.run}; there are {runs}, from 0 on"
-    return ""
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
-
-
-def _told(check: Check, error: BaseException) -> str:
-    """An exception in a check, with the last line of the file that the check stands in."""
-    file = check.function.__code__.co_filename
-    frames = traceback.extract_tb(error.__traceback__)
-    lines = [frame.lineno for frame in frames if frame.filename == file]
-    where = f"{Path(file).name}, line {lines[-1]}: " if lines else ""
-    text = f"{where}{type(error).__name__}: {error}".rstrip(": ")
-    return f"the check {check.name!r} failed itself, so nothing was judged: {text}"
+def _told(check: Check, error: NoFinding) -> str:
+    if error.was_raised:
+        return f"the check {check.name!r} failed itself, so nothing was judged: {error}"
+    return (
+        f"the check {check.name!r} returned what it should not, so nothing was judged: "
+        f"{Path(check.function.__code__.co_filename).name}: {error}"
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any, Literal, Self
 
 Status = Literal["passed", "failed", "not_judged"]
@@ -120,3 +121,43 @@ class Verdict:
         if self.max_score <= 0:
             return 1.0 if self.passed else 0.0
         return min(self.score / self.max_score, 1.0)
+
+
+def wrong_with(finding: object, runs: int) -> str:
+    """Why something that a check returned is no finding about so many runs; '' if it is one."""
+    if not isinstance(finding, Finding):
+        return f"returns a {type(finding).__name__}; expected a Finding"
+    share: object = finding.share
+    if not _is_number(share) or not -1e-9 <= float(share) <= 1 + 1e-9:  # type: ignore[arg-type]
+        return f"share: expected a number from 0 to 1, found {share!r}"
+    for name in ("rationale", "help"):
+        text = getattr(finding, name)
+        if not isinstance(text, str):
+            return f"{name}: expected a text, found {text!r}"
+    evidence: object = finding.evidence
+    if not isinstance(evidence, tuple):
+        return f"evidence: expected a tuple, found a {type(evidence).__name__}"
+    return next(filter(None, (_wrong_with_evidence(item, runs) for item in evidence)), "")
+
+
+def _wrong_with_evidence(item: object, runs: int) -> str:
+    if not isinstance(item, Evidence):
+        return f"evidence: expected Evidence, found a {type(item).__name__}"
+    for name in ("tick", "run"):
+        value = getattr(item, name)
+        if type(value) is not int or value < 0:
+            return f"evidence: {name}: expected a whole number from 0, found {value!r}"
+    for name in ("time_s", "x", "y"):  # JSON has no other numbers than finite ones
+        value = getattr(item, name)
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not is_number or not math.isfinite(value) or (name == "time_s" and value < 0):
+            return f"evidence: {name}: expected a finite number, found {value!r}"
+    if not isinstance(item.note, str):
+        return f"evidence: note: expected a text, found {item.note!r}"
+    if item.run >= runs:
+        return f"evidence: there is no run {item.run}; there are {runs}, from 0 on"
+    return ""
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)

@@ -6,10 +6,12 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from grader.exercise.check import Check, CheckFunction, Tolerances, judge, wrong_with
+from grader.exercise.asking import Asked, NoFinding
+from grader.exercise.check import judge_by
 from grader.exercise.loading import Exercise
 from grader.exercise.places import describe
 from grader.exercise.verdict import Evidence, Finding, Verdict
+from grader.limited import LimitHit
 from grader.recording.recording import Recordings
 from grader.scenes import load_scene
 
@@ -24,31 +26,26 @@ class Fault(NamedTuple):
 def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], list[Fault]]:
     """The verdicts on recordings, and what is wrong with the checks that made them."""
     faults: list[Fault] = []
-    runs = len(list(recordings))
 
-    def watched(check: Check) -> CheckFunction:
-        def function(recordings: Recordings, tolerances: Tolerances) -> Finding:
-            try:
-                finding = check.function(recordings, tolerances)
-            except KeyboardInterrupt:
-                raise
-            except BaseException as error:
-                faults.append(Fault(check.name, f"raises {describe(error, exercise.folder)}"))
-                return Finding(0, "The check raised an exception.")
-            wrong = wrong_with(finding, runs)
-            if wrong:
-                faults.append(Fault(check.name, wrong))
-                return Finding(0, "The check returned no finding.")
-            odd = list(_odd_about(finding, exercise, recordings))
-            faults.extend(Fault(check.name, text) for text in odd)
-            return finding
+    def watched(name: str) -> Finding:
+        try:
+            finding = asked(name)
+        except NoFinding as error:
+            faults.append(Fault(name, f"raises {error}" if error.was_raised else str(error)))
+            return Finding(0, "The check found nothing.")
+        except LimitHit as hit:
+            faults.append(Fault(name, str(hit)))
+            return Finding(0, "The check found nothing.")
+        odd = list(_odd_about(finding, exercise, recordings))
+        faults.extend(Fault(name, text) for text in odd)
+        return finding
 
-        return function
+    def told(_: object, error: BaseException) -> str:
+        return describe(error, exercise.folder)
 
-    checks = exercise.checks.wrapped(watched)
-    first, second = (
-        judge(recordings, checks, exercise.points, exercise.tolerances) for _ in range(2)
-    )
+    with Asked(exercise.checks.functions, recordings, exercise.tolerances, told) as asked:
+        # both times in the same process, which may remember what it should not
+        first, second = (judge_by(watched, exercise.checks, exercise.points) for _ in range(2))
     for once, again in zip(first, second, strict=True):
         if repr(once) != repr(again):  # not a number is none but looks like itself
             text = "finds something else when it is asked again about the same recordings"

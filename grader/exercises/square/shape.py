@@ -135,8 +135,8 @@ def judge_returns(way: Way, tolerances: Tolerances) -> Finding:
 def judge_square(way: Way, tolerances: Tolerances) -> tuple[float, str, list[Evidence]]:
     """All parts of a run from elsewhere: the share that is right, what is wrong, and where."""
     if way.moved_away:
-        wrong = "it does not count, because your node had the turtle put somewhere else first"
-        return 0.0, wrong, [way.evidence(0, "here it drove off")]
+        why = "it does not count, because your node had the turtle put somewhere else first"
+        return 0.0, why, [way.evidence(0, "here it drove off")]
     if way.length_m < tolerances["driven_m"]:
         return 0.0, f"it drove {way.length_m:.2f} m", []
     if way.broken_by:

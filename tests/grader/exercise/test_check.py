@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+import signal
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from grader.errors import CheckFailed
+from grader.exercise import asking
 from grader.exercise.check import Checks, judge
 from grader.exercise.verdict import Evidence, Finding
+from grader.limited import Limits
 from grader.recording.recording import Recordings
 from grader.testing import drive
 
@@ -169,7 +173,7 @@ def test_after_is_a_tuple_and_the_decorator_has_brackets():
         Checks()(an_exercise)
 
 
-def test_a_check_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_path, capsys):
+def test_a_check_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_path, capfd):
     checks = Checks()
 
     @checks()
@@ -182,4 +186,84 @@ def test_a_check_neither_prints_to_standard_output_nor_leaves_the_folder(tmp_pat
     before = Path.cwd()
     verdicts(checks, {"wanders": 1})
     assert Path.cwd() == before
-    assert capsys.readouterr() == ("", "so far\n")
+    assert capfd.readouterr() == ("", "so far\n")
+
+
+def endless(recordings, tolerances):
+    """It never ends."""
+    while True:
+        try:
+            while True:
+                pass
+        except BaseException:
+            continue
+
+
+def ends_the_process(recordings, tolerances):
+    """It leaves."""
+    os._exit(0)
+
+
+def takes_all_memory(recordings, tolerances):
+    """It takes what there is."""
+    return Finding(len(bytearray(2**50)), "never")
+
+
+def calls_itself(recordings, tolerances):
+    """It calls itself."""
+    return calls_itself(recordings, tolerances)
+
+
+def kills_itself(recordings, tolerances):
+    """It crashes in C."""
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [
+        (endless, "did not come to an end in"),
+        (ends_the_process, "ended the process that it ran in (exit code 0)"),
+        (takes_all_memory, "needed more memory than it may have"),
+        (calls_itself, "called itself too deeply"),
+        (kills_itself, "ended the process that it ran in (signal 11)"),
+    ],
+)
+def test_a_check_that_hits_a_limit_is_not_judged_and_the_others_count(function, said, monkeypatch):
+    monkeypatch.setattr(asking, "LIMITS", Limits(cpu_s=0.3, wall_s=30.0))
+    checks = Checks()
+    checks()(function)
+
+    @checks(after=(function.__name__,))
+    def depends(recordings, tolerances):
+        """It depends on that."""
+        return Finding(1, "seen")
+
+    @checks()
+    def other(recordings, tolerances):
+        """It has nothing to do with that."""
+        return Finding(1, "seen")
+
+    found = verdicts(checks, {function.__name__: 5, "depends": 2, "other": 3})
+    broken = found[function.__name__]
+    assert (broken.status, broken.score, broken.max_score) == ("not_judged", 0, 5)
+    assert said in broken.rationale
+    assert "a fault of the exercise, not of the submission" in broken.rationale
+    assert found["depends"].status == "not_judged"
+    assert (found["other"].status, found["other"].score) == ("passed", 3)
+
+
+def test_a_finding_comes_back_as_it_was_made():
+    evidence = Evidence(7, 0.1 + 0.2, 1e-300, 5, "half \udc80 of \U0001f422, and\nmore", run=0)
+    checks = returning(Finding(1 / 3, "wo \x00", "why", (evidence,)))
+    found = verdicts(checks, {"returns": 3})["returns"]
+    assert (found.rationale, found.help, found.evidence) == ("wo \x00", "why", (evidence,))
+
+
+def test_checks_are_limited_in_every_thread(monkeypatch):
+    monkeypatch.setattr(asking, "LIMITS", Limits(cpu_s=0.3, wall_s=30.0))
+    checks = Checks()
+    checks()(endless)
+    with ThreadPoolExecutor(3) as pool:
+        tasks = [pool.submit(verdicts, checks, {"endless": 1}) for _ in range(3)]
+        assert {task.result()["endless"].status for task in tasks} == {"not_judged"}
