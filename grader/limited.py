@@ -37,7 +37,7 @@ _DONE, _HIT = b"=", b"!"
 #: So long after its last second the kernel has surely ended a copy [s].
 _GRACE_S = 10.0
 _PR_SET_PDEATHSIG = 1
-_ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIGPIPE")
+_ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIGPIPE")
 
 
 @dataclass(frozen=True)
@@ -256,6 +256,7 @@ def _confine(limits: Limits, kept: Iterable[int]) -> None:
 
     for name in _ENDING:
         signal.signal(getattr(signal, name), signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is told to the one who asks, too
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM, signal.SIGPROF})
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

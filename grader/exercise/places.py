@@ -11,11 +11,12 @@ import importlib
 import importlib.machinery
 import importlib.util
 import opcode
+import os
 import re
 import sys
 import threading
 import traceback
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
@@ -24,6 +25,7 @@ from itertools import count
 from pathlib import Path
 from types import ModuleType
 
+from grader import limited, system
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
 from grader.exercise.foreign import contained
@@ -119,22 +121,24 @@ def import_checks(place: Place) -> Checks:
 
     The files of a folder see each other as those of a package do: `from . import shape`.
 
+    What is not ours is imported in a copy of this process first: a loop without end, or the end of
+    the process, shows there.
+
     Raises:
         ExerciseError: there are none, or importing them fails; with file and line.
     """
+    module: ModuleType
     if place.package:
-        module = _imported(f"{place.package}.checks", place)
+        name = f"{place.package}.checks"
+        if not name.startswith(f"{GROUP}.") and name not in sys.modules:
+            _try(lambda: _imported(name, place))
+        module = _imported(name, place)
     else:
         package = f"{_PACKAGE}{next(_numbers)}"
         with contained(), _importing, _without_bytecode():
             importlib.invalidate_caches()
-            try:
-                _make_package(package, place.folder)
-                module = _imported(f"{package}.checks", place)
-            except ExerciseError:
-                for name in [name for name in sys.modules if f"{name}.".startswith(f"{package}.")]:
-                    del sys.modules[name]
-                raise
+            _try(lambda: _imported_folder(package, place))
+            module = _imported_folder(package, place)
     checks = getattr(module, "checks", None)
     if not isinstance(checks, Checks):
         found = "nothing of that name" if checks is None else f"a {type(checks).__name__}"
@@ -142,6 +146,42 @@ def import_checks(place: Place) -> Checks:
             f"{CHECKS}: expected `checks = Checks()`, of `from grader import Checks`; found {found}"
         )
     return checks
+
+
+def _imported_folder(package: str, place: Place) -> ModuleType:
+    try:
+        _make_package(package, place.folder)
+        return _imported(f"{package}.checks", place)
+    except ExerciseError:
+        for name in [name for name in sys.modules if f"{name}.".startswith(f"{package}.")]:
+            del sys.modules[name]
+        raise
+
+
+def _try(import_it: Callable[[], ModuleType]) -> None:
+    """See whether an import comes to an end; what else is wrong with it, the next one tells.
+
+    Raises:
+        ExerciseError: it does not.
+    """
+    if not system.has_limited_copies():
+        return
+
+    def trial() -> bytes:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 1)  # it is to print once, not twice
+        os.dup2(nowhere, 2)
+        try:
+            import_it()
+        except ExerciseError as error:
+            if isinstance(error.__cause__, MemoryError):
+                raise error.__cause__ from None
+        return b""
+
+    try:
+        limited.call(trial, limited.Limits())
+    except limited.LimitHit as hit:
+        raise ExerciseError(f"{CHECKS} cannot be imported: it {hit}") from None
 
 
 def locate(folder: Path, where: str) -> Path:
