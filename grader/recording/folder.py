@@ -11,6 +11,9 @@
 
 Two saves of equal recordings differ in circumstances.json at most. metadata.yaml comes into the
 folder last, so that a save that was cut off leaves nothing that looks like a recording.
+
+A recording may come from anywhere. What is read has a size, and the bag, which is compressed, is
+read in a copy of this process with limits of time and memory.
 """
 
 from __future__ import annotations
@@ -28,12 +31,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from grader import strict_json
+from grader import limited, strict_json
 from grader.errors import RecordingError
+from grader.limited import Limits
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
 from grader.requirements import require
 from grader.scenes import load_scene
-from grader.scenes.scene import Scene, Start
+from grader.scenes.scene import Scene, Start, Trace
 
 if TYPE_CHECKING:
     import jsonschema
@@ -49,6 +53,18 @@ FIRST_SCENE = "turtlesim"
 FILES = (BAG, RUN, OUTPUT, CIRCUMSTANCES_FILE, SCENARIO, PATH_PICTURE, WINDOW_PICTURE, METADATA)
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
+#: What is read back, and its most bytes. A minute of turtlesim is 0.2 MB.
+SIZES = {
+    BAG: 2**28,
+    METADATA: 2**20,
+    RUN: 2**20,
+    OUTPUT: 2**26,
+    CIRCUMSTANCES_FILE: 2**20,
+}
+#: An exercise has no more.
+MOST_VARIED_RUNS = 100
+#: Of reading one bag.
+READING = Limits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
 #: Where the files are written before they come into the folder.
 UNFINISHED = ".unfinished"
 
@@ -146,6 +162,10 @@ def load_all(path: Path) -> Recordings:
     lost = next((number for number in range(1, count + 1) if number not in found), None)
     if lost is not None:
         raise RecordingError(f"{folder} is incomplete: its folder varied_{lost} is missing")
+    if count > MOST_VARIED_RUNS:
+        raise RecordingError(
+            f"{folder} has {count} varied runs; expected {MOST_VARIED_RUNS} at most"
+        )
     varied = (load(folder / f"varied_{number}") for number in range(1, count + 1))
     return Recordings(nominal, tuple(varied))
 
@@ -272,10 +292,15 @@ def _facts(folder: Path) -> dict[str, Any]:
         raise RecordingError(f"{folder} is {what}: it has no {RUN}")
     if not has_bag:
         raise RecordingError(f"{folder} is incomplete: it has no {METADATA}, which is saved last")
-    for name in (BAG, METADATA, RUN, OUTPUT, CIRCUMSTANCES_FILE):
+    for name, most in SIZES.items():
         path = folder / name
         if path.exists() and not path.is_file():  # a pipe would be waited for, for ever
             raise RecordingError(f"{path} is damaged: it is no ordinary file")
+        if path.is_symlink() and not path.resolve().is_relative_to(folder.resolve()):
+            raise RecordingError(f"{path} is no part of a recording: it leads somewhere else")
+        if path.exists() and path.stat().st_size > most:
+            size = path.stat().st_size
+            raise RecordingError(f"{path} has {size} bytes; expected {most} at most")
     facts = _read_json(folder / RUN)
     if facts.get("schema") != SCHEMA:
         found = f"expected schema {SCHEMA!r}, found {facts.get('schema')!r}"
@@ -307,7 +332,7 @@ def _load(folder: Path, facts: dict[str, Any]) -> Recording:
         )
     scene = _scene(folder, facts.get("scene", FIRST_SCENE))
     _must_agree(folder, "ticks", run.ticks, round(run.simulated_s * 1e9 / scene.tick_ns))
-    trace = _bag().read(folder, scene, run.ticks)
+    trace = _read_bag(folder, scene, run.ticks)
     _must_agree(folder, "trace_sha256", run.trace_sha256, trace.sha256())
     return Recording(
         trace=trace,
@@ -317,6 +342,26 @@ def _load(folder: Path, facts: dict[str, Any]) -> Recording:
         start=Start(**facts["start"]) if facts["start"] else None,
         scene=scene.name,
     )
+
+
+def _read_bag(folder: Path, scene: Scene, ticks: int) -> Trace:
+    """The trace in a bag, of which nobody knows how much it unpacks to."""
+    bag = _bag()
+    told = b"!"
+
+    def work() -> bytes:
+        try:
+            return scene.encode(bag.read(folder, scene, ticks))
+        except RecordingError as error:
+            return told + error.message.encode("utf-8", "backslashreplace")
+
+    try:
+        answer = limited.call(work, READING)
+    except limited.LimitHit as hit:
+        raise RecordingError(f"the bag in {folder} cannot be read: reading it {hit}") from None
+    if answer.startswith(told):
+        raise RecordingError(answer.removeprefix(told).decode())
+    return scene.decode(answer)
 
 
 def _must_agree(folder: Path, key: str, told: object, found: object) -> None:

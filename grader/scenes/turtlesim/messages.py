@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from grader.scenes.message_types import types_of
 from grader.scenes.scene import Message
+from grader.scenes.turtlesim import bounds
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import CmdVel, Event, EventError, Vector, from_json, to_json
@@ -175,7 +176,7 @@ def from_messages(
         for topic, msgtype in bag_topics.items()
         if msgtype == POSE
     ]
-    return TurtleTrace(
+    trace = TurtleTrace(
         ticks=ticks,
         events=tuple(events),
         trajectories={
@@ -185,6 +186,8 @@ def from_messages(
         canvas=pictures[PATH],
         window=pictures[WINDOW],
     )
+    bounds.check(trace)
+    return trace
 
 
 def _command(tick: int, topic: str, twist: Any) -> CmdVel:

@@ -76,7 +76,7 @@ def odd_traces(draw: st.DrawFn) -> TurtleTrace:
     for name in draw(st.lists(topic_names, max_size=3, unique=True)):
         count = draw(st.integers(0, 4))
         rows = np.zeros((count, len(COLUMNS)))
-        rows[:, 0] = np.arange(count) + draw(st.integers(0, 3))
+        rows[:, 0] = np.arange(count) + draw(st.integers(1, 4))
         values = draw(st.lists(bits, min_size=5 * count, max_size=5 * count))
         with np.errstate(invalid="ignore"):  # signalling NaNs become quiet ones here
             rows[:, 1:6] = np.array(values, np.uint32).view(np.float32).reshape(count, 5)
@@ -85,7 +85,7 @@ def odd_traces(draw: st.DrawFn) -> TurtleTrace:
     taken = draw(st.lists(odd_events(), max_size=12))
     lines = draw(st.lists(st.builds(Log, _ticks, severities, texts, texts), max_size=12))
     return TurtleTrace(
-        ticks=draw(st.integers(0, 12)),
+        ticks=draw(st.integers(8, 12)),  # no tick above is later than 9, the one after the last
         # inputs and lines are taken down as time goes on
         events=tuple(sorted(taken, key=lambda event: event.tick)),
         trajectories=trajectories,
