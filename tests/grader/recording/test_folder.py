@@ -18,7 +18,10 @@ from grader.errors import RecordingError
 from grader.recording import bag
 from grader.recording import folder as storage
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.turtlesim.trace import Log
 from tests.grader.driving import Spiral, drive
+from turtlesim_py.world.events import RotateAbsolute, SetParameter, SetPen
+from turtlesim_py.world.trajectory import Trajectory
 
 CIRCUMSTANCES = "circumstances.json"
 
@@ -338,3 +341,97 @@ def test_a_bag_converted_to_sqlite3_is_an_error(folder):
     info.update(storage_identifier="sqlite3", relative_file_paths=["recording.db3"])
     (folder / "metadata.yaml").write_text(yaml.safe_dump(metadata))
     assert "cannot read the bag" in refused(folder)
+
+
+# From anywhere --------------------------------------------------------------------------------
+
+
+def test_a_bag_that_unpacks_to_more_than_there_is_room_for_is_refused(
+    recorded, tmp_path, monkeypatch
+):
+    bomb = replace(recorded.trace, logs=(Log(1, "INFO", "bomb", "a" * 2**27),))
+    storage.save(replace(recorded, trace=bomb), tmp_path)
+    assert (tmp_path / storage.BAG).stat().st_size < 2**20
+    brief = replace(storage.READING, memory_bytes=2**26)
+    monkeypatch.setattr(storage, "READING", brief)
+    with pytest.raises(RecordingError, match=r"cannot .*read.*[Mm]emory"):
+        storage.load(tmp_path)
+
+
+def test_a_reader_that_comes_to_no_end_is_told(folder, monkeypatch):
+    monkeypatch.setattr(storage, "READING", replace(storage.READING, cpu_s=0.3))
+
+    def read(*_):
+        while True:
+            pass
+
+    monkeypatch.setattr(bag, "read", read)
+    with pytest.raises(RecordingError, match="reading it did not come to an end in"):
+        storage.load(folder)
+
+
+@pytest.mark.parametrize("name", storage.SIZES)
+def test_a_file_that_is_larger_than_any_recording_s_is_not_read(folder, name):
+    with (folder / name).open("r+b") as file:
+        file.truncate(storage.SIZES[name] + 1)  # a hole: it takes no room
+    with pytest.raises(RecordingError, match=f"{name} has .* bytes; expected"):
+        storage.load(folder)
+
+
+@pytest.mark.parametrize("name", [storage.OUTPUT, storage.RUN, storage.CIRCUMSTANCES_FILE])
+def test_a_file_that_leads_out_of_the_recording_is_not_read(folder, tmp_path, name):
+    secret = tmp_path / "secret"
+    secret.write_bytes((folder / name).read_bytes())
+    (folder / name).unlink()
+    (folder / name).symlink_to(secret)
+    with pytest.raises(RecordingError, match="it leads somewhere else"):
+        storage.load(folder)
+
+
+def pen_of(**values):
+    return SetPen(**{"tick": 5, "r": 1, "g": 2, "b": 3, "width": 4, "off": 0, **values})
+
+
+HOSTILE = {
+    "a colour that is none": pen_of(r=256),
+    "a width that is none": pen_of(width=-1),
+    "long after the end": pen_of(tick=10**6),
+    "a value that is an object": SetParameter(tick=5, name="background_r", value={"a": [1]}),
+    "an id that is a list": RotateAbsolute(tick=5, theta=1.0, id=[[]]),
+}
+
+
+@pytest.mark.parametrize("event", HOSTILE.values(), ids=HOSTILE.keys())
+def test_an_input_that_cannot_have_come_is_refused(recorded, tmp_path, event):
+    trace = replace(recorded.trace, events=(*recorded.trace.events, event))
+    run = replace(recorded.run, trace_sha256=trace.sha256())
+    storage.save(replace(recorded, trace=trace, run=run), tmp_path)
+    with pytest.raises(RecordingError, match="holds no recording"):
+        storage.load(tmp_path)
+
+
+@pytest.mark.parametrize("ticks", [(5, 5), (0, 1), (600, 601)])
+def test_a_way_with_impossible_ticks_is_refused(recorded, tmp_path, ticks):
+    rows = recorded.trace.trajectory().rows()[:2]
+    rows[:, 0] = ticks
+    trace = replace(recorded.trace, trajectories={"turtle1": Trajectory.of_rows(rows)})
+    run = replace(recorded.run, trace_sha256=trace.sha256())
+    storage.save(replace(recorded, trace=trace, run=run), tmp_path)
+    with pytest.raises(RecordingError, match="ticks"):
+        storage.load(tmp_path)
+
+
+def test_an_input_that_is_nested_without_measure_is_refused(recorded, tmp_path, monkeypatch):
+    deep = "[" * 200_000 + "]" * 200_000
+    name = "nest"
+    event = SetParameter(tick=5, name=name, value=name)
+    trace = replace(recorded.trace, events=(event,))
+    real = json.dumps
+    monkeypatch.setattr(
+        "grader.scenes.turtlesim.messages.json.dumps",
+        lambda words, **how: real(words, **how).replace(f'"value": "{name}"', f'"value": {deep}'),
+    )
+    storage.save(replace(recorded, trace=trace), tmp_path)
+    monkeypatch.undo()
+    with pytest.raises(RecordingError):
+        storage.load(tmp_path)

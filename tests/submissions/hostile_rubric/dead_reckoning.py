@@ -6,9 +6,9 @@ import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from std_srvs.srv import Empty
-from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute
 
-WAY = "reset"  # or teleport, respawn, creep
+WAY = "reset"  # or teleport, respawn
 CENTRE = 5.544445
 COLORS = {1: (255, 255, 255), 2: (255, 0, 0), 3: (0, 255, 0), 4: (0, 0, 255)}
 
@@ -27,8 +27,8 @@ class Counter(Node):
         self.create_timer(0.5, self.drive)
         self.create_timer(0.016, self.count)
 
-    def ask(self, kind, name, **values):
-        client = self.create_client(kind, name)
+    def ask(self, kind, service, **values):
+        client = self.create_client(kind, service)
         client.wait_for_service()
         rclpy.spin_until_future_complete(self, client.call_async(kind.Request(**values)))
 
@@ -41,11 +41,6 @@ class Counter(Node):
         elif WAY == "respawn":
             self.ask(Kill, "/kill", name="turtle1")
             self.ask(Spawn, "/spawn", x=CENTRE, y=CENTRE, theta=0.0, name="turtle1")
-        elif WAY == "creep":  # against two walls first: there it knows where it is
-            for theta in (math.pi, -math.pi / 2):
-                self.ask(TeleportRelative, "/turtle1/teleport_relative", linear=20.0, angular=theta)
-            place = {"linear": math.hypot(CENTRE, CENTRE), "angular": 0.0}
-            self.ask(TeleportRelative, "/turtle1/teleport_relative", **place)
 
     def drive(self):
         if not self.stopped:
