@@ -11,11 +11,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader import scratch, system
+from grader.errors import GraderFailure
 from grader.run import zygotes
 from grader.run.environment import environment, student_environment
 from grader.run.processes import isolation
 from grader.run.processes.family import start_student
+from grader.run.processes.sandbox import levels
+from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
+from grader.run.processes.zygote import Warm
 from grader.submission.opening import EntryPoint, Submission
 
 
@@ -38,10 +42,12 @@ class Stage:
         recording: where the simulator leaves the recording: an open file, without a name where
             that can be. The submission does not get it.
         recording_path: what opens it in the simulator's process.
-        isolation: for the result.
+        isolation: for the result: how the submission's process is confined, and what keeps the
+            run apart from others.
         env: environment variables of both processes.
         entry: stands before the command of each.
         namespaces: what a process that is forked enters instead: kind -> descriptor.
+        level: how the submission's process is confined.
     """
 
     folder: Path
@@ -51,6 +57,7 @@ class Stage:
     env: Mapping[str, str]
     entry: tuple[str, ...]
     namespaces: Mapping[str, int]
+    level: levels.Level
 
     def student(
         self,
@@ -59,15 +66,27 @@ class Stage:
         pass_fds: tuple[int, ...] = (),
     ) -> Watched:
         """Start the submission's process in its own folder."""
-        return start_student(command, self.env, submission.root, pass_fds, self.entry)
+        return self._start(command, {}, submission, pass_fds)
 
     def virtual_student(
         self, command: Sequence[str], submission: Submission, pass_fds: tuple[int, ...]
     ) -> Watched:
         """The same for virtual time: forked, unless that would make a difference."""
-        env = student_environment(self.env)
         warm = zygotes.for_student(submission.root, self.namespaces)
-        return start_student(command, env, submission.root, pass_fds, self.entry, warm)
+        return self._start(command, student_environment({}), submission, pass_fds, warm)
+
+    def _start(
+        self,
+        command: Sequence[str],
+        env: Mapping[str, str],
+        submission: Submission,
+        pass_fds: tuple[int, ...],
+        warm: Warm | None = None,
+    ) -> Watched:
+        root, is_apart = submission.root, bool(self.namespaces)
+        place = levels.prepare(self.level, root, self.folder, is_apart=is_apart)
+        env = {**self.env, **env, **place.env}
+        return start_student(command, env, root, pass_fds, self.entry, warm, place.order)
 
 
 @contextmanager
@@ -77,13 +96,16 @@ def open_stage() -> Iterator[Stage]:
     Raises:
         GraderFailure: it cannot be isolated from other runs.
     """
+    level = levels.best()
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        if level.level == NAMESPACES and not isolated.namespaces:
+            raise GraderFailure("a network of its own was to be had before, and now is not")
         env = environment(folder, isolated.env)
         recording, path = _make_recording(folder)
         try:
             yield Stage(
-                *(folder, recording, path, isolated.name, env),
-                *(isolated.entry, isolated.namespaces),
+                *(folder, recording, path, ", ".join(filter(None, [level.name(), isolated.name]))),
+                *(env, isolated.entry, isolated.namespaces, level),
             )
         finally:
             os.close(recording)

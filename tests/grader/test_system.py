@@ -11,7 +11,7 @@ import pytest
 from grader import system
 from grader.run import handover, stage
 from grader.run.lockstep import contract
-from grader.run.processes import cores, isolation, supervisor, watched
+from grader.run.processes import cores, isolation, linux, watched
 from grader.scenes import load_scene
 from tests.grader.driving import Spiral, drive
 from tests.grader.scenes.turtlesim.traces import assert_same_trace
@@ -64,10 +64,10 @@ def test_a_libc_that_knows_nothing_of_linux(monkeypatch, load) -> None:
 
 @pytest.mark.parametrize("libc", [None, object()])
 def test_namespaces_that_libc_does_not_know_are_refused(monkeypatch, libc) -> None:
-    monkeypatch.setattr(supervisor, "_libc", libc)
+    monkeypatch.setattr(linux, "_libc", libc)
     monkeypatch.setattr(isolation, "_refused", set())
     with pytest.raises(OSError, match="no unshare here"):
-        supervisor.unshare(supervisor.CLONE_NEWNET)
+        linux.unshare(linux.CLONE_NEWNET)
     with pytest.raises(OSError, match="no unshare here"):
         isolation._as_root()
 

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
+import json
 import os
 import select
 import signal
 import sys
+import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import psutil
 
 from grader import system
 from grader.errors import GraderFailure
 from grader.run.processes import supervisor
+from grader.run.processes.sandbox.confinement import OWN
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
 
 #: How long a process may take to come up [s]; only a machine in distress takes so long.
 START_S = 30.0
+#: Stands for an exit code: the command was never started.
+NOT_STARTED = 1 << 16
 SUPERVISOR = (sys.executable, "-I", "-S", supervisor.__file__, "run")
 
 
@@ -31,10 +37,15 @@ def start_student(
     pass_fds: tuple[int, ...] = (),
     entry: Sequence[str] = (),
     warm: Warm | None = None,
+    confinement: Mapping[str, Any] | None = None,
 ) -> Watched:
-    """Start a submission's process, held as well as this system can; see `Watched`."""
+    """Start a submission's process, held as well as this system can; see `Watched`.
+
+    Args:
+        confinement: how it is confined, where it can be; see `.sandbox.confinement`.
+    """
     if system.has_supervision():
-        return Student(command, env, cwd, pass_fds, entry, warm)
+        return Student(command, env, cwd, pass_fds, entry, warm, confinement)
     return Unsupervised(command, env, cwd, pass_fds, entry)
 
 
@@ -72,19 +83,26 @@ class Student(Watched):
         pass_fds: tuple[int, ...] = (),
         entry: Sequence[str] = (),
         warm: Warm | None = None,
+        confinement: Mapping[str, Any] | None = None,
     ) -> None:
         """`entry` stands before the supervisor's own command; see `.isolation`."""
         self._report, theirs = os.pipe()
         self._told = b""
         self._is_silent = False
-        supervised = [*entry, *SUPERVISOR, str(os.getpid()), str(theirs)]
-        try:
-            super().__init__(command, env, cwd, pass_fds, supervised, warm, theirs)
-        except BaseException:
-            self._close()
-            raise
-        finally:
-            os.close(theirs)
+        if confinement and confinement.get("user") == OWN:
+            self._users = (confinement["uid"],)
+        with tempfile.TemporaryFile() as order:
+            order.write(json.dumps(confinement).encode())
+            order.flush()
+            fds = (theirs, order.fileno())
+            supervised = [*entry, *SUPERVISOR, str(os.getpid()), *map(str, fds)]
+            try:
+                super().__init__(command, env, cwd, pass_fds, supervised, warm, *fds, confinement)
+            except BaseException:
+                self._close()
+                raise
+            finally:
+                os.close(theirs)
 
     @property
     def pid(self) -> int:
@@ -102,11 +120,26 @@ class Student(Watched):
         return self.wait(0.0)
 
     def wait(self, timeout_s: float) -> int | None:
-        """Wait for the end of the command itself; None if it still runs then."""
+        """Wait for the end of the command itself; None if it still runs then.
+
+        Raises:
+            GraderFailure: it could not be confined, or started.
+        """
+        code = self._await_end(timeout_s)
+        if code == NOT_STARTED:
+            raise GraderFailure(f"the submission's process could not be started: {self._words()}")
+        return code
+
+    def _await_end(self, timeout_s: float) -> int | None:
         if self._hear(2, timeout_s):
-            return int(self._told.split()[1])
+            word = self._words()
+            return NOT_STARTED if word.startswith(supervisor.REFUSED) else int(word)
         # a supervisor ends without a word only if somebody has killed it
         return -signal.SIGKILL if self._is_silent else None
+
+    def _words(self) -> str:
+        """How it ended, or why it was refused."""
+        return self._told.splitlines()[1].decode("utf-8", "replace")
 
     def kill(self) -> None:
         """End it and its family now, and do not wait."""
@@ -116,13 +149,13 @@ class Student(Watched):
     def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
         """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
         for sent in (signal.SIGINT, signal.SIGTERM) if gently else ():
-            if self.poll() is None:
+            if self._await_end(0.0) is None:
                 with suppress(ProcessLookupError):
                     if sent == signal.SIGINT:
-                        os.killpg(self._process.pid, sent)  # as a terminal does
+                        os.killpg(self.pid, sent)  # as a terminal does
                     else:
                         os.kill(self.pid, sent)
-                self.wait(patience_s)
+                self._await_end(patience_s)
         self.kill()
         if super().wait(patience_s) != 0:  # somebody has stopped or killed the supervisor
             self._process.kill()

@@ -27,9 +27,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import NoReturn, Self
+from typing import Any, NoReturn, Self
 
-from grader.run.processes import supervisor
+from grader.run.processes import linux, supervisor
 
 with suppress(ImportError):  # Windows, which has no zygotes
     import fcntl
@@ -45,8 +45,7 @@ NO_MARK = "0" * 32
 LIMIT_BYTES = 1 << 20
 MOST_FDS = 64
 READY = b"ready"
-NAMESPACES = {"user": supervisor.CLONE_NEWUSER, "net": supervisor.CLONE_NEWNET}
-PR_SET_DUMPABLE = 4
+NAMESPACES = {"user": linux.CLONE_NEWUSER, "net": linux.CLONE_NEWNET}
 
 #: (resource, soft, hard)
 Limit = tuple[int, int, int]
@@ -69,6 +68,7 @@ class Order:
         namespaces: the kinds of the namespaces to enter, in order: keys of `NAMESPACES`.
         limits: the grader's limits of resources, which may have changed since the zygote started.
         supervised: whether a supervisor is to stand between the zygote and it.
+        confinement: what that orders the process; see `.sandbox.confinement`.
     """
 
     command: Sequence[str]
@@ -79,6 +79,7 @@ class Order:
     namespaces: Sequence[str]
     limits: Sequence[Limit]
     supervised: bool
+    confinement: dict[str, Any] | None = None
 
     def to_bytes(self) -> bytes:
         """As a packet."""
@@ -106,6 +107,7 @@ def serve(words: Sequence[str], preloaded: Iterable[str]) -> list[str]:
     link, grader = socket.socket(fileno=int(words[0])), os.pidfd_open(int(words[1]))
     if os.getppid() != int(words[1]):
         os._exit(0)  # it has died before we asked
+    linux.control(linux.PR_SET_DUMPABLE, 0)  # nobody else looks into it
     # what is there stays: no child looks through it, or writes to its pages
     gc.collect()
     gc.freeze()
@@ -200,7 +202,7 @@ def _be_child(zygote: int, data: bytes, fds: list[int], tells: int) -> Order:
         _give_up(tells, error)
     if order.supervised:
         try:
-            supervisor.Supervisor(zygote, report).run(None)
+            supervisor.Supervisor(zygote, report, order.confinement).run(None)
         except BaseException:
             os._exit(1)
     sys.orig_argv[:] = order.command
@@ -242,7 +244,7 @@ def become(order: Order, fds: Sequence[int], zygote: int, tells: int) -> int:
     for fd, number in zip(passed, order.fds, strict=True):
         os.dup2(fd, number)
     for kind, fd in zip(order.namespaces, spaces, strict=True):
-        supervisor.enter(fd, NAMESPACES[kind])
+        linux.enter(fd, NAMESPACES[kind])
     for fd in (output, *spaces, *passed):
         os.close(fd)
     _go_with(zygote)
@@ -269,8 +271,8 @@ def _close_others(kept: set[int]) -> None:
 def _go_with(zygote: int) -> None:
     """Die with the zygote, as a process that it had started would; entering namespaces undid it."""
     # a process that has entered a user namespace is as closed as one with secrets: open it again
-    supervisor.control(PR_SET_DUMPABLE, 1)
-    supervisor.signal_at_parents_death(signal.SIGKILL)
+    linux.control(linux.PR_SET_DUMPABLE, 1)
+    linux.signal_at_parents_death(signal.SIGKILL)
     if os.getppid() != zygote:
         os._exit(1)  # it has died before we asked
 

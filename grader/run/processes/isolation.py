@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from grader import system
-from grader.run.processes import domain, supervisor
+from grader.run.processes import domain, linux, supervisor
 
 #: Fast DDS would use shared memory for discovery range LOCALHOST, whatever its settings say.
 RANGE = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
@@ -143,8 +143,8 @@ def _as_root() -> Namespaces:
 
     def make() -> None:
         try:
-            supervisor.unshare(supervisor.CLONE_NEWNET)
-            supervisor.raise_loopback()
+            linux.unshare(linux.CLONE_NEWNET)
+            linux.raise_loopback()
             found.append(os.open("/proc/thread-self/ns/net", os.O_RDONLY))
         except OSError as error:
             found.append(error)

@@ -1,18 +1,21 @@
 """Starts a submission's process, keeps hold of all its descendants, and tells how it ended.
 
-    python -I -S supervisor.py run PARENT_PID REPORT_FD COMMAND...
+    python -I -S supervisor.py run PARENT_PID REPORT_FD ORDER_FD COMMAND...
     python -I -S supervisor.py hold
 
 `run` writes two lines to REPORT_FD: the process id of the command, and, when it has ended, its exit
-code (negative for a signal). The descendants may go on until SIGTERM comes, or the parent dies: the
-grader, or the zygote that has forked instead of starting this script (`forking.py`).
+code (negative for a signal), or `refused` and why it was not started. How it is to be confined
+(`sandbox/confinement.py`) is read from ORDER_FD, as JSON. The descendants may go on until SIGTERM
+comes, or the parent dies: the grader, or the zygote that has forked instead of starting this script
+(`forking.py`).
 Where the system allows it the command gets a process namespace of its own, so that it can neither
 see nor kill the simulator; else the supervisor adopts what its family leaves behind.
 
 `hold` makes a network namespace inside a user namespace, says `ready`, and keeps both until its
 standard input closes.
 
-A script of its own, with nothing but the standard library: it starts in a few milliseconds.
+A script of its own, with nothing but the standard library and little of ours: it starts in a few
+milliseconds.
 """
 
 # ruff: noqa: PTH123, PTH208
@@ -20,106 +23,58 @@ A script of its own, with nothing but the standard library: it starts in a few m
 
 from __future__ import annotations
 
-import ctypes
-import errno
 import os
 import signal
 import sys
 from contextlib import suppress
 from typing import Any, NoReturn
 
-CLONE_NEWNS, CLONE_NEWIPC, CLONE_NEWUSER = 0x00020000, 0x08000000, 0x10000000
-CLONE_NEWPID, CLONE_NEWNET = 0x20000000, 0x40000000
-MS_NOSUID, MS_NODEV, MS_NOEXEC, MS_REC, MS_PRIVATE = 2, 4, 8, 0x4000, 0x40000
-PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
-SIOCSIFFLAGS, IFF_UP, IFF_RUNNING = 0x8914, 0x1, 0x40
+if __name__ == "__main__":
+    # on the import path, which is empty but for Python's own: where our packages are
+    sys.path.append(os.path.realpath(f"{__file__}/../../../.."))
+
+from grader.run.processes import linux
+from grader.run.processes.sandbox import confinement
+
+#: Stands before the reason why a command was not started.
+REFUSED = "refused"
 #: Signals that are meant for the command, and reach us only because we are in its group.
 NOT_OURS = [
     getattr(signal, name) for name in ("SIGINT", "SIGHUP", "SIGQUIT") if hasattr(signal, name)
 ]
 
-# Other systems than Linux may import this, but have no use for it: Windows has no libc.
-_libc: Any = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
 
-
-def _call(function: str, *arguments: object) -> None:
-    there = getattr(_libc, function, None)
-    if there is None:
-        raise OSError(errno.ENOSYS, f"no {function} here")
-    if there(*arguments) != 0:
-        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
-
-
-def unshare(kinds: int) -> None:
-    """Leave the namespaces that the calling thread shares with others.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
-    _call("unshare", kinds)
-
-
-def mount(kind: str, target: str, flags: int, data: str = "") -> None:
-    """Mount a file system that needs no device.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
-    words = (b"none", target.encode(), kind.encode(), ctypes.c_ulong(flags), data.encode())
-    _call("mount", *words)
-
-
-def raise_loopback() -> None:
-    """Bring up the loopback device of the calling thread's network namespace.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
-    import fcntl  # here, because `run` has no need of them and is to start soon
-    import socket
-    import struct
-
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
-        fcntl.ioctl(any_socket, SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", IFF_UP | IFF_RUNNING))
-
-
-def enter(namespace: int, kind: int) -> None:
-    """Move the calling thread into a namespace, given as an open descriptor.
-
-    Raises:
-        OSError: the system does not allow it.
-    """
-    _call("setns", namespace, kind)
-
-
-def control(option: int, value: int) -> None:
-    """As prctl; what the system does not know is left out."""
-    _libc.prctl(option, ctypes.c_ulong(value), ctypes.c_ulong(0), ctypes.c_ulong(0))
-
-
-def signal_at_parents_death(number: int) -> None:
-    """Have the kernel send us a signal when our parent dies."""
-    _libc.prctl(PR_SET_PDEATHSIG, number)
-
-
-def confine(*, has_namespace: bool) -> None:
+def confine(order: dict[str, Any] | None, *, has_namespace: bool) -> None:
     """What confines a submission's own process, and nothing else of its run.
 
-    The one place for a sandbox (Landlock, seccomp, further mounts), however the process came to be:
-    it is called in it, after its supervisor has forked and before anything of the submission's
-    runs. Descriptors, network, environment and current folder are settled by then; what is done
-    here survives an exec.
+    The one place for a sandbox, however the process came to be: it is called in it, after its
+    supervisor has forked and before anything of the submission's runs. Descriptors, network,
+    environment and current folder are settled by then; what is done here survives an exec.
+
+    Args:
+        order: see `.sandbox.confinement`; None: nothing is confined but what is seen of processes.
+        has_namespace: whether there is a process namespace for it.
+
+    Raises:
+        OSError: it cannot be confined as ordered.
     """
-    if has_namespace:
+    level = None if order is None else order["level"]
+    if level == confinement.NAMESPACES and not has_namespace:
+        raise OSError("no process namespace is to be had")
+    if has_namespace and level != confinement.NAMESPACES:
         _see_only_own_processes()
+    if order is not None:
+        confinement.confine(order)
 
 
 class Supervisor:
     """Between the grader and a submission's process."""
 
-    def __init__(self, parent: int, report: int) -> None:
+    def __init__(self, parent: int, report: int, order: dict[str, Any] | None) -> None:
         self._parent = parent
         self._report = report
+        self._order = order
+        self._refusal, self._refuses = os.pipe()
         self._init = 0  # the first process of the namespace, whose end is the end of all in it
 
     def run(self, command: list[str] | None) -> None:
@@ -128,24 +83,25 @@ class Supervisor:
         Without a command it returns, once and in a process of its own: that goes on as the command.
         """
         signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM, signal.SIGCHLD])
-        signal_at_parents_death(signal.SIGTERM)
+        linux.signal_at_parents_death(signal.SIGTERM)
         if os.getppid() != self._parent:
             os._exit(1)  # it has died before we asked
         for number in NOT_OURS:
             signal.signal(number, signal.SIG_IGN)
         # A SIGCHLD that nobody handles would not wake sigwait below.
         signal.signal(signal.SIGCHLD, lambda *_: None)
-        _libc.prctl(PR_SET_CHILD_SUBREAPER, 1)
+        linux.control(linux.PR_SET_CHILD_SUBREAPER, 1)
         with suppress(OSError):
-            unshare(CLONE_NEWPID | CLONE_NEWIPC)
+            linux.unshare(linux.CLONE_NEWPID | linux.CLONE_NEWIPC)
             self._init = os.fork() or self._be_init()
         child = os.fork()
         if not child:
             self._be_command(command)
             return
+        linux.control(linux.PR_SET_DUMPABLE, 0)  # no other process of this user looks into us
         # The command's sockets are closed when it closes them, not when we do.
         for fd in os.listdir("/proc/self/fd"):
-            if int(fd) > 2 and int(fd) != self._report:
+            if int(fd) > 2 and int(fd) not in (self._report, self._refusal):
                 with suppress(OSError):
                     os.close(int(fd))
         os.write(self._report, f"{child}\n".encode())
@@ -159,9 +115,14 @@ class Supervisor:
         with suppress(ChildProcessError):
             while (ended := os.waitpid(-1, os.WNOHANG))[0]:
                 if ended[0] == child:
-                    code = os.waitstatus_to_exitcode(ended[1])
+                    word = self._why_refused() or os.waitstatus_to_exitcode(ended[1])
                     with suppress(BrokenPipeError):
-                        os.write(self._report, f"{code}\n".encode())
+                        os.write(self._report, f"{word}\n".encode())
+
+    def _why_refused(self) -> str:
+        """Why the command was not started; '' if it was."""
+        why = os.read(self._refusal, 2000).decode("utf-8", "replace")
+        return f"{REFUSED} {' '.join(why.split())}" if why else ""
 
     def _end_all(self) -> None:
         """Kill every descendant, however it has hidden from its parent."""
@@ -180,26 +141,39 @@ class Supervisor:
     def _be_init(self) -> NoReturn:
         """Adopt and forget orphans, to the end."""
         signal.pthread_sigmask(signal.SIG_SETMASK, [])
-        signal_at_parents_death(signal.SIGKILL)
+        linux.signal_at_parents_death(signal.SIGKILL)
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits, so the kernel reaps
         os.closerange(0, 1 << 16)
+        linux.control(linux.PR_SET_DUMPABLE, 0)
         while True:
             signal.pause()
 
     def _be_command(self, command: list[str] | None) -> None:
         try:
-            signal_at_parents_death(signal.SIGKILL)
-            confine(has_namespace=bool(self._init))
+            # what it sends to its group does not reach us, wherever we are
+            os.setsid()
+            linux.signal_at_parents_death(signal.SIGKILL)
+            os.close(self._refusal)
+            confine(self._order, has_namespace=bool(self._init))
             os.close(self._report)
-            for number in (*NOT_OURS, signal.SIGCHLD):
-                signal.signal(number, signal.SIG_DFL)
-            if command is None:  # as Python does where it starts
-                signal.signal(signal.SIGINT, signal.default_int_handler)
-            signal.pthread_sigmask(signal.SIG_SETMASK, [])
+            _reset_signals()
             if command is not None:
                 os.execvp(command[0], command)
-        except BaseException:
+            # as Python does where it starts
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+            signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            os.close(self._refuses)
+        except BaseException as error:
+            os.write(self._refuses, repr(error).encode("utf-8", "replace")[:2000])
             os._exit(127)
+
+
+def _reset_signals() -> None:
+    for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}:
+        with suppress(OSError):  # the C library's own
+            signal.signal(number, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_SETMASK, [])
 
 
 def _see_only_own_processes() -> None:
@@ -208,10 +182,10 @@ def _see_only_own_processes() -> None:
     Where this is refused, the others are seen, but still out of reach of signals.
     """
     with suppress(OSError):
-        unshare(CLONE_NEWNS)
-        mount("", "/", MS_REC | MS_PRIVATE)
-        mount("proc", "/proc", MS_NOSUID | MS_NODEV | MS_NOEXEC)
-        mount("tmpfs", "/dev/shm", MS_NOSUID | MS_NODEV, "size=64m,mode=1777")
+        linux.unshare(linux.CLONE_NEWNS)
+        linux.mount("", "/", linux.MS_REC | linux.MS_PRIVATE)
+        linux.mount("proc", "/proc", linux.MS_NOSUID | linux.MS_NODEV | linux.MS_NOEXEC)
+        linux.mount("tmpfs", "/dev/shm", linux.MS_NOSUID | linux.MS_NODEV, "size=64m,mode=1777")
 
 
 def _descendants(ancestor: int) -> list[int]:
@@ -231,7 +205,7 @@ def _descendants(ancestor: int) -> list[int]:
 def hold() -> None:
     """Make the namespaces and keep them until standard input closes."""
     user, group = os.getuid(), os.getgid()
-    unshare(CLONE_NEWUSER | CLONE_NEWNET)
+    linux.unshare(linux.CLONE_NEWUSER | linux.CLONE_NEWNET)
     for name, text in (
         ("setgroups", "deny"),
         ("uid_map", f"0 {user} 1"),
@@ -239,7 +213,7 @@ def hold() -> None:
     ):
         with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
             file.write(text)
-    raise_loopback()
+    linux.raise_loopback()
     os.write(1, b"ready\n")
     os.read(0, 1)
 
@@ -249,8 +223,17 @@ def main() -> None:
     if sys.argv[1] == "hold":
         hold()
         return
-    parent, report, *command = sys.argv[2:]
-    Supervisor(int(parent), int(report)).run(command)
+    parent, report, order, *command = sys.argv[2:]
+    Supervisor(int(parent), int(report), _read_order(int(order))).run(command)
+
+
+def _read_order(file: int) -> dict[str, Any] | None:
+    import json  # here: a zygote's child has it already
+
+    with open(file, "rb") as opened:
+        opened.seek(0)
+        order: dict[str, Any] | None = json.load(opened)
+    return order
 
 
 if __name__ == "__main__":

@@ -11,11 +11,12 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 import psutil
 
 from grader import system
-from grader.run.processes import supervisor
+from grader.run.processes import linux
 from grader.run.processes.forking import MARK
 from grader.run.processes.process import Process, Spawned
 from grader.run.processes.zygote import Warm, ZygoteLost
@@ -40,7 +41,7 @@ def adopt_orphans() -> None:
     For a process that is the grader and nothing else; who calls us as a library is left as he is.
     """
     if system.has_supervision():
-        ctypes.CDLL(None).prctl(supervisor.PR_SET_CHILD_SUBREAPER, 1)
+        ctypes.CDLL(None).prctl(linux.PR_SET_CHILD_SUBREAPER, 1)
 
 
 _running: set[Watched] = set()
@@ -68,17 +69,21 @@ def end_on_signals() -> None:
             signal.signal(number, end)
 
 
-def _all_processes() -> list[int]:
-    """The process ids of this user's processes, but for ourselves; without /proc, of all."""
+def _all_processes(*others: int) -> list[int]:
+    """The process ids of this user's processes, but for ourselves; without /proc, of all.
+
+    Args:
+        others: further users whose processes are ours.
+    """
     me = os.getpid()
     if not system.has_proc():
         return [pid for pid in psutil.pids() if pid != me]
-    user = os.getuid()
+    users = (os.getuid(), *others)
     found = []
     for entry in system.PROC.iterdir():
         if entry.name.isdigit() and int(entry.name) != me:
             with suppress(OSError):
-                if entry.stat().st_uid == user:
+                if entry.stat().st_uid in users:
                     found.append(int(entry.name))
     return found
 
@@ -91,6 +96,8 @@ class Watched:
 
     #: it runs our own program, which leaves nothing behind when it comes to its end
     IS_OURS = True
+    #: users whose processes are all its own
+    _users: tuple[int, ...] = ()
 
     def __init__(
         self,
@@ -101,6 +108,8 @@ class Watched:
         entry: Sequence[str] = (),
         warm: Warm | None = None,
         report: int = -1,
+        order: int = -1,
+        confinement: Mapping[str, Any] | None = None,
     ) -> None:
         """Start it.
 
@@ -108,16 +117,20 @@ class Watched:
             entry: stands before the command, where that is started; see `.isolation`.
             warm: where it is to be forked instead, if that can be.
             report: the descriptor of a supervisor that stands between, if one does.
+            order: a file from which that reads, where it is started, how it confines the command.
+            confinement: the same where it is forked.
         """
         self._mark = uuid.uuid4().hex
         env = {**env, MARK: self._mark}
         process: Process | None = None
         if warm is not None:
             with suppress(ZygoteLost):
-                process = warm.zygote.fork(command, env, cwd, pass_fds, warm.namespaces, report)
+                process = warm.zygote.fork(
+                    *(command, env, cwd, pass_fds, warm.namespaces, report, confinement)
+                )
         if process is None:
-            inherited = (*pass_fds, report) if report >= 0 else pass_fds
-            process = Spawned([*entry, *command], env, cwd, inherited)
+            inherited = [fd for fd in (*pass_fds, report, order) if fd >= 0]
+            process = Spawned([*entry, *command], env, cwd, tuple(inherited))
         self._process = process
         self._head = bytearray()
         self._tail = bytearray()
@@ -187,7 +200,7 @@ class Watched:
     def _sweep(self, patience_s: float) -> None:
         """End what it has started, wherever that has gone: its environment tells."""
         family = []
-        for pid in _all_processes():
+        for pid in _all_processes(*self._users):
             with suppress(psutil.Error):
                 process = psutil.Process(pid)  # remembers when it started: a number may be reused
                 if self._owns(pid):
@@ -197,6 +210,8 @@ class Watched:
 
     def _owns(self, pid: int) -> bool:
         with suppress(OSError, psutil.Error):
+            if self._users and os.stat(f"/proc/{pid}").st_uid in self._users:
+                return True
             if not system.has_proc():
                 return psutil.Process(pid).environ().get(MARK) == self._mark
             return f"{MARK}={self._mark}".encode() in Path(f"/proc/{pid}/environ").read_bytes()

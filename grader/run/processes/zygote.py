@@ -17,7 +17,7 @@ from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from grader.errors import GraderFailure
 from grader.run.processes import ZYGOTE, forking
@@ -133,12 +133,14 @@ class Zygote:
         pass_fds: Sequence[int],
         namespaces: Mapping[str, int],
         report: int = -1,
+        confinement: Mapping[str, Any] | None = None,
     ) -> Forked:
         """A process as if `command` had been started, in these namespaces.
 
         Args:
             namespaces: kind -> descriptor, in the order in which they are entered.
             report: of a supervisor, which then stands between; see `.supervisor`.
+            confinement: what that orders the process; see `.sandbox.confinement`.
 
         Raises:
             ZygoteLost: it gave none.
@@ -153,6 +155,7 @@ class Zygote:
             namespaces=list(namespaces),
             limits=forking.limits(),
             supervised=report >= 0,
+            confinement=None if confinement is None else dict(confinement),
         )
         ours, theirs = os.pipe()
         reports = [report] if report >= 0 else []

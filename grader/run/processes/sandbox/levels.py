@@ -1,0 +1,229 @@
+"""How well a submission's process can be confined here: tried once for each grader process.
+
+| level | what it is made of |
+|---|---|
+| `namespaces` | a root of its own, processes, network and shared memory of its own; a user of its own without any capability; a filter of system calls; limits |
+| `landlock` | Landlock for files, TCP, signals and abstract sockets; no capabilities, the filter, limits; for root, a user of its own where that can read what it needs |
+| `limits` | limits and process groups, and no program gets more rights |
+
+What is tried is what is done later: a process is confined, as a submission's is, and has to be able
+to start Python, to read rclpy and to write a file. Elsewhere than on Linux there is no level.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import random
+import site
+import sys
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from grader import scratch, system
+from grader.errors import GraderError, GraderFailure, UsageError
+from grader.run.processes import family, isolation
+from grader.run.processes.sandbox import landlock, view
+from grader.run.processes.sandbox.confinement import (
+    LANDLOCK,
+    LIMITS,
+    NAMESPACE,
+    NAMESPACES,
+    OWN,
+    SAME,
+)
+
+#: The best comes first.
+LEVELS = (NAMESPACES, LANDLOCK, LIMITS)
+#: Users of a moment: a range of systemd's for such, in which nobody has an account.
+USERS = range(61184, 65520)
+#: What a submission's process must be able to do.
+TRIES = "import os, sys; [open(path).close() for path in sys.argv[1:]]; open('tried', 'w').close()"
+PATIENCE_S = 20.0
+ADVICE = {
+    NAMESPACES: "Ubuntu 24.04 or later: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0,"
+    " or an AppArmor profile with `userns,` for this Python. Docker: run the container with"
+    " --security-opt seccomp=unconfined --security-opt apparmor=unconfined"
+    " --security-opt systempaths=unconfined --cap-add SYS_ADMIN. Debian: sudo sysctl"
+    " kernel.unprivileged_userns_clone=1. Elsewhere than on Linux there is none",
+    LANDLOCK: "Linux 5.13 or later with `landlock` in its list of security modules"
+    " (/sys/kernel/security/lsm), and a container runtime whose seccomp profile allows it, as"
+    " those of Docker and podman since 2021 do",
+    LIMITS: "Linux with /proc",
+}
+
+
+@dataclass(frozen=True)
+class Level:
+    """A way to confine, or none.
+
+    Attributes:
+        level: of `LEVELS`; '' for none.
+        user: how the user is changed; see `.confinement`.
+        refused: what was tried before in vain: level -> why.
+    """
+
+    level: str
+    user: str = SAME
+    refused: Mapping[str, str] = field(default_factory=dict)
+
+    def name(self) -> str:
+        """For the result; '' for none."""
+        if self.level == LANDLOCK:
+            own = ", own user" if self.user == OWN else ""
+            return f"{LANDLOCK} (ABI {landlock.abi()}{own})"
+        return self.level
+
+    def is_at_least(self, level: str) -> bool:
+        """Whether it keeps what another level promises."""
+        return self.level in LEVELS[: LEVELS.index(level) + 1]
+
+
+@dataclass(frozen=True)
+class Place:
+    """What is prepared for one process.
+
+    Attributes:
+        order: for `.confinement`; None for none.
+        env: what its environment variables have to say of it.
+    """
+
+    order: Mapping[str, Any] | None
+    env: Mapping[str, str]
+
+
+def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> Place:
+    """What confines a submission's process in a run.
+
+    Args:
+        submission: its root, without symbolic links.
+        folder: that of the run; `tmp` is in it.
+        is_apart: whether the run has a network of its own.
+    """
+    if not level.level:
+        return Place(None, {})
+    uid, user, scratch_folder = random.choice(USERS), level.user, "/tmp"  # noqa: S108
+    if user == OWN and not _is_readable(submission):
+        user = NAMESPACE if level.level == NAMESPACES else SAME
+    order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
+    if level.level == NAMESPACES:
+        order |= {"steps": view.steps(submission, uid), "folder": str(submission)}
+    else:
+        scratch_folder = str(folder / "tmp")
+    if level.level == LANDLOCK:
+        written = [scratch_folder, "/dev/null", "/dev/zero", "/dev/full"]
+        profile = [str(path) for path in folder.glob("*.xml")]
+        order |= {"read": [*view.readable(submission), *profile], "write": written}
+        if user == OWN:
+            for way in (scratch.home(), folder):
+                way.chmod(0o711)
+            os.chown(scratch_folder, uid, uid)
+    if level.level == LIMITS:
+        return Place(order, {})
+    env = {"TMPDIR": scratch_folder, "HOME": scratch_folder, "ROS_LOG_DIR": f"{scratch_folder}/log"}
+    if site.ENABLE_USER_SITE:
+        env["PYTHONUSERBASE"] = site.getuserbase()  # which Python would look for at home
+    return Place(order, env)
+
+
+def _is_readable(root: Path) -> bool:
+    """Whether other users may read all of a folder, if they can get there."""
+    for place, folders, files in os.walk(root):
+        for name in (".", *folders, *files):
+            mode = os.lstat(f"{place}/{name}").st_mode
+            wanted = 0o005 if name in (".", *folders) else 0o004
+            if mode & wanted != wanted:
+                return False
+    return True
+
+
+_lock = threading.Lock()
+_found: Level | None = None
+
+
+def best() -> Level:
+    """The best that there is here."""
+    global _found
+    with _lock:
+        if _found is None:
+            _found = _look()
+        return _found
+
+
+def require(level: str) -> None:
+    """See to it that there is such a level here.
+
+    Raises:
+        UsageError: there is not; the text says what there is, what is missing, and how to get it.
+    """
+    there = best()
+    if not there.is_at_least(level):
+        missing = there.refused.get(level, "this system has nothing of it")
+        what = f"the best here is {there.name()!r}" if there.level else "there is no level here"
+        raise UsageError(
+            f"no isolation by {level} here: {missing}; {what}. How to get it: {ADVICE[level]}"
+        )
+
+
+def _look() -> Level:
+    refused: dict[str, str] = {}
+    if not system.has_supervision():
+        return Level("", refused={level: "it needs Linux with /proc" for level in LEVELS})
+    for level in _candidates():
+        why = _try(level)
+        if not why:
+            return Level(level.level, level.user, refused)
+        refused.setdefault(level.level, why)
+    return Level("", refused=refused)
+
+
+def _candidates() -> Iterator[Level]:
+    is_root = os.geteuid() == 0
+    for level, user in (
+        *([(NAMESPACES, OWN)] if is_root else []),
+        (NAMESPACES, NAMESPACE),
+        *([(LANDLOCK, OWN)] if is_root else []),
+        (LANDLOCK, SAME),
+        (LIMITS, SAME),
+    ):
+        yield Level(level, user)
+
+
+def _try(level: Level) -> str:
+    """Confine a process so; what is refused, or ''."""
+    if level.level == LANDLOCK and not landlock.abi():
+        return "this kernel has no Landlock, or a container refuses it"
+    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        is_apart = bool(isolated.namespaces)
+        if level.level == NAMESPACES and not is_apart:
+            return "network and user namespaces are refused"
+        (folder / "tmp").mkdir()
+        (folder / "tried").mkdir()
+        try:
+            place = prepare(level, folder / "tried", folder, is_apart=is_apart)
+            return _start(place, folder, isolated.entry)
+        except (OSError, GraderError) as error:
+            return str(error)
+
+
+def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> str:
+    needed = [os.__file__, str(view.ROOT / view.HOST[0])]
+    rclpy = importlib.util.find_spec("rclpy")
+    if rclpy and rclpy.origin:
+        needed.append(rclpy.origin)
+    there = place.env.get("TMPDIR", str(folder / "tmp"))
+    code = f"import os; os.chdir({there!r}); {TRIES}"
+    words = [sys.executable, "-I", "-S", "-c", code, *needed]
+    env = {**os.environ, **place.env}
+    process = family.start_student(words, env, folder / "tried", (), entry, None, place.order)
+    try:
+        ended = process.wait(PATIENCE_S)
+        if ended == 0:
+            return ""
+        lines = process.output().strip().splitlines()
+        return lines[-1] if lines else f"a confined process ended with {ended}"
+    finally:
+        process.end(gently=False)

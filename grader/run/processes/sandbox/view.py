@@ -1,0 +1,248 @@
+"""What a submission's process is to see of the file system: planned in the grader.
+
+Python, the installed packages but for ours, the ROS libraries, the system's programs and libraries,
+a little of /etc and /dev, the few modules of ours that work in that process, and the submission.
+What is always the same is looked up once. `.filesystem` builds a root of it; `.landlock` gets it as
+lists of what may be read.
+"""
+
+from __future__ import annotations
+
+import os
+import site
+import sys
+import sysconfig
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+#: Where our packages are, if they are not installed.
+ROOT = Path(__file__).resolve().parents[4]
+#: Packages of ours, which show how we judge, or a solution.
+HIDDEN = ("grader", "turtlesim_challenge", "turtlesim_py")
+#: ... but for what works in the submission's own process.
+HOST = (
+    *("grader/__init__.py", "grader/system.py", "grader/run/__init__.py"),
+    *("grader/run/student", "grader/run/lockstep"),
+    *("grader/run/processes/__init__.py", "grader/run/processes/cores.py"),
+)
+SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
+#: Of /etc, where libraries are, and the time zone; who is here, the process is told otherwise.
+SETTINGS = (
+    *("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alternatives"),
+    *("/etc/localtime", "/etc/timezone", "/etc/os-release", "/etc/mime.types", "/etc/fonts"),
+)
+#: Of what belongs to an installed Python, which may lie in a folder with much else.
+PREFIX = ("bin", "lib", "lib64", "libexec", "share", "include", "etc", "opt", "pyvenv.cfg")
+DEVICES = ("null", "zero", "full", "random", "urandom")
+LINKS = {
+    "/dev/fd": "/proc/self/fd",
+    "/dev/stdin": "/proc/self/fd/0",
+    "/dev/stdout": "/proc/self/fd/1",
+    "/dev/stderr": "/proc/self/fd/2",
+}
+#: The one place that can be written to, and what shared memory is made of: so much, so many files.
+SCRATCH = {"/tmp": "size=64m,nr_inodes=8192", "/dev/shm": "size=64m,nr_inodes=1024"}
+#: Of /proc, what a process may read where it sees that of all.
+SHOWN_OF_PROC = ("self", "cpuinfo", "meminfo", "stat", "uptime", "version", "loadavg", "sys")
+FILES = {
+    "/etc/nsswitch.conf": "passwd: files\ngroup: files\nhosts: files\n",
+    "/etc/hosts": "127.0.0.1 localhost\n::1 localhost\n",
+}
+NAME = "student"
+
+Step = list[str]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Paths without symbolic links, and the links that lead to them.
+
+    Attributes:
+        shown: folders and files with all that is in them.
+        hidden: folders below those that are not to be seen ...
+        host: ... but for these.
+        links: link -> where it points.
+    """
+
+    shown: frozenset[str]
+    hidden: frozenset[str]
+    host: frozenset[str]
+    links: dict[str, str]
+
+
+@cache
+def places() -> Places:
+    """What is the same for every submission."""
+    found: set[str] = set()
+    links: dict[str, str] = {}
+    for path in _shown():
+        for real in _follow(path, links):
+            found.add(real)
+    host, root = set(), os.path.realpath(ROOT)
+    for path in HOST:
+        if os.path.exists(f"{root}/{path}"):
+            host.add(f"{root}/{path}")
+    hidden = {
+        os.path.realpath(f"{folder}/{name}")
+        for folder in (*import_path(), str(ROOT))
+        for name in HIDDEN
+        if os.path.isdir(f"{folder}/{name}")
+    }
+    return Places(frozenset(found), frozenset(hidden), frozenset(host), links)
+
+
+def steps(submission: Path, uid: int) -> list[Step]:
+    """For `.filesystem`: the root of a process that runs this submission as this user."""
+    always = places()
+    links = dict(always.links) | LINKS
+    own = set(_follow(str(submission), links))
+    mounts: dict[str, str] = dict.fromkeys(SCRATCH, "scratch")
+    mounts["/proc"] = "proc"
+    wanted = dict.fromkeys(always.hidden, "hide")
+    wanted |= dict.fromkeys((*always.shown, *always.host, *own), "bind")
+    wanted |= {f"/dev/{name}": "bind" for name in DEVICES if os.path.exists(f"/dev/{name}")}
+    for path in sorted(wanted, key=_parts):
+        kind = wanted[path]
+        above = _covering(path, mounts)
+        if above != kind and not (kind == "hide" and above != "bind"):
+            mounts[path] = kind
+    files = FILES | {
+        "/etc/passwd": f"root:x:0:0::/:/bin/false\n{NAME}:x:{uid}:{uid}::/tmp:/bin/sh\n",
+        "/etc/group": f"root:x:0:\n{NAME}:x:{uid}:\n",
+    }
+    return list(_in_order(mounts, links, files))
+
+
+def readable(submission: Path) -> list[str]:
+    """For `.landlock`: what may be read, and run."""
+    always = places()
+    own = _follow(str(submission), {})
+    found = [
+        *(each for path in sorted(always.shown) for each in _without(path, always.hidden)),
+        *sorted(always.host),
+        *own,
+        *(f"/dev/{name}" for name in DEVICES),
+        *(f"/proc/{name}" for name in SHOWN_OF_PROC),
+        *("/etc/passwd", "/etc/group", "/etc/nsswitch.conf", "/etc/hosts"),
+    ]
+    return [path for path in found if os.path.exists(path)]
+
+
+def import_path() -> list[str]:
+    """Where a submission's Python looks for modules, but for the submission itself."""
+    names = ("stdlib", "platstdlib", "purelib", "platlib")
+    found = [sysconfig.get_paths()[name] for name in names]
+    packages = [*site.getsitepackages(), *([site.getusersitepackages()] if site.ENABLE_USER_SITE else [])]
+    found += packages
+    if _is_ros_sourced():
+        found += _listed("PYTHONPATH")
+    for folder in packages:
+        found += _added(folder)
+    return [path for path in dict.fromkeys(found) if os.path.isdir(path) and not _is_wide(path)]
+
+
+def _added(folder: str) -> Iterator[str]:
+    """Folders that are put on the import path by files in another one."""
+    for file in sorted(Path(folder).glob("*.pth")):
+        for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.strip() and not line.startswith(("#", "import ", "import\t")):
+                path = os.path.normpath(os.path.join(folder, line.strip()))
+                if os.path.realpath(path) != os.path.realpath(ROOT):
+                    yield path
+
+
+def _shown() -> Iterator[str]:
+    yield from (*SYSTEM, *SETTINGS)
+    prefixes = {sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix}
+    yield from (f"{prefix}/{name}" for prefix in sorted(prefixes) for name in PREFIX)
+    yield sys.executable
+    yield from import_path()
+    if _is_ros_sourced():
+        for name in ("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH"):
+            yield from (path for path in _listed(name) if path not in prefixes)
+
+
+def _is_ros_sourced() -> bool:
+    return "ROS_DISTRO" in os.environ
+
+
+def _listed(variable: str) -> list[str]:
+    return [path for path in os.environ.get(variable, "").split(os.pathsep) if path.startswith("/")]
+
+
+def _is_wide(path: str) -> bool:
+    """Whether a folder holds everything, or somebody's home."""
+    real, home = os.path.realpath(path), os.path.realpath(Path.home())
+    return (home + "/").startswith(real.rstrip("/") + "/")
+
+
+def _follow(path: str, links: dict[str, str]) -> Iterator[str]:
+    """Where a path leads, if there is something; the links on the way are put down."""
+    parts, real, hops = _parts(os.path.abspath(path)), "", 0
+    while parts:
+        here = f"{real}/{parts.pop(0)}"
+        if os.path.islink(here) and (hops := hops + 1) < 40:
+            links[here] = os.readlink(here)
+            target = os.path.normpath(os.path.join(real or "/", links[here]))
+            parts, real = [*_parts(target), *parts], ""
+        else:
+            real = here
+    if os.path.exists(real) and not _is_wide(real):
+        yield real
+
+
+def _parts(path: str) -> list[str]:
+    return [part for part in path.split("/") if part]
+
+
+def _covering(path: str, mounts: dict[str, str]) -> str:
+    """What kind of mount a path lies in; '': the root."""
+    while path := path.rpartition("/")[0]:
+        if path in mounts:
+            return mounts[path]
+    return ""
+
+
+def _in_order(mounts: dict[str, str], links: dict[str, str], files: dict[str, str]) -> Iterator[Step]:
+    """Every step after those that make its place."""
+    made: set[str] = set()
+    everything = {*mounts, *links, *files}
+    for path in sorted(everything, key=_parts):
+        if path not in mounts and _covering(path, mounts) == "bind":
+            continue  # it is there already
+        if _covering(path, mounts) != "bind":
+            for folder in _above(path):
+                if folder not in made and folder not in mounts and folder not in links:
+                    if _covering(folder, mounts) != "bind":
+                        yield ["folder", folder]
+                    made.add(folder)
+        if path in links and path not in mounts:
+            yield ["link", path, links[path]]
+        elif path in files:
+            yield ["file", path, files[path]]
+        else:
+            if _covering(path, mounts) != "bind":
+                is_file = mounts[path] == "bind" and not os.path.isdir(path)
+                yield ["file", path, ""] if is_file else ["folder", path]
+            yield [mounts[path], path, SCRATCH.get(path, "")]
+
+
+def _above(path: str) -> list[str]:
+    """The folders that a path lies in, the outermost first."""
+    parts = _parts(path)[:-1]
+    return ["/" + "/".join(parts[: n + 1]) for n in range(len(parts))]
+
+
+def _without(path: str, hidden: Iterable[str]) -> Iterator[str]:
+    """A folder, or if something in it is to be hidden, what else is in it."""
+    below = [each for each in hidden if (each + "/").startswith(path.rstrip("/") + "/")]
+    if not below:
+        yield path
+    elif path not in below:
+        with os.scandir(path) as entries:
+            for entry in sorted(entries, key=lambda entry: entry.name):
+                if entry.is_symlink():
+                    continue  # where it leads is shown or not for its own sake
+                yield from _without(entry.path, below)
