@@ -8,6 +8,8 @@ from pathlib import Path
 
 from grader.exercise import DEFAULT
 
+#: `grader.run.processes.levels.LEVELS`; the same.
+LEVELS = ("namespaces", "landlock", "limits")
 #: The keys of `grader.grading.RUNNERS`, which takes long to import.
 CLOCKS = ("real", "virtual")
 
@@ -35,6 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here as well")
     parser.add_argument("--executable", metavar="NAME", help="which console script to start")
     parser.add_argument(
+        "--isolation",
+        choices=LEVELS,
+        metavar="LEVEL",
+        help=f"refuse to run the submission confined less well: {', '.join(LEVELS)} (the best "
+        "that this system allows is always taken)",
+    )
+    parser.add_argument(
         "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"
     )
 
@@ -49,6 +58,10 @@ def points(text: str) -> float:
 
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
+    if args.isolation:
+        from grader.run.processes import levels
+
+        levels.require(args.isolation)
     # What can begin before a run belongs here: from here on imports take their time.
     from grader.submission import reader
 

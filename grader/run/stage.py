@@ -11,13 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader import scratch, system
-from grader.errors import GraderFailure
 from grader.run import zygotes
 from grader.run.environment import environment, student_environment
-from grader.run.processes import isolation
+from grader.run.processes import isolation, levels
 from grader.run.processes.family import start_student
-from grader.run.processes.sandbox import levels
-from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
 from grader.submission.opening import EntryPoint, Submission
@@ -94,12 +91,10 @@ def open_stage() -> Iterator[Stage]:
     """Set one up; nothing of it is left afterwards.
 
     Raises:
-        GraderFailure: it cannot be isolated from other runs.
+        GraderFailure: it cannot be isolated from other runs, or confined as was required.
     """
-    level = levels.best()
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
-        if level.level == NAMESPACES and not isolated.namespaces:
-            raise GraderFailure("a network of its own was to be had before, and now is not")
+        level = levels.best(is_apart=bool(isolated.namespaces))
         env = environment(folder, isolated.env)
         recording, path = _make_recording(folder)
         try:

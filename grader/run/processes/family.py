@@ -30,6 +30,14 @@ NOT_STARTED = 1 << 16
 SUPERVISOR = (sys.executable, "-I", "-S", supervisor.__file__, "run")
 
 
+class NotConfined(GraderFailure):
+    """A submission's process could not be confined or started; `why`: in a few words."""
+
+    def __init__(self, message: str, why: str) -> None:
+        super().__init__(message)
+        self.why = why
+
+
 def start_student(
     command: Sequence[str],
     env: Mapping[str, str],
@@ -123,11 +131,12 @@ class Student(Watched):
         """Wait for the end of the command itself; None if it still runs then.
 
         Raises:
-            GraderFailure: it could not be confined, or started.
+            NotConfined: it could not be confined, or started.
         """
         code = self._await_end(timeout_s)
         if code == NOT_STARTED:
-            raise GraderFailure(f"the submission's process could not be started: {self._words()}")
+            why = self._words().removeprefix(supervisor.REFUSED).strip()
+            raise NotConfined(f"the submission's process could not be started: {why}", why)
         return code
 
     def _await_end(self, timeout_s: float) -> int | None:

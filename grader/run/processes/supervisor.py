@@ -165,8 +165,15 @@ class Supervisor:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             os.close(self._refuses)
         except BaseException as error:
-            os.write(self._refuses, repr(error).encode("utf-8", "replace")[:2000])
+            os.write(self._refuses, _said(error).encode("utf-8", "replace")[:1000])
             os._exit(127)
+
+
+def _said(error: BaseException) -> str:
+    """An error in one line, and never in none."""
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.strerror}: {error.filename}" if error.filename else error.strerror
+    return str(error) or repr(error)
 
 
 def _reset_signals() -> None:

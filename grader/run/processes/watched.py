@@ -210,7 +210,7 @@ class Watched:
 
     def _owns(self, pid: int) -> bool:
         with suppress(OSError, psutil.Error):
-            if self._users and os.stat(f"/proc/{pid}").st_uid in self._users:
+            if self._users and Path(f"/proc/{pid}").stat().st_uid in self._users:
                 return True
             if not system.has_proc():
                 return psutil.Process(pid).environ().get(MARK) == self._mark

@@ -158,7 +158,9 @@ publisher = rclpy.create_node("driver").create_publisher(Twist, "/turtle1/cmd_ve
 twist = Twist()
 twist.linear.x = 1.0
 publisher.publish(twist)
-folder = os.path.dirname(os.environ["TMPDIR"])
+folder = os.environ["TMPDIR"]
+if folder != "/tmp":
+    folder = os.path.dirname(folder)
 for _ in range(20):
     time.sleep(0.1)
     found = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]

@@ -6,7 +6,7 @@ An order is a dictionary of what JSON can say, so that it can be an argument of 
 |---|---|
 | `level` | `namespaces`, `landlock` or `limits`; see `.levels` |
 | `uid` | the user that it is to be |
-| `user` | how: `own` for root, who can be anybody; `namespace` for others; `same`: it stays who it is |
+| `user` | `own`: as root can; `namespace`: in a user namespace of its own; `same`: not at all |
 | `steps`, `folder` | for `.filesystem` |
 | `read`, `write` | for `.landlock` |
 | `is_apart` | whether the run has a network of its own |

@@ -6,13 +6,16 @@ What is always the same is looked up once. `.filesystem` builds a root of it; `.
 lists of what may be read.
 """
 
+# ruff: noqa: PTH100, PTH110, PTH112, PTH114, PTH115, PTH118
+# Paths are text here, as the mounts and rules that come of them are; pathlib would tidy them up.
+
 from __future__ import annotations
 
 import os
 import site
 import sys
 import sysconfig
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -73,13 +76,24 @@ class Places:
 
 
 @cache
+def _always_readable() -> tuple[str, ...]:
+    always = places()
+    return (
+        *(each for path in sorted(always.shown) for each in _without(path, always.hidden)),
+        *sorted(always.host),
+        *(f"/dev/{name}" for name in DEVICES),
+        *(f"/proc/{name}" for name in SHOWN_OF_PROC),
+        *("/etc/passwd", "/etc/group", "/etc/nsswitch.conf", "/etc/hosts"),
+    )
+
+
+@cache
 def places() -> Places:
     """What is the same for every submission."""
     found: set[str] = set()
     links: dict[str, str] = {}
     for path in _shown():
-        for real in _follow(path, links):
-            found.add(real)
+        found.update(real for real in _follow(path, links) if not _is_wide(real))
     host, root = set(), os.path.realpath(ROOT)
     for path in HOST:
         if os.path.exists(f"{root}/{path}"):
@@ -90,7 +104,8 @@ def places() -> Places:
         for name in HIDDEN
         if os.path.isdir(f"{folder}/{name}")
     }
-    return Places(frozenset(found), frozenset(hidden), frozenset(host), links)
+    outer = {path for path in found if not any(_is_below(path, each) for each in found)}
+    return Places(frozenset(outer), frozenset(hidden), frozenset(host), links)
 
 
 def steps(submission: Path, uid: int) -> list[Step]:
@@ -117,24 +132,17 @@ def steps(submission: Path, uid: int) -> list[Step]:
 
 def readable(submission: Path) -> list[str]:
     """For `.landlock`: what may be read, and run."""
-    always = places()
-    own = _follow(str(submission), {})
-    found = [
-        *(each for path in sorted(always.shown) for each in _without(path, always.hidden)),
-        *sorted(always.host),
-        *own,
-        *(f"/dev/{name}" for name in DEVICES),
-        *(f"/proc/{name}" for name in SHOWN_OF_PROC),
-        *("/etc/passwd", "/etc/group", "/etc/nsswitch.conf", "/etc/hosts"),
-    ]
-    return [path for path in found if os.path.exists(path)]
+    return [*_always_readable(), *_follow(str(submission), {})]
 
 
 def import_path() -> list[str]:
     """Where a submission's Python looks for modules, but for the submission itself."""
     names = ("stdlib", "platstdlib", "purelib", "platlib")
     found = [sysconfig.get_paths()[name] for name in names]
-    packages = [*site.getsitepackages(), *([site.getusersitepackages()] if site.ENABLE_USER_SITE else [])]
+    packages = [
+        *site.getsitepackages(),
+        *([site.getusersitepackages()] if site.ENABLE_USER_SITE else []),
+    ]
     found += packages
     if _is_ros_sourced():
         found += _listed("PYTHONPATH")
@@ -175,7 +183,11 @@ def _listed(variable: str) -> list[str]:
 def _is_wide(path: str) -> bool:
     """Whether a folder holds everything, or somebody's home."""
     real, home = os.path.realpath(path), os.path.realpath(Path.home())
-    return (home + "/").startswith(real.rstrip("/") + "/")
+    return real == home or _is_below(home, real)
+
+
+def _is_below(path: str, folder: str) -> bool:
+    return path != folder and path.startswith(folder.rstrip("/") + "/")
 
 
 def _follow(path: str, links: dict[str, str]) -> Iterator[str]:
@@ -189,7 +201,7 @@ def _follow(path: str, links: dict[str, str]) -> Iterator[str]:
             parts, real = [*_parts(target), *parts], ""
         else:
             real = here
-    if os.path.exists(real) and not _is_wide(real):
+    if os.path.exists(real):
         yield real
 
 
@@ -205,7 +217,9 @@ def _covering(path: str, mounts: dict[str, str]) -> str:
     return ""
 
 
-def _in_order(mounts: dict[str, str], links: dict[str, str], files: dict[str, str]) -> Iterator[Step]:
+def _in_order(
+    mounts: dict[str, str], links: dict[str, str], files: dict[str, str]
+) -> Iterator[Step]:
     """Every step after those that make its place."""
     made: set[str] = set()
     everything = {*mounts, *links, *files}
@@ -235,14 +249,14 @@ def _above(path: str) -> list[str]:
     return ["/" + "/".join(parts[: n + 1]) for n in range(len(parts))]
 
 
-def _without(path: str, hidden: Iterable[str]) -> Iterator[str]:
+def _without(path: str, hidden: Collection[str]) -> Iterator[str]:
     """A folder, or if something in it is to be hidden, what else is in it."""
-    below = [each for each in hidden if (each + "/").startswith(path.rstrip("/") + "/")]
-    if not below:
+    below = [each for each in hidden if _is_below(each, path)]
+    if not below and path not in hidden:
         yield path
-    elif path not in below:
+    elif path not in hidden:
         with os.scandir(path) as entries:
             for entry in sorted(entries, key=lambda entry: entry.name):
                 if entry.is_symlink():
                     continue  # where it leads is shown or not for its own sake
-                yield from _without(entry.path, below)
+                yield from _without(entry.path, hidden)

@@ -1,10 +1,10 @@
 """How well a submission's process can be confined here: tried once for each grader process.
 
-| level | what it is made of |
-|---|---|
-| `namespaces` | a root of its own, processes, network and shared memory of its own; a user of its own without any capability; a filter of system calls; limits |
-| `landlock` | Landlock for files, TCP, signals and abstract sockets; no capabilities, the filter, limits; for root, a user of its own where that can read what it needs |
-| `limits` | limits and process groups, and no program gets more rights |
+`namespaces`: a root of its own, and processes, network, shared memory of its own; a user of its own
+without any capability; a filter of system calls; limits.
+`landlock`: Landlock for files, TCP, signals and abstract sockets; no capabilities, the filter,
+limits; for root a user of its own, where that can read what it needs.
+`limits`: limits and process groups, and no program gets more rights.
 
 What is tried is what is done later: a process is confined, as a submission's is, and has to be able
 to start Python, to read rclpy and to write a file. Elsewhere than on Linux there is no level.
@@ -18,7 +18,7 @@ import random
 import site
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -41,7 +41,12 @@ LEVELS = (NAMESPACES, LANDLOCK, LIMITS)
 #: Users of a moment: a range of systemd's for such, in which nobody has an account.
 USERS = range(61184, 65520)
 #: What a submission's process must be able to do.
-TRIES = "import os, sys; [open(path).close() for path in sys.argv[1:]]; open('tried', 'w').close()"
+TRIES = """
+import sys
+open(sys.argv[1] + "/tried", "w").close()
+for path in sys.argv[2:]:
+    open(path).close()
+"""
 PATIENCE_S = 20.0
 ADVICE = {
     NAMESPACES: "Ubuntu 24.04 or later: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0,"
@@ -105,7 +110,7 @@ def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> 
     """
     if not level.level:
         return Place(None, {})
-    uid, user, scratch_folder = random.choice(USERS), level.user, "/tmp"  # noqa: S108
+    uid, user, scratch_folder = random.choice(USERS), level.user, "/tmp"
     if user == OWN and not _is_readable(submission):
         user = NAMESPACE if level.level == NAMESPACES else SAME
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
@@ -141,70 +146,82 @@ def _is_readable(root: Path) -> bool:
 
 
 _lock = threading.Lock()
-_found: Level | None = None
+#: with a network of one's own, and without
+_found: dict[bool, Level] = {}
+#: what `require` was asked for
+_least = ""
 
 
-def best() -> Level:
-    """The best that there is here."""
-    global _found
+def best(*, is_apart: bool) -> Level:
+    """The best that there is here.
+
+    Args:
+        is_apart: whether there is a network for the run alone.
+
+    Raises:
+        GraderFailure: that is less than what was required.
+    """
     with _lock:
-        if _found is None:
-            _found = _look()
-        return _found
+        if is_apart not in _found:
+            _found[is_apart] = _look(is_apart=is_apart)
+        found = _found[is_apart]
+    if _least and not found.is_at_least(_least):
+        raise GraderFailure(f"isolation by {_least} was to be had before, and now is not")
+    return found
 
 
 def require(level: str) -> None:
-    """See to it that there is such a level here.
+    """See to it that there is such a level here, and that every run from now on has it.
 
     Raises:
         UsageError: there is not; the text says what there is, what is missing, and how to get it.
     """
-    there = best()
+    global _least
+    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        there = best(is_apart=bool(isolated.namespaces))
     if not there.is_at_least(level):
         missing = there.refused.get(level, "this system has nothing of it")
-        what = f"the best here is {there.name()!r}" if there.level else "there is no level here"
+        what = f"the best here is {there.name()!r}" if there.level else "there is none here"
         raise UsageError(
-            f"no isolation by {level} here: {missing}; {what}. How to get it: {ADVICE[level]}"
+            f"isolation by {level} is not to be had: {missing}; {what}. To get it: {ADVICE[level]}."
         )
+    _least = level
 
 
-def _look() -> Level:
+def _look(*, is_apart: bool) -> Level:
     refused: dict[str, str] = {}
     if not system.has_supervision():
-        return Level("", refused={level: "it needs Linux with /proc" for level in LEVELS})
+        return Level("", refused=dict.fromkeys(LEVELS, "this is not Linux, or it lacks /proc"))
     for level in _candidates():
-        why = _try(level)
-        if not why:
+        if why := _try(level, is_apart=is_apart):
+            refused.setdefault(level.level, why)
+        else:
             return Level(level.level, level.user, refused)
-        refused.setdefault(level.level, why)
     return Level("", refused=refused)
 
 
 def _candidates() -> Iterator[Level]:
-    is_root = os.geteuid() == 0
-    for level, user in (
-        *([(NAMESPACES, OWN)] if is_root else []),
-        (NAMESPACES, NAMESPACE),
-        *([(LANDLOCK, OWN)] if is_root else []),
-        (LANDLOCK, SAME),
-        (LIMITS, SAME),
-    ):
-        yield Level(level, user)
+    """All that may be here, the best first."""
+    own = [OWN] if os.geteuid() == 0 else []
+    yield from (Level(NAMESPACES, user) for user in (*own, NAMESPACE))
+    yield from (Level(LANDLOCK, user) for user in (*own, SAME))
+    yield Level(LIMITS)
 
 
-def _try(level: Level) -> str:
+def _try(level: Level, *, is_apart: bool) -> str:
     """Confine a process so; what is refused, or ''."""
     if level.level == LANDLOCK and not landlock.abi():
         return "this kernel has no Landlock, or a container refuses it"
+    if level.level == NAMESPACES and not is_apart:
+        return "namespaces of users and networks are refused"
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
-        is_apart = bool(isolated.namespaces)
-        if level.level == NAMESPACES and not is_apart:
-            return "network and user namespaces are refused"
         (folder / "tmp").mkdir()
         (folder / "tried").mkdir()
         try:
             place = prepare(level, folder / "tried", folder, is_apart=is_apart)
             return _start(place, folder, isolated.entry)
+        except family.NotConfined as error:
+            return error.why
         except (OSError, GraderError) as error:
             return str(error)
 
@@ -214,16 +231,13 @@ def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> str:
     rclpy = importlib.util.find_spec("rclpy")
     if rclpy and rclpy.origin:
         needed.append(rclpy.origin)
-    there = place.env.get("TMPDIR", str(folder / "tmp"))
-    code = f"import os; os.chdir({there!r}); {TRIES}"
-    words = [sys.executable, "-I", "-S", "-c", code, *needed]
+    written = place.env.get("TMPDIR", str(folder / "tmp"))
+    words = [sys.executable, "-I", "-S", "-c", TRIES, written, *needed]
     env = {**os.environ, **place.env}
     process = family.start_student(words, env, folder / "tried", (), entry, None, place.order)
     try:
         ended = process.wait(PATIENCE_S)
-        if ended == 0:
-            return ""
         lines = process.output().strip().splitlines()
-        return lines[-1] if lines else f"a confined process ended with {ended}"
+        return "" if ended == 0 else lines[-1] if lines else f"a trial ended with {ended}"
     finally:
         process.end(gently=False)

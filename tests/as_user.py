@@ -1,0 +1,57 @@
+"""Starts a program as an ordinary user, in a container's way: for tests that root runs.
+
+    python as_user.py COMMAND...
+
+Where Python lies in a folder of root's alone, the program is shown Python there and nothing else of
+that folder; it gets a home and a TMPDIR of its own below the given TMPDIR.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import stat
+import sys
+from pathlib import Path
+
+USER = 65534
+CLONE_NEWNS, MS_BIND, MS_REC, MS_PRIVATE = 0x20000, 0x1000, 0x4000, 0x40000
+
+
+def call(function: str, *words: object) -> None:
+    libc = ctypes.CDLL(None, use_errno=True)
+    if getattr(libc, function)(*words) != 0:
+        raise OSError(ctypes.get_errno(), f"{function}: {os.strerror(ctypes.get_errno())}")
+
+
+def mount(source: str, target: Path, kind: str, flags: int, data: str = "") -> None:
+    words = (source.encode(), bytes(target), kind.encode(), ctypes.c_ulong(flags), data.encode())
+    call("mount", *words)
+
+
+def uncover(folder: Path) -> None:
+    """Let others reach a folder, whatever it lies in."""
+    private = [way for way in folder.parents if not way.stat().st_mode & stat.S_IXOTH]
+    if private:
+        opened = os.open(folder, os.O_PATH)
+        mount("tmpfs", private[-1], "tmpfs", 0, "mode=755")
+        folder.mkdir(parents=True)
+        mount(f"/proc/self/fd/{opened}", folder, "", MS_BIND | MS_REC)
+        os.close(opened)
+
+
+def become_user() -> None:
+    """Go on as an ordinary user in the current process."""
+    call("unshare", CLONE_NEWNS)
+    mount("", Path("/"), "", MS_REC | MS_PRIVATE)
+    for prefix in {sys.prefix, sys.base_prefix}:
+        uncover(Path(prefix).resolve())
+    os.setgroups([])
+    os.setresgid(USER, USER, USER)
+    os.setresuid(USER, USER, USER)
+    ctypes.CDLL(None).prctl(4, 1)  # it may be looked at by its own, as after a login
+
+
+if __name__ == "__main__":
+    become_user()
+    os.execvp(sys.argv[1], sys.argv[1:])
