@@ -200,6 +200,11 @@ def _look(*, is_apart: bool) -> Level:
     return Level("", refused=refused)
 
 
+def offered(*, is_apart: bool) -> list[Level]:
+    """All that there is here, the best first; for tests and benchmarks."""
+    return [level for level in _candidates() if not _try(level, is_apart=is_apart)]
+
+
 def _candidates() -> Iterator[Level]:
     """All that may be here, the best first."""
     own = [OWN] if os.geteuid() == 0 else []

@@ -122,6 +122,8 @@ def steps(submission: Path, uid: int) -> list[Step]:
         kind = wanted[path]
         above = _covering(path, mounts)
         if above != kind and not (kind == "hide" and above != "bind"):
+            for top in _within_scratch(path, mounts):
+                mounts[top] = "hide"
             mounts[path] = kind
     files = FILES | {
         "/etc/passwd": f"root:x:0:0::/:/bin/false\n{NAME}:x:{uid}:{uid}::/tmp:/bin/sh\n",
@@ -132,7 +134,12 @@ def steps(submission: Path, uid: int) -> list[Step]:
 
 def readable(submission: Path) -> list[str]:
     """For `.landlock`: what may be read, and run."""
-    return [*_always_readable(), *_follow(str(submission), {})]
+    own = [
+        each
+        for real in _follow(str(submission), {})
+        for each in _without(real, places().hidden - {real})
+    ]
+    return [*_always_readable(), *own]
 
 
 def import_path() -> list[str]:
@@ -215,6 +222,15 @@ def _covering(path: str, mounts: dict[str, str]) -> str:
         if path in mounts:
             return mounts[path]
     return ""
+
+
+def _within_scratch(path: str, mounts: dict[str, str]) -> Iterator[str]:
+    """The first folder on the way to a path that would belong to what can be written to."""
+    if _covering(path, mounts) == "scratch":
+        within = next(folder for folder in SCRATCH if _is_below(path, folder))
+        top = f"{within}/{_parts(path.removeprefix(within))[0]}"
+        if top != path:
+            yield top
 
 
 def _in_order(
