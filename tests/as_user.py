@@ -1,8 +1,8 @@
 """Starts a program as an ordinary user, in a container's way: for tests that root runs.
 
-    python as_user.py COMMAND...
+    python as_user.py [--root] COMMAND...
 
-Where Python lies in a folder of root's alone, the program is shown Python there and nothing else of
+With `--root` it remains root, and all that others would see is the same. Where Python lies in a folder of root's alone, the program is shown Python there and nothing else of
 that folder; it gets a home and a TMPDIR of its own below the given TMPDIR.
 """
 
@@ -40,12 +40,16 @@ def uncover(folder: Path) -> None:
         os.close(opened)
 
 
-def become_user() -> None:
-    """Go on as an ordinary user in the current process."""
+def show_python() -> None:
+    """Let other users get at this Python, in the current process's view."""
     call("unshare", CLONE_NEWNS)
     mount("", Path("/"), "", MS_REC | MS_PRIVATE)
     for prefix in {sys.prefix, sys.base_prefix}:
         uncover(Path(prefix).resolve())
+
+
+def become_user() -> None:
+    """Go on as an ordinary user in the current process."""
     os.setgroups([])
     os.setresgid(USER, USER, USER)
     os.setresuid(USER, USER, USER)
@@ -53,5 +57,10 @@ def become_user() -> None:
 
 
 if __name__ == "__main__":
-    become_user()
-    os.execvp(sys.argv[1], sys.argv[1:])
+    words = sys.argv[1:]
+    show_python()
+    if words[0] == "--root":
+        del words[0]
+    else:
+        become_user()
+    os.execvp(words[0], words)

@@ -16,6 +16,7 @@ import importlib.util
 import os
 import random
 import site
+import stat
 import sys
 import threading
 from collections.abc import Iterator, Mapping
@@ -48,6 +49,8 @@ for path in sys.argv[2:]:
     open(path).close()
 """
 PATIENCE_S = 20.0
+#: What programs write to that is no file.
+DEVICES = ("/dev/null", "/dev/zero", "/dev/full")
 ADVICE = {
     NAMESPACES: "Ubuntu 24.04 or later: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0,"
     " or an AppArmor profile with `userns,` for this Python. Docker: run the container with"
@@ -110,39 +113,47 @@ def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> 
     """
     if not level.level:
         return Place(None, {})
-    uid, user, scratch_folder = random.choice(USERS), level.user, "/tmp"
-    if user == OWN and not _is_readable(submission):
+    uid, user, written = random.choice(USERS), level.user, "/tmp"
+    if level.level != NAMESPACES:
+        written = str(folder / "tmp")
+    if user == OWN and not _is_readable(submission, anywhere=level.level == NAMESPACES):
         user = NAMESPACE if level.level == NAMESPACES else SAME
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
     if level.level == NAMESPACES:
         order |= {"steps": view.steps(submission, uid), "folder": str(submission)}
-    else:
-        scratch_folder = str(folder / "tmp")
-    if level.level == LANDLOCK:
-        written = [scratch_folder, "/dev/null", "/dev/zero", "/dev/full"]
-        profile = [str(path) for path in folder.glob("*.xml")]
-        order |= {"read": [*view.readable(submission), *profile], "write": written}
+    elif level.level == LANDLOCK:
+        settings = [str(path) for path in folder.glob("*.xml")]
+        order |= {"read": [*view.readable(submission), *settings], "write": [written, *DEVICES]}
         if user == OWN:
-            for way in (scratch.home(), folder):
-                way.chmod(0o711)
-            os.chown(scratch_folder, uid, uid)
+            _open_ways(folder / "tmp")
+            os.chown(written, uid, uid)
     if level.level == LIMITS:
         return Place(order, {})
-    env = {"TMPDIR": scratch_folder, "HOME": scratch_folder, "ROS_LOG_DIR": f"{scratch_folder}/log"}
+    env = {"TMPDIR": written, "HOME": written, "ROS_LOG_DIR": f"{written}/log"}
     if site.ENABLE_USER_SITE:
         env["PYTHONUSERBASE"] = site.getuserbase()  # which Python would look for at home
     return Place(order, env)
 
 
-def _is_readable(root: Path) -> bool:
-    """Whether other users may read all of a folder, if they can get there."""
-    for place, folders, files in os.walk(root):
-        for name in (".", *folders, *files):
-            mode = os.lstat(f"{place}/{name}").st_mode
-            wanted = 0o005 if name in (".", *folders) else 0o004
-            if mode & wanted != wanted:
+def _is_readable(root: Path, *, anywhere: bool) -> bool:
+    """Whether other users may read all of a folder; `anywhere`: if they can get there."""
+    if not anywhere:
+        _open_ways(root)
+        if any(not way.stat().st_mode & stat.S_IXOTH for way in root.parents):
+            return False
+    for place, _, files in os.walk(root):
+        for path, wanted in (Path(place), 0o005), *((Path(place, name), 0o004) for name in files):
+            if path.lstat().st_mode & wanted != wanted:
                 return False
     return True
+
+
+def _open_ways(path: Path) -> None:
+    """Let other users through our folders to a place in one; they cannot list them."""
+    home = scratch.home()
+    for way in path.parents:
+        if way == home or way.is_relative_to(home):
+            way.chmod(way.stat().st_mode | stat.S_IXOTH)
 
 
 _lock = threading.Lock()
