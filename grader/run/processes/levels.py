@@ -43,9 +43,11 @@ LEVELS = (NAMESPACES, LANDLOCK, LIMITS)
 USERS = range(61184, 65520)
 #: What a submission's process must be able to do.
 TRIES = """
-import sys
+import importlib.machinery, sys
+if sys.argv[2] and not importlib.machinery.PathFinder.find_spec("rclpy", sys.argv[2].split(":")):
+    sys.exit("rclpy is not found")
 open(sys.argv[1] + "/tried", "w").close()
-for path in sys.argv[2:]:
+for path in sys.argv[3:]:
     open(path).close()
 """
 PATIENCE_S = 20.0
@@ -123,7 +125,8 @@ def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> 
         order |= {"steps": view.steps(submission, uid), "folder": str(submission)}
     elif level.level == LANDLOCK:
         settings = [str(path) for path in folder.glob("*.xml")]
-        order |= {"read": [*view.readable(submission), *settings], "write": [written, *DEVICES]}
+        read, listed = view.readable(submission)
+        order |= {"read": [*read, *settings], "listed": listed, "write": [written, *DEVICES]}
         if user == OWN:
             _open_ways(folder / "tmp")
             os.chown(written, uid, uid)
@@ -244,11 +247,12 @@ def _try(level: Level, *, is_apart: bool) -> str:
 
 def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> str:
     needed = [os.__file__, str(view.ROOT / view.HOST[0])]
-    rclpy = importlib.util.find_spec("rclpy")
+    rclpy, package = importlib.util.find_spec("rclpy"), ""
     if rclpy and rclpy.origin:
         needed.append(rclpy.origin)
+        package = str(Path(rclpy.origin).parents[1])
     written = place.env.get("TMPDIR", str(folder / "tmp"))
-    words = [sys.executable, "-I", "-S", "-c", TRIES, written, *needed]
+    words = [sys.executable, "-I", "-S", "-c", TRIES, written, package, *needed]
     env = {**os.environ, **place.env}
     process = family.start_student(words, env, folder / "tried", (), entry, None, place.order)
     try:

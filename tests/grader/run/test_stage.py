@@ -165,7 +165,7 @@ for _ in range(20):
     time.sleep(0.1)
     found = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
     found += glob.glob("/proc/self/fd/*")
-    found = [path for path in found if "recording" in os.path.realpath(path)]
+    found = [path for path in found if "recording" in os.path.basename(os.path.realpath(path))]
     if found:
         print(found, flush=True)
 """

@@ -8,7 +8,7 @@ An order is a dictionary of what JSON can say, so that it can be an argument of 
 | `uid` | the user that it is to be |
 | `user` | `own`: as root can; `namespace`: in a user namespace of its own; `same`: not at all |
 | `steps`, `folder` | for `.filesystem` |
-| `read`, `write` | for `.landlock` |
+| `read`, `write`, `listed` | for `.landlock` |
 | `is_apart` | whether the run has a network of its own |
 
 Hundred lines of our own, not bubblewrap: that is a program that stands between, so that the process
@@ -44,7 +44,7 @@ def confine(order: dict[str, Any]) -> None:
     if order["level"] == NAMESPACES:
         filesystem.enter(order["steps"], order["folder"])
     else:
-        landlock.restrict(read=order["read"], write=order["write"])
+        landlock.restrict(order["read"], order["write"], order["listed"])
     if user == NAMESPACE:
         privileges.leave_user_namespace(uid, proc)
     os.close(proc)

@@ -71,7 +71,13 @@ def missing(version: int) -> list[str]:
     return [words for since, words in found.items() if version < since]
 
 
-def restrict(read: Sequence[str], write: Sequence[str], *, max_abi: int = 1 << 16) -> None:
+def restrict(
+    read: Sequence[str],
+    write: Sequence[str],
+    listed: Sequence[str] = (),
+    *,
+    max_abi: int = 1 << 16,
+) -> None:
     """Leave the calling thread, and all that it starts, nothing but these files.
 
     Beside that it can neither bind nor connect TCP, nor reach processes outside by signals or
@@ -82,6 +88,7 @@ def restrict(read: Sequence[str], write: Sequence[str], *, max_abi: int = 1 << 1
         read: files and folders, with all below, that may be read and executed. Those that are not
             there are left out.
         write: in these anything may be done, but for making devices.
+        listed: folders in which, and below which, names may be listed and nothing opened for it.
         max_abi: act as a kernel would that has no more than this.
 
     Raises:
@@ -97,7 +104,7 @@ def restrict(read: Sequence[str], write: Sequence[str], *, max_abi: int = 1 << 1
     # A kernel refuses what is longer than it knows only if that is not 0.
     ruleset = _call(CREATE_RULESET, attributes, len(attributes), 0)
     try:
-        for paths, rights in ((read, READ), (write, WRITE)):
+        for paths, rights in ((read, READ), (write, WRITE), (listed, READ_DIR)):
             for path in paths:
                 _allow(ruleset, path, rights & files)
         _no_new_privileges()

@@ -76,15 +76,17 @@ class Places:
 
 
 @cache
-def _always_readable() -> tuple[str, ...]:
+def _always_readable() -> tuple[tuple[str, ...], tuple[str, ...]]:
     always = places()
-    return (
-        *(each for path in sorted(always.shown) for each in _without(path, always.hidden)),
+    listed = [os.path.realpath(ROOT)]  # for those of our modules that work there
+    found = (
+        *(each for path in sorted(always.shown) for each in _without(path, always.hidden, listed)),
         *sorted(always.host),
         *(f"/dev/{name}" for name in DEVICES),
         *(f"/proc/{name}" for name in SHOWN_OF_PROC),
         *("/etc/passwd", "/etc/group", "/etc/nsswitch.conf", "/etc/hosts"),
     )
+    return found, tuple(listed)
 
 
 @cache
@@ -132,14 +134,15 @@ def steps(submission: Path, uid: int) -> list[Step]:
     return list(_in_order(mounts, links, files))
 
 
-def readable(submission: Path) -> list[str]:
-    """For `.landlock`: what may be read, and run."""
-    own = [
-        each
-        for real in _follow(str(submission), {})
-        for each in _without(real, places().hidden - {real})
-    ]
-    return [*_always_readable(), *own]
+def readable(submission: Path) -> tuple[list[str], list[str]]:
+    """For `.landlock`: what may be read, and run; and folders of which the names may be seen.
+
+    Those hold what is read and what is not: Python looks for modules in them.
+    """
+    found, listed = map(list, _always_readable())
+    for real in _follow(str(submission), {}):
+        found += _without(real, places().hidden - {real}, listed)
+    return found, listed
 
 
 def import_path() -> list[str]:
@@ -265,14 +268,15 @@ def _above(path: str) -> list[str]:
     return ["/" + "/".join(parts[: n + 1]) for n in range(len(parts))]
 
 
-def _without(path: str, hidden: Collection[str]) -> Iterator[str]:
-    """A folder, or if something in it is to be hidden, what else is in it."""
+def _without(path: str, hidden: Collection[str], listed: list[str]) -> Iterator[str]:
+    """A folder, or if something in it is to be hidden, what else is in it; it is then `listed`."""
     below = [each for each in hidden if _is_below(each, path)]
     if not below and path not in hidden:
         yield path
     elif path not in hidden:
+        listed.append(path)
         with os.scandir(path) as entries:
             for entry in sorted(entries, key=lambda entry: entry.name):
                 if entry.is_symlink():
                     continue  # where it leads is shown or not for its own sake
-                yield from _without(entry.path, hidden)
+                yield from _without(entry.path, hidden, listed)
