@@ -1,10 +1,10 @@
-"""Which files a submission's process may use, and whom it may signal: Landlock, by the kernel's numbers.
+"""Which files a submission's process may use, and whom it may signal: Landlock.
 
 It needs no rights and no namespaces, so that it is there in most containers. What a kernel can
-restrict is told by its ABI, a number: files from 1 on (Linux 5.13), moving files between folders from
-2, truncating from 3, TCP from 4 (6.7), devices' ioctl from 5, signals and abstract Unix sockets from 6
-(6.12). Not by any yet: UDP, Unix sockets by path, chmod, chown, setxattr, and looking (stat) at what
-may not be opened.
+restrict is told by its ABI, a number: files from 1 on (Linux 5.13), moving files between folders
+from 2, truncating from 3, TCP from 4 (6.7), devices' ioctl from 5, signals and abstract Unix
+sockets from 6 (6.12). Not by any of these: UDP, Unix sockets by path, chmod, chown, setxattr, and
+looking (stat) at what may not be opened.
 """
 
 from __future__ import annotations

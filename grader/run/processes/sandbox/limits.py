@@ -18,14 +18,14 @@ KIB, MIB, GIB = 1 << 10, 1 << 20, 1 << 30
 
 
 class Limits(NamedTuple):
-    """What a submission may use. (No dataclass: importing those takes longer than all the rest.)
+    """What a submission may use; no dataclass, since importing those takes longer than the rest.
 
-    A node of rclpy has 13 to 20 threads, 0.25 GiB of data, mostly stacks that nobody touches, 1 GiB
-    of addresses, 65 MiB of memory and 20 open files.
+    A node of rclpy has 13 to 20 threads, 20 open files, 0.25 GiB of data, mostly stacks that nobody
+    touches, 1 GiB of addresses, and really uses 65 MiB.
 
     Attributes:
-        cpu_s: processor time of one process [s]; the kernel then ends it with SIGXCPU. Far more than
-            a run in virtual time is given (`Patience.run_cpu_s`), or one in real time can use.
+        cpu_s: processor time of one process [s]; the kernel then ends it with SIGXCPU. Far more
+            than a run in virtual time is given (`Patience.run_cpu_s`), or one in real time uses.
         family_bytes: memory that all its processes really use at once [bytes].
         data_bytes: private memory that one process may ask for, used or not [bytes].
         address_bytes: all addresses of one process [bytes]: what it shares counts here, and the

@@ -1,8 +1,8 @@
 """Which system calls a submission's process may make: a seccomp filter, as a short BPF program.
 
-All is allowed but what is listed here, with the reason: what changes the machine or the sandbox, what
-reaches into other processes, and parts of the kernel that a node never needs and that have often
-been a way out. Numbers are Linux's, of `arch/x86/entry/syscalls/syscall_64.tbl` and of
+All is allowed but what is listed here, with the reason: what changes the machine or the sandbox,
+what reaches into other processes, and parts of the kernel that a node never needs and that have
+often been a way out. Numbers are Linux's, of `arch/x86/entry/syscalls/syscall_64.tbl` and of
 `include/uapi/asm-generic/unistd.h`, which is that of aarch64.
 
 The filter stays for ever, holds for all descendants, and costs nothing where it allows without
@@ -107,8 +107,8 @@ REFUSED: Final[dict[str, dict[str, Numbers]]] = {
         "ioperm": (173, None),
     },
 }
-#: What is as if the kernel did not know it, so that libraries take an older way. The flags of clone3
-#: lie in memory, where a filter cannot look; glibc then uses clone.
+#: What is as if the kernel did not know it, so that libraries take an older way. The flags of
+#: clone3 lie in memory, where a filter cannot look; glibc then uses clone.
 UNKNOWN: Final[dict[str, Numbers]] = {"clone3": (435, 435)}
 #: The last system call that was looked at for this list (file_setattr, Linux 6.17): those that came
 #: later are as unknown as to an older kernel. Numbers of x32 are larger, too.
