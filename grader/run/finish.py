@@ -6,7 +6,31 @@ from dataclasses import dataclass
 
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
 from grader.run.plan import Plan
+from grader.run.processes.sandbox.limits import LIMITS, MIB
 from grader.scenes.scene import Reason, Trace
+
+#: How much of a process's output is looked at for why it ended [characters], [lines].
+LAST_WORDS, MOST_LAST_LINES = 8192, 20
+#: Exit codes that only a limit gives, SIGXCPU and SIGXFSZ, and what happened.
+SIGNALS = {
+    -24: f"the node used more than {LIMITS.cpu_s} s of processor time",
+    -25: f"the node wrote a file of more than {LIMITS.file_bytes // MIB} MiB: a run may not",
+}
+_MEMORY = f"one process may ask for {LIMITS.data_bytes // MIB} MiB of memory"
+_TASKS = f"a run may have {LIMITS.tasks} processes and threads"
+#: How the line begins with which a program ends that was refused something -> what the limit is.
+LAST_LINES = {
+    "MemoryError": _MEMORY,
+    "numpy._core._exceptions._ArrayMemoryError": _MEMORY,
+    "numpy.core._exceptions._ArrayMemoryError": _MEMORY,
+    "what():  std::bad_alloc": _MEMORY,
+    "OSError: [Errno 12]": _MEMORY,
+    "OSError: [Errno 24]": f"a process may have {LIMITS.open_files} open files",
+    "OSError: [Errno 27]": f"a file may have {LIMITS.file_bytes // MIB} MiB",
+    "OSError: [Errno 28]": "the folder for temporary files is full: there is little room in it",
+    "RuntimeError: can't start new thread": _TASKS,
+    "BlockingIOError: [Errno 11]": f"{_TASKS}, if that was one more",
+}
 
 
 @dataclass(frozen=True)
@@ -31,6 +55,30 @@ def outcome(reason: Reason, exit_code: int | None) -> Outcome:
     if exit_code > 0:
         return "crashed"
     return "finished" if reason == "rest" else "exited"
+
+
+def limits_struck(exit_code: int | None, output: str, excess: str) -> tuple[str, ...]:
+    """Remarks on what a submission was refused, or ended for, because a run may use no more.
+
+    What the grader has seen itself (`excess`) or the kernel tells by its signal is so. What a limit
+    has refused only the process knows: its last words are believed, since they excuse nothing.
+
+    Args:
+        exit_code: of the submission's process; None if it still ran.
+        output: what it has printed.
+        excess: of what it took too much, as seen from outside; '' if of nothing.
+    """
+    if excess:
+        return (excess,)
+    if exit_code is None or exit_code == 0:
+        return ()
+    if exit_code in SIGNALS:
+        return (SIGNALS[exit_code],)
+    last = output[-LAST_WORDS:].splitlines()[-MOST_LAST_LINES:]
+    for said, remark in LAST_LINES.items():
+        if any(line.strip().startswith(said) for line in last):
+            return (f"the node ended with {said}: {remark}",)
+    return ()
 
 
 def record(

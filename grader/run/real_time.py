@@ -10,7 +10,7 @@ from collections.abc import Callable
 from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
 from grader.run import handover, stage
-from grader.run.finish import Ending, outcome, record
+from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
@@ -44,14 +44,16 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
         student = place.student(command(submission, scene.introduction), submission)
 
         def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
+            output = submission.as_handed_in(student.output())
+            struck = limits_struck(exit_code, output, student.excess)
             return Ending(
                 time="real",
                 outcome=how,
                 exit_code=exit_code,
                 wall_s=time.monotonic() - started,
                 isolation=place.isolation,
-                output=submission.as_handed_in(student.output()),
-                flags=flags,
+                output=output,
+                flags=(*flags, *struck),
             )
 
         try:

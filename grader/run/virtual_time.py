@@ -14,7 +14,7 @@ from dataclasses import asdict, replace
 from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
 from grader.run import handover, real_time, stage, zygotes
-from grader.run.finish import Ending, outcome, record
+from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lockstep import contract
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
@@ -81,14 +81,16 @@ def _try(
         ours.close()
 
         def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
+            output = submission.as_handed_in(student.output())
+            struck = limits_struck(exit_code, output, student.excess)
             return Ending(
                 time="virtual",
                 outcome=how,
                 exit_code=exit_code,
                 wall_s=time.monotonic() - started,
                 isolation=place.isolation,
-                output=submission.as_handed_in(student.output()),
-                flags=tuple(map(submission.as_handed_in, flags)),
+                output=output,
+                flags=(*map(submission.as_handed_in, flags), *struck),
             )
 
         is_driven = False

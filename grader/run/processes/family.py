@@ -19,6 +19,7 @@ import psutil
 from grader import system
 from grader.errors import GraderFailure
 from grader.run.processes import supervisor
+from grader.run.processes.appetite import Appetite
 from grader.run.processes.sandbox.confinement import OWN
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
@@ -97,6 +98,7 @@ class Student(Watched):
         self._report, theirs = os.pipe()
         self._told = b""
         self._is_silent = False
+        self._appetite: Appetite | None = None
         if confinement and confinement.get("user") == OWN:
             self._users = (confinement["uid"],)
         with tempfile.TemporaryFile() as order:
@@ -111,6 +113,12 @@ class Student(Watched):
                 raise
             finally:
                 os.close(theirs)
+        self._appetite = Appetite(self._process.pid, self.kill)
+
+    @property
+    def excess(self) -> str:
+        """Of what it and its descendants took too much, for the result; '' if of nothing."""
+        return self._appetite.remark if self._appetite else ""
 
     @property
     def pid(self) -> int:
@@ -165,6 +173,8 @@ class Student(Watched):
                     else:
                         os.kill(self.pid, sent)
                 self._await_end(patience_s)
+        if self._appetite:
+            self._appetite.stop()
         self.kill()
         if super().wait(patience_s) != 0:  # somebody has stopped or killed the supervisor
             self._process.kill()

@@ -160,6 +160,11 @@ class Watched:
         """Whether it ended because a process of ours did, which is no doing of its own."""
         return self._process.was_lost
 
+    @property
+    def excess(self) -> str:
+        """Of what it took too much, for the result; '' if of nothing, or if nobody has looked."""
+        return ""
+
     def output(self) -> str:
         """What it has printed: all of it, or its start and end with a note between."""
         self._reader.join(1.0)  # ends with the process, unless a grandchild keeps the pipe

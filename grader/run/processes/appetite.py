@@ -1,0 +1,167 @@
+"""How much all processes of a submission use together, watched from outside.
+
+The kernel's limits (`sandbox.limits`) hold for each process alone, and control groups, which count
+whole families, are given to a grader almost nowhere: not in containers, not to users. So a thread
+of the grader looks, five times a second, and ends the family that takes too much. Between two looks
+each core can fill a few hundred MiB at most. A look takes about a millisecond.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import NamedTuple
+
+from grader.run.processes.sandbox.limits import LIMITS, MIB, Limits
+
+PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+#: How often it is looked [s].
+EVERY_S = 0.2
+#: Memory that has gone since the last close look, wherever to, and makes the next one due.
+HURRY_BYTES = 256 * MIB
+#: So near to the limit of processes the kernel has refused one; some are not a submission's own.
+NEAR = 4
+
+
+class Usage(NamedTuple):
+    """What a family of processes uses at once.
+
+    Attributes:
+        memory_bytes: the pages of each, with those of files and those that several share.
+        tasks: its processes and threads.
+    """
+
+    memory_bytes: int
+    tasks: int
+
+
+class Appetite:
+    """Watches the descendants of a process until it is told to stop.
+
+    Attributes:
+        remark: of which there was too much, for the result; '' if of nothing.
+    """
+
+    def __init__(self, ancestor: int, end: Callable[[], None], limits: Limits = LIMITS) -> None:
+        """Begin; `end` is called, in a thread of ours, when they are to be ended."""
+        self.remark = ""
+        self._family, self._end, self._limits = Family(ancestor), end, limits
+        self._next_close_look, self._available = 0.0, 0
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Look no more; what has been found stays."""
+        self._is_over.set()
+        self._thread.join()
+
+    def _watch(self) -> None:
+        while not self._is_over.wait(EVERY_S):
+            if self._look():
+                self._end()
+                return
+
+    def _look(self) -> bool:
+        """Whether it is too much."""
+        limits = self._limits
+        found = self._family.look()
+        if found.tasks > limits.tasks - NEAR:
+            self.remark = (
+                f"the node and what it started had {limits.tasks} processes and threads at once:"
+                " a run may have no more"
+            )
+        if found.tasks > limits.tasks + NEAR:
+            return True
+        if found.memory_bytes > limits.family_bytes and self._looks_closely():
+            self.remark = (
+                f"the node and what it started used more than {limits.family_bytes // MIB} MiB of"
+                " memory, and were ended: a run may use no more"
+            )
+            return True
+        return False
+
+    def _looks_closely(self) -> bool:
+        """Whether it is too much memory without what files lend, and with what is shared shared.
+
+        That takes a millisecond a process: a tenth of our time, and at once where memory goes.
+        """
+        began, available = time.monotonic(), _available_bytes()
+        if began < self._next_close_look and available > self._available - HURRY_BYTES:
+            return False
+        memory = self._family.own_memory_bytes()
+        self._next_close_look = began + 10 * (time.monotonic() - began)
+        self._available = available
+        return memory > self._limits.family_bytes
+
+
+class Family:
+    """All descendants of a process, found again and again."""
+
+    def __init__(self, ancestor: int) -> None:
+        self._ancestor = ancestor
+        #: Processes that were there and are none of them; they will not become any.
+        self._others: set[int] = set()
+
+    def look(self) -> Usage:
+        """What they use now, without the ancestor, by what is told quickly."""
+        members = self._members().values()
+        memory = sum(member.memory_bytes for member in members)
+        return Usage(memory, sum(member.tasks for member in members))
+
+    def own_memory_bytes(self) -> int:
+        """Their memory that is no file's; pages that several share count once [bytes]."""
+        return sum(_own_memory(pid, member) for pid, member in self._members().items())
+
+    def _members(self) -> dict[int, _Process]:
+        there = {int(name) for name in os.listdir("/proc") if name.isdigit()}  # noqa: PTH208
+        self._others &= there
+        found = {pid: seen for pid in there - self._others if (seen := _see(pid))}
+        members: dict[int, _Process] = {}
+        above = {self._ancestor}
+        while children := {pid for pid, seen in found.items() if seen.parent in above} - above:
+            members.update((pid, found[pid]) for pid in children - members.keys())
+            above |= children
+        self._others |= found.keys() - above
+        return members
+
+
+class _Process(NamedTuple):
+    parent: int
+    tasks: int
+    memory_bytes: int
+
+
+def _see(pid: int) -> _Process | None:
+    """What /proc/PID/stat tells; see proc_pid_stat(5)."""
+    try:
+        fields = _read(pid, "stat").rpartition(b")")[2].split()
+        return _Process(int(fields[1]), int(fields[17]), int(fields[21]) * PAGE_BYTES)
+    except (OSError, IndexError):
+        return None
+
+
+def _own_memory(pid: int, seen: _Process) -> int:
+    """A process's part of memory that is no file's [bytes]; where nobody may know, all it has."""
+    try:
+        lines = _read(pid, "smaps_rollup").splitlines()
+    except OSError:
+        return seen.memory_bytes
+    parts = (line.split() for line in lines)
+    names = (b"Pss_Anon:", b"Pss_Shmem:", b"SwapPss:")
+    return sum(int(words[1]) * 1024 for words in parts if words and words[0] in names)
+
+
+def _available_bytes() -> int:
+    """The memory that the machine could still give; 0 if it does not say."""
+    with suppress(OSError, IndexError, ValueError), open("/proc/meminfo", "rb") as file:  # noqa: PTH123
+        return int(file.read().partition(b"MemAvailable:")[2].split()[0]) * 1024
+    return 0
+
+
+def _read(pid: int, name: str) -> bytes:
+    with open(f"/proc/{pid}/{name}", "rb", buffering=0) as file:  # noqa: PTH123
+        return file.readall()

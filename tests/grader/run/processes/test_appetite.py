@@ -1,0 +1,78 @@
+"""What a family of processes uses, and what ends it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from grader import system
+from grader.run.processes.appetite import Appetite, Family
+from grader.run.processes.sandbox.limits import MIB, Limits
+
+pytestmark = pytest.mark.skipif(not system.has_supervision(), reason="only Linux tells")
+#: Only a failing test waits so long [s].
+DEADLINE_S = 30.0
+#: A child with 100 MiB and a thread, and two of its own that share these.
+FAMILY = """
+import os, sys, threading
+kept = b"x" * (100 << 20)
+threading.Thread(target=threading.Event().wait, daemon=True).start()
+for _ in range(2):
+    if not os.fork():
+        sys.stdin.read()
+        os._exit(0)
+print("ready", flush=True)
+sys.stdin.read()
+"""
+
+
+@contextmanager
+def family() -> Iterator[int]:
+    with subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-I", "-S", "-c", FAMILY],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    ) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == b"ready\n"
+        yield child.pid
+
+
+def test_all_descendants_count_and_what_they_share_once() -> None:
+    found = Family(os.getpid())
+    before = found.look().tasks, found.own_memory_bytes()
+    with family():
+        assert found.look().tasks == before[0] + 4
+        assert found.look().memory_bytes > 300 * MIB
+        assert 100 * MIB < found.own_memory_bytes() - before[1] < 150 * MIB
+
+
+def test_an_ancestor_does_not_count() -> None:
+    with family() as child:
+        assert Family(child).look().tasks == 2
+
+
+def test_a_process_that_does_not_exist_has_no_family() -> None:
+    assert Family(1 << 30).look() == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        (Limits(family_bytes=50 * MIB), "used more than 50 MiB of memory"),
+        (Limits(tasks=-10), "-10 processes and threads"),
+    ],
+)
+def test_too_much_ends_them(limits: Limits, said: str) -> None:
+    ended = threading.Event()
+    with family():
+        appetite = Appetite(os.getpid(), ended.set, limits)
+        assert ended.wait(DEADLINE_S)
+        appetite.stop()
+    assert said in appetite.remark

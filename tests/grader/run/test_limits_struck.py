@@ -1,0 +1,76 @@
+"""What a submission takes too much of is refused, or ends it, and the recording says what."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.run.finish import limits_struck
+from grader.run.processes.sandbox.limits import LIMITS, MIB
+from tests.grader.run.conftest import Run
+
+LINUX = pytest.mark.skipif("not __import__('grader.system').system.has_supervision()")
+OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <module>\n'
+
+
+@LINUX
+@pytest.mark.records("limits/fills_memory", "limits/fills_shared_memory")
+@pytest.mark.parametrize("name", ["fills_memory", "fills_shared_memory"])
+def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> None:
+    run = recorded(f"limits/{name}").run
+    said = f"used more than {LIMITS.family_bytes // MIB} MiB of memory"
+    assert (run.outcome, run.exit_code) == ("killed", -9)
+    assert any(said in flag for flag in run.flags)
+
+
+REFUSED = {
+    "asks_for_memory": f"MemoryError: one process may ask for {LIMITS.data_bytes // MIB} MiB",
+    "opens_files": f"[Errno 24]: a process may have {LIMITS.open_files} open files",
+    "writes_a_large_file": f"[Errno 27]: a file may have {LIMITS.file_bytes // MIB} MiB",
+}
+
+
+@LINUX
+@pytest.mark.records(*(f"limits/{name}" for name in REFUSED))
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> None:
+    run = recorded(f"limits/{name}").run
+    assert run.outcome == "crashed"
+    assert any(REFUSED[name] in flag for flag in run.flags), run.flags
+
+
+@LINUX
+@pytest.mark.records("limits/starts_processes", "limits/starts_threads")
+@pytest.mark.parametrize("name", ["starts_processes", "starts_threads"])
+def test_processes_and_threads_are_counted_together(recorded: Run, name: str) -> None:
+    flags = recorded(f"limits/{name}").run.flags
+    assert any(f"{LIMITS.tasks} processes and threads" in flag for flag in flags), flags
+
+
+@pytest.mark.records("limits/prints_without_end")
+def test_of_a_long_output_the_middle_is_left_out_and_its_length_told(recorded: Run) -> None:
+    recording = recorded("limits/prints_without_end")
+    first, told, last = recording.output.partition("[... 19934464 bytes left out ...]")
+    assert told
+    assert first.startswith("000000 xxx")
+    assert last.endswith("xxx\n")
+    assert recording.run.outcome == "exited"
+
+
+def test_what_was_seen_from_outside_goes_before_what_a_program_says() -> None:
+    said = f"{OUTPUT}MemoryError\n"
+    assert limits_struck(1, said, "the node used too much") == ("the node used too much",)
+    assert limits_struck(0, said, "") == ()
+    assert limits_struck(None, said, "") == ()
+    assert "MemoryError" in limits_struck(1, said, "")[0]
+
+
+def test_a_signal_that_the_kernel_sends_is_told() -> None:
+    assert "processor time" in limits_struck(-24, "", "")[0]
+    assert "64 MiB" in limits_struck(-25, "", "")[0]
+    assert limits_struck(-9, "", "") == ()
+
+
+def test_only_the_last_lines_are_looked_at_and_no_more_than_a_few() -> None:
+    assert limits_struck(1, "MemoryError\n" + "x\n" * 100, "") == ()
+    assert limits_struck(1, "MemoryError\n" + "x" * 100_000, "") == ()
+    assert limits_struck(1, "not a MemoryError\n", "") == ()
