@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
 from grader.run.plan import Plan
-from grader.run.processes.sandbox.limits import LIMITS, MIB
+from grader.run.processes.sandbox.limits import LIMITS, size
 from grader.scenes.scene import Reason, Trace
 
 #: How much of a process's output is looked at for why it ended [characters], [lines].
@@ -14,9 +14,9 @@ LAST_WORDS, MOST_LAST_LINES = 8192, 20
 #: Exit codes that only a limit gives, SIGXCPU and SIGXFSZ, and what happened.
 SIGNALS = {
     -24: f"the node used more than {LIMITS.cpu_s} s of processor time",
-    -25: f"the node wrote a file of more than {LIMITS.file_bytes // MIB} MiB: a run may not",
+    -25: f"the node wrote a file of more than {size(LIMITS.file_bytes)}: a run may not",
 }
-_MEMORY = f"one process may ask for {LIMITS.data_bytes // MIB} MiB of memory"
+_MEMORY = f"one process may ask for {size(LIMITS.data_bytes)} of memory"
 _TASKS = f"a run may have {LIMITS.tasks} processes and threads"
 #: How the line begins with which a program ends that was refused something -> what the limit is.
 LAST_LINES = {
@@ -26,7 +26,7 @@ LAST_LINES = {
     "what():  std::bad_alloc": _MEMORY,
     "OSError: [Errno 12]": _MEMORY,
     "OSError: [Errno 24]": f"a process may have {LIMITS.open_files} open files",
-    "OSError: [Errno 27]": f"a file may have {LIMITS.file_bytes // MIB} MiB",
+    "OSError: [Errno 27]": f"a file may have {size(LIMITS.file_bytes)}",
     "OSError: [Errno 28]": "the folder for temporary files is full: there is little room in it",
     "RuntimeError: can't start new thread": _TASKS,
     "BlockingIOError: [Errno 11]": f"{_TASKS}, if that was one more",

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import NamedTuple
 
-from grader.run.processes.sandbox.limits import LIMITS, MIB, Limits
+from grader.run.processes.sandbox.limits import LIMITS, MIB, Limits, size
 
 PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 #: How often it is looked [s].
@@ -78,8 +78,8 @@ class Appetite:
             return True
         if found.memory_bytes > limits.family_bytes and self._looks_closely():
             self.remark = (
-                f"the node and what it started used more than {limits.family_bytes // MIB} MiB of"
-                " memory, and were ended: a run may use no more"
+                f"the node and what it started used more than {size(limits.family_bytes)} of memory,"
+                " and were ended: a run may use no more"
             )
             return True
         return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.run.finish import limits_struck
-from grader.run.processes.sandbox.limits import LIMITS, MIB
+from grader.run.processes.sandbox.limits import LIMITS, size
 from tests.grader.run.conftest import Run
 
 LINUX = pytest.mark.skipif("not __import__('grader.system').system.has_supervision()")
@@ -17,15 +17,15 @@ OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <modu
 @pytest.mark.parametrize("name", ["fills_memory", "fills_shared_memory"])
 def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> None:
     run = recorded(f"limits/{name}").run
-    said = f"used more than {LIMITS.family_bytes // MIB} MiB of memory"
+    said = f"used more than {size(LIMITS.family_bytes)} of memory"
     assert (run.outcome, run.exit_code) == ("killed", -9)
     assert any(said in flag for flag in run.flags)
 
 
 REFUSED = {
-    "asks_for_memory": f"MemoryError: one process may ask for {LIMITS.data_bytes // MIB} MiB",
+    "asks_for_memory": f"MemoryError: one process may ask for {size(LIMITS.data_bytes)}",
     "opens_files": f"[Errno 24]: a process may have {LIMITS.open_files} open files",
-    "writes_a_large_file": f"[Errno 27]: a file may have {LIMITS.file_bytes // MIB} MiB",
+    "writes_a_large_file": f"[Errno 27]: a file may have {size(LIMITS.file_bytes)}",
 }
 
 

@@ -59,6 +59,13 @@ class Limits(NamedTuple):
 LIMITS = Limits()
 
 
+def size(number_bytes: int) -> str:
+    """As people say it: "1 GiB", "64 MiB"."""
+    if number_bytes >= GIB and number_bytes % GIB == 0:
+        return f"{number_bytes // GIB} GiB"
+    return f"{number_bytes // MIB} MiB"
+
+
 def apply(limits: Limits = LIMITS, *, is_alone: bool = True) -> None:
     """Limit the calling process and all that it starts; nothing that is lower already is raised.
 

@@ -168,3 +168,11 @@ def test_what_is_limited_cannot_raise_it_again() -> None:
         return "raised"
 
     assert in_child(act) == "not allowed to raise maximum limit"
+
+
+def test_sizes_are_told_in_the_largest_unit_that_fits() -> None:
+    assert [limits.size(number) for number in (2 * GIB, 64 * MIB, 3 * GIB // 2)] == [
+        "2 GiB",
+        "64 MiB",
+        "1536 MiB",
+    ]
