@@ -78,8 +78,8 @@ class Appetite:
             return True
         if found.memory_bytes > limits.family_bytes and self._looks_closely():
             self.remark = (
-                f"the node and what it started used more than {size(limits.family_bytes)} of memory,"
-                " and were ended: a run may use no more"
+                f"the node and what it started used more than {size(limits.family_bytes)} of"
+                " memory, and were ended: a run may use no more"
             )
             return True
         return False
