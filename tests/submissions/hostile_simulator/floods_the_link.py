@@ -40,7 +40,8 @@ mail = head.pack(b"M", 0, 0, 0, False)
 def lies():
     for number in range(400):
         data = chance.choice((b"", twist_bytes, b"\0\1\0\0" + b"\xff" * chance.randrange(60)))
-        yield parcel.pack(number, chance.getrandbits(32), chance.getrandbits(64), 0, len(data)) + data
+        key, tick = chance.getrandbits(32), chance.getrandbits(64)
+        yield parcel.pack(number, key, tick, 0, len(data)) + data
 
 
 empty = b"".join(parcel.pack(number % 60, 0, 0, 0, 0) for number in range(5000))

@@ -56,4 +56,4 @@ def confine(order: dict[str, Any]) -> None:
     linux.control(linux.PR_SET_DUMPABLE, 1)
     linux.signal_at_parents_death(signal.SIGKILL)
     limits.apply(is_alone=user != SAME)
-    seccomp.install(is_apart=order["is_apart"])
+    seccomp.install(is_apart=order["is_apart"] and order["level"] == NAMESPACES)

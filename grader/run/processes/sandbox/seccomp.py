@@ -107,6 +107,30 @@ REFUSED: Final[dict[str, dict[str, Numbers]]] = {
         "ioperm": (173, None),
     },
 }
+#: Refused where the submission keeps the user's files in sight: Landlock does not look at these.
+OF_FILES: Final[dict[str, Numbers]] = {
+    "chmod": (90, None),
+    "fchmod": (91, 52),
+    "fchmodat": (268, 53),
+    "fchmodat2": (452, 452),
+    "chown": (92, None),
+    "fchown": (93, 55),
+    "lchown": (94, None),
+    "fchownat": (260, 54),
+    "utime": (132, None),
+    "utimes": (235, None),
+    "futimesat": (261, None),
+    "utimensat": (280, 88),
+    "setxattr": (188, 5),
+    "lsetxattr": (189, 6),
+    "fsetxattr": (190, 7),
+    "setxattrat": (463, 463),
+    "removexattr": (197, 14),
+    "lremovexattr": (198, 15),
+    "fremovexattr": (199, 16),
+    "removexattrat": (466, 466),
+    "file_setattr": (469, 469),
+}
 #: What is as if the kernel did not know it, so that libraries take an older way. The flags of
 #: clone3 lie in memory, where a filter cannot look; glibc then uses clone.
 UNKNOWN: Final[dict[str, Numbers]] = {"clone3": (435, 435)}
@@ -216,6 +240,8 @@ def program(machine: str, *, is_apart: bool = True) -> list[Instruction]:
     ]
     for group in REFUSED.values():
         lines += _each(group, place, [_refuse(errno.EPERM)])
+    if not is_apart:
+        lines += _each(OF_FILES, place, [_refuse(errno.EPERM)])
     lines += _each(UNKNOWN, place, [_refuse(errno.ENOSYS)])
     return [*lines, *_by_arguments(place, is_apart=is_apart), (RETURN, 0, 0, ALLOW)]
 

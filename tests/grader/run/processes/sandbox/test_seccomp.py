@@ -78,6 +78,7 @@ def answer(
 def every_number(machine: str) -> dict[str, int]:
     place = seccomp.MACHINES[machine][0]
     groups = [*seccomp.REFUSED.values(), seccomp.UNKNOWN, seccomp.OF_A_PROCESS]
+    groups.append(seccomp.OF_FILES)
     names = "clone ioctl socket socketpair prlimit64 sched_setscheduler setpriority ioprio_set"
     single = {name: getattr(seccomp, name.upper()) for name in [*names.split(), "seccomp"]}
     found = {name: numbers[place] for group in [*groups, single] for name, numbers in group.items()}
@@ -113,6 +114,15 @@ def test_a_listed_call_is_refused_whatever_its_arguments(machine: str) -> None:
         for numbers in group.values():
             if numbers[place] is not None:
                 assert answer(machine, numbers[place], 1, 2, 3) == EPERM
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_whose_files_are_in_sight_are_not_opened_to_others(machine: str) -> None:
+    place = seccomp.MACHINES[machine][0]
+    for numbers in seccomp.OF_FILES.values():
+        if numbers[place] is not None:
+            assert answer(machine, numbers[place], apart=False) == EPERM
+            assert answer(machine, numbers[place], apart=True) == 0
 
 
 @pytest.mark.parametrize("machine", MACHINES)
