@@ -266,15 +266,17 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
         *(Plan(Limits(3, 1, 30)).to_json(), str(theirs.fileno()), str(os.getpid()), "-1"),
         json.dumps(asdict(Patience(simulator_cpu_s=20.0, all_asleep_s=2.0, asleep_s=1.0))),
     ]
+    # a pipe that nobody reads would stop it
+    log = tempfile.TemporaryFile()  # noqa: SIM115 - its context is below
     process = subprocess.Popen(
         [sys.executable, "-m", "grader.run.simulator.virtual_main", *words],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         cwd=tempfile.gettempdir(),
         pass_fds=fds,
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
+        stderr=log,
     )
-    with process, ours, control:
+    with log, process, ours, control:
         theirs.close()
         controlled.close()
         os.close(recording)
@@ -286,16 +288,16 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
             control.settimeout(60)
             while chunk := control.recv(65536):
                 said += chunk
-        assert process.stderr is not None
-        complaint = process.stderr.read()
         code = process.wait()
+        log.seek(0)
+        complaint = log.read()[-3000:]
     if code != 0 or not said:
-        return f"it ended with {code}, said {said!r}; {complaint[-3000:].decode(errors='replace')}"
+        return f"it ended with {code}, said {said!r}; {complaint.decode(errors='replace')}"
     message = json.loads(said.splitlines()[-1])
     counts[f"{message['say']}, {message.get('silence', message.get('reason'))}"] += 1
     counts.update(flag for flag in message.get("flags", ()) if "on request" not in flag)
     if "virtual time itself" in message.get("reason", ""):
-        return f"{message}; {complaint[-3000:].decode(errors='replace')}"
+        return f"{message}; {complaint.decode(errors='replace')}"
     return ""
 
 

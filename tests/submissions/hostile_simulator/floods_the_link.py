@@ -40,14 +40,14 @@ mail = head.pack(b"M", 0, 0, 0, False)
 def lies():
     for number in range(400):
         data = chance.choice((b"", twist_bytes, b"\0\1\0\0" + b"\xff" * chance.randrange(60)))
-        key, tick = chance.getrandbits(32), chance.getrandbits(64)
-        yield parcel.pack(number, key, tick, 0, len(data)) + data
+        client, serial = chance.getrandbits(32), chance.getrandbits(64)
+        yield parcel.pack(number, client, serial, 0, len(data)) + data
 
 
 empty = b"".join(parcel.pack(number % 60, 0, 0, 0, 0) for number in range(5000))
-for turn in range(300):
+for turn in range(60):
     with contextlib.suppress(BlockingIOError):
-        for _ in range(50):
+        for _ in range(10):
             mailbox.send(mail + b"".join(lies()))
             mailbox.send(mail + empty)
         mailbox.sendmsg(

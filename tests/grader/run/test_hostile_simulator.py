@@ -1,0 +1,204 @@
+"""What is sent to the simulator, by ROS or on the link, ends a run at worst, and gains nothing."""
+
+from __future__ import annotations
+
+import os
+import signal
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import grader
+from grader.errors import GraderFailure
+from grader.exercise.loading import load_exercise
+from grader.recording.recording import Recording, Recordings
+from grader.run import handover, real_time, virtual_time
+from grader.run.plan import Plan
+from grader.run.simulator import virtual_time as simulator
+from grader.run.simulator.link import Patience
+from grader.scenes.scene import Limits
+from grader.scenes.turtlesim.allowance import LONGEST_NAME, MOST_TURTLES
+from grader.submission.opening import open_submission
+from turtlesim_py.world.events import Kill
+
+SUBMISSIONS = Path(__file__).parents[2] / "submissions"
+HOSTILE = SUBMISSIONS / "hostile_simulator"
+LIMITS = Limits(first_motion_s=3, rest_s=2, total_s=10)
+PATIENCE = Patience(run_cpu_s=20, simulator_cpu_s=20, asleep_s=1.0)
+#: For a turtle that moves, and for pens that are not set too often.
+MOST_POINTS = 20
+#: All of it takes less than a second; the machine may be busy.
+MOST_WALL_S = 60
+
+
+def run(name: str, patience: Patience = PATIENCE) -> Recording:
+    """What is recorded of one of them; it is judged, too, and earns next to nothing."""
+    with open_submission(HOSTILE / f"{name}.py") as submission:
+        recording = virtual_time.run(submission, Plan(LIMITS), patience=patience)
+    assert recording.run.time == "virtual"
+    assert recording.run.wall_s < MOST_WALL_S
+    exercise = load_exercise("turtlesim_challenge")
+    alone = replace(exercise, varied=replace(exercise.varied, count=0))
+    assert grader.judge(Recordings(recording), alone).score <= MOST_POINTS
+    return recording
+
+
+def flags(recording: Recording) -> str:
+    return "\n".join(recording.run.flags)
+
+
+def test_values_of_unknown_types_are_refused() -> None:
+    recording = run("sets_what_is_no_parameter")
+    assert (recording.run.outcome, recording.run.exit_code) == ("finished", 0)
+    # each parameter alone, and both at once; for two types
+    assert recording.output.count("Unknown type: 10'") == 3
+    assert recording.output.count("Unknown type: 255'") == 3
+    assert recording.run.flags == ()
+
+
+def test_pictures_are_written_into_the_folder_of_the_run() -> None:
+    recording = run("writes_pictures_elsewhere")
+    # the folder is not set, and the picture is saved where it always is
+    expected = [f"False True canvas_00{number}.png" for number in range(1, 6)]
+    assert recording.output.splitlines() == [*expected, "False"]
+    assert not (HOSTILE / "elsewhere").exists()
+    assert "canvas_folder cannot be set" in flags(recording)
+    assert "100 pictures" in flags(recording)
+
+
+def test_the_clock_of_a_run_cannot_be_stopped() -> None:
+    recording = run("stops_the_clock")
+    way = recording.trace.trajectory()
+    # the watchdog strikes a second after the one command
+    assert way.x[-1] - way.x[0] == pytest.approx(0.5, abs=0.03)
+    assert "use_sim_time cannot be set" in recording.output
+    assert "use_sim_time cannot be set" in flags(recording)
+
+
+def test_there_are_only_so_many_turtles() -> None:
+    recording = run("hatches_hundreds")
+    assert recording.output.splitlines()[0] == str(MOST_TURTLES - 1)
+    assert "turtles" in flags(recording)
+
+
+def test_names_are_cut() -> None:
+    recording = run("names_of_megabytes")
+    killed = recording.trace.of_kind(Kill)
+    assert killed
+    assert max(len(event.name) for event in killed) == LONGEST_NAME
+    assert max(len(line.text) for line in recording.trace.logs) < 1_000
+    assert "too long" in flags(recording)
+
+
+def test_goals_are_limited() -> None:
+    recording = run("goals_without_end")
+    assert recording.run.outcome == "time_limit"
+    assert "rotation goals" in flags(recording)
+
+
+def test_who_never_reads_does_not_block_the_simulator() -> None:
+    recording = run("asks_and_never_reads")
+    assert recording.run.outcome == "killed"
+    assert "its process does not read what it has asked for" in recording.run.flags
+
+
+def test_who_lets_no_time_pass_is_not_waited_for() -> None:
+    recording = run("lets_no_time_pass")
+    assert recording.run.outcome == "killed"
+    assert simulator.VAIN in recording.run.flags
+
+
+def test_who_keeps_the_simulator_busy_is_told_so() -> None:
+    recording = run("lets_no_time_pass", replace(PATIENCE, simulator_cpu_s=0.5))
+    assert recording.run.outcome == "killed"
+    assert virtual_time.FLOODING.format(0.5) in recording.run.flags
+
+
+def test_a_flood_on_the_link_is_no_failure() -> None:
+    recording = run("floods_the_link")
+    assert recording.run.outcome in ("killed", "stalled")
+    assert len(recording.topics) <= 1_000
+
+
+def test_thousands_of_topics_are_counted_to_a_thousand() -> None:
+    recording = run("thousands_of_topics")
+    assert recording.run.outcome == "finished"
+    assert len(recording.topics) <= 1_000
+
+
+# What kills it nevertheless -------------------------------------------------------------------
+
+
+@pytest.fixture
+def short() -> Any:
+    exercise = load_exercise("turtlesim_challenge")
+    return replace(exercise, limits=LIMITS, varied=replace(exercise.varied, count=0))
+
+
+def kill_when(monkeypatch: pytest.MonkeyPatch, has_met: bool, times: int) -> None:
+    """Kill so many simulators: when they have met the submission's process, or at once."""
+    watch, left = virtual_time._watch, [times]
+
+    def watch_and_kill(started: Any, pid: int) -> Any:
+        said = started.next
+
+        def kill_then_hear(patience_s: float) -> Any:
+            message = said(patience_s)
+            if left[0] and (message is not None and message["say"] == "met") >= has_met:
+                left[0] -= 1
+                os.kill(started.pid, signal.SIGKILL)
+            return message
+
+        monkeypatch.setattr(started, "next", kill_then_hear)
+        return watch(started, pid)
+
+    monkeypatch.setattr(virtual_time, "_watch", watch_and_kill)
+
+
+def test_a_simulator_that_is_killed_once_does_not_count(
+    short: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    honest = SUBMISSIONS / "styles/timer.py"
+    undisturbed = grader.grade(honest, short)
+    kill_when(monkeypatch, has_met=True, times=1)
+    result = grader.grade(honest, short)
+    assert result.run.trace_sha256 == undisturbed.run.trace_sha256
+    assert result.score == undisturbed.score
+
+
+def test_a_simulator_that_dies_twice_of_a_submission_is_no_failure_of_the_grader(
+    short: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    kill_when(monkeypatch, has_met=True, times=2)
+    recordings = grader.record(SUBMISSIONS / "styles/timer.py", short)
+    assert (recordings.nominal.run.outcome, recordings.nominal.run.ticks) == ("killed", 0)
+    assert "in both tries" in flags(recordings.nominal)
+    assert "exit code is -9" in flags(recordings.nominal)
+    assert grader.judge(recordings, short).score == 0
+    grader.save_recordings(recordings, tmp_path / "recording")
+    again = grader.load_recordings(tmp_path / "recording")
+    assert again.nominal.run == recordings.nominal.run
+
+
+def test_a_simulator_that_dies_before_anybody_has_spoken_is_the_graders_failure(
+    short: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kill_when(monkeypatch, has_met=False, times=2)
+    with pytest.raises(GraderFailure, match="the simulator"):
+        grader.grade(SUBMISSIONS / "styles/timer.py", short)
+
+
+@pytest.mark.parametrize("time", ["virtual", "real"])
+def test_a_recording_that_cannot_be_read_is_as_good_as_none(
+    short: Any, monkeypatch: pytest.MonkeyPatch, time: Any
+) -> None:
+    def fail(*_: object) -> None:
+        raise GraderFailure("the simulator left no recording: nonsense")
+
+    assert real_time.handover is handover
+    monkeypatch.setattr(handover, "fetch", fail)
+    result = grader.grade(SUBMISSIONS / "misbehaving/exits.py", short, time=time)
+    assert (result.run.outcome, result.score) == ("killed", 0)
+    assert any("left no recording" in flag for flag in result.run.flags)
