@@ -17,7 +17,7 @@ from grader.text import without_controls
 #: For the result, with how it ended and its last line.
 TWICE = (
     "the simulator ended while the node was running, in both tries, and nothing was recorded: {}. "
-    "What drives turtles cannot do that; if this node does nothing else, the grader is wrong"
+    "What only drives cannot do that; if this node does nothing else, the grader is wrong"
 )
 LONGEST_WORDS = 200
 

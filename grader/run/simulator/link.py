@@ -59,7 +59,7 @@ class Patience:
         all_asleep_s: or for so long in a whole run, not counting naps.
         run_cpu_s: so much of its own processor time a whole run may take.
         simulator_cpu_s: so much the simulator may take for what the submission sends; beside one
-            that drives a turtle it takes about one second.
+            that only drives it takes about one second.
     """
 
     stall_cpu_s: float = 6.0

@@ -90,7 +90,7 @@ class GradedSimulator:
             self._say("progress", seconds=round(self._simulation.recorded_s, 1))
 
     def _overtime(self) -> Reason:
-        """A turtle may be slow, but not without end."""
+        """Ticks may come late, but not without end."""
         if time.monotonic() < self._end_at_s:
             return ""
         self._flags.append(OVERTIME)

@@ -1,4 +1,4 @@
-"""Has the simulator follow /clock for a while, on which it publishes earlier times."""
+"""Wants the simulator to follow /clock for a while, on which it publishes earlier times."""
 
 import threading
 import time

@@ -14,17 +14,17 @@ from std_srvs.srv import Empty, Trigger
 
 from tests.graph import Graph, wait_for_arrival
 from turtlesim_py.ros import executor
-from turtlesim_py.ros.executor import TickExecutor
+from turtlesim_py.ros.executor import OnFailure, TickExecutor
 
 
 class Served:
     """A node that notes what it is served."""
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph: Graph, on_failure: OnFailure | None = None) -> None:
         self.graph = graph
         self.node = Node("served", use_global_arguments=False)
         self.notes: list[str] = []
-        self.executor = TickExecutor(self.node)
+        self.executor = TickExecutor(self.node, on_failure)
 
     def subscription(self, name: str) -> tuple[Subscription, Any]:
         """A subscription that notes x, and a publisher for it."""
@@ -122,6 +122,23 @@ def test_an_exception_of_a_callback_reaches_the_caller(served: Served) -> None:
     wait_for_arrival(service)
     with pytest.raises(ZeroDivisionError):
         served.executor.spin_some()
+
+
+def test_where_somebody_wants_to_be_told_an_exception_hinders_nothing(graph: Graph) -> None:
+    def fail() -> None:
+        raise ZeroDivisionError("no")
+
+    told: list[str] = []
+    served = Served(graph, lambda what, error: told.append(f"{what}: {error}"))
+    failing, other = served.service("failing", then=fail), served.service("other")
+    answer = graph.ask(Empty, "served/failing")
+    graph.ask(Empty, "served/other")
+    wait_for_arrival(failing)
+    wait_for_arrival(other)
+    assert served.spin() == ["failing", "other"]
+    assert told == ["served/failing: no"]
+    graph.done(answer)  # an empty one is better than none
+    served.node.destroy_node()
 
 
 def test_what_it_does_not_serve_is_not_left_waiting_silently(served: Served) -> None:

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 from PIL import Image
-from rcl_interfaces.msg import Log
+from rcl_interfaces.msg import Log, Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import Empty, Trigger
 from turtlesim.msg import Color, Pose
 from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
@@ -241,3 +242,31 @@ def test_save_canvas_writes_numbered_pictures(graph: Graph, simulator: Program) 
     with Image.open(paths[0]) as image:
         assert (image.size, image.mode) == ((500, 500), "RGB")
         assert image.getpixel((0, 0)) == (69, 86, 255)
+
+
+@pytest.mark.parametrize("folder", ["~nosuchuser/x", "/dev/null", "/proc/nothing", "x" * 5000])
+def test_save_canvas_says_where_it_cannot_write(graph: Graph, folder: str) -> None:
+    def choose(name: str) -> None:
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=name)
+        parameters = [Parameter(name="canvas_folder", value=value)]
+        answer = graph.call(SetParameters, "/turtlesim/set_parameters", parameters=parameters)
+        assert answer.results[0].successful
+
+    choose(folder)
+    answer: Any = graph.call(Trigger, "/turtlesim/save_canvas")
+    choose(".")
+    assert not answer.success
+    assert answer.message.startswith("cannot write the canvas to ")
+
+
+def test_save_canvas_writes_through_no_link(
+    graph: Graph, simulator: Program, tmp_path: Path
+) -> None:
+    first: Any = graph.call(Trigger, "/turtlesim/save_canvas")
+    taken = Path(first.message)
+    taken.unlink()
+    taken.symlink_to(tmp_path / "elsewhere.png")
+    again: Any = graph.call(Trigger, "/turtlesim/save_canvas")
+    assert Path(again.message).name > taken.name
+    assert not (tmp_path / "elsewhere.png").exists()
+    taken.unlink()
