@@ -68,9 +68,10 @@ def read(path: Path, executable: str | None, scratch: Path) -> Submission:
     """
     with _lock:
         process = _warm.pop() if _warm else None
-    if process is None or not process.is_there:
-        process = _Process()
-    with process as asked:
+    if process is not None and not process.is_there:
+        process.close()
+        process = None
+    with process or _Process() as asked:
         at, last = asked.ask(
             {
                 "cwd": str(Path.cwd()),
@@ -114,6 +115,10 @@ class _Process:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End it."""
         self._process.kill()
         self._process.wait()
         for pipe in (self._process.stdin, self._process.stdout):
@@ -172,4 +177,4 @@ def _forget() -> None:
     """End a process that nobody has asked."""
     with _lock:
         while _warm:
-            _warm.pop().__exit__()
+            _warm.pop().close()

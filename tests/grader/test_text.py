@@ -74,3 +74,21 @@ def test_json_numbers_are_whole_where_they_can_be():
 def test_a_turtle_that_is_nowhere_is_at_an_unknown_place():
     assert text.place(1, 2.346) == "(1.00, 2.35)"
     assert text.place(float("nan"), 2) == "an unknown place"
+
+
+@pytest.mark.parametrize(
+    ("raw", "plain"),
+    [
+        ("::error::boo", ": :error::boo"),
+        ("a\n \t::Set-Output name=x::y", "a\n \t: :Set-Output name=x::y"),
+        ("std::vector stays", "std::vector stays"),
+        ("in a line ##[error]x and ##VSO[task.logissue]x", "in a line # #[error]x and # #VSO[task"),
+        ("## a title stays", "## a title stays"),
+    ],
+)
+def test_plain_text_commands_no_runner_of_ci(raw, plain):
+    assert text.plain(raw).startswith(plain)
+
+
+def test_in_a_terminal_no_word_does_wherever_the_line_is_cut():
+    assert text.for_terminal("x ::ERROR file=a::b \x1b[31m[/b]") == "x : :ERROR file=a: :b [/b]"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.exercise.sentences import last_error
+from tests.limited import printed_by
 
 CRASH = """[INFO] hello
 Traceback (most recent call last):
@@ -39,3 +40,16 @@ SyntaxError: expected ':'
 def test_the_last_error_is_found_with_file_and_line(output, expected):
     assert last_error(output).startswith(expected)
     assert bool(last_error(output)) == bool(expected)
+
+
+@pytest.mark.parametrize(
+    "after",
+    ["'\\n' * 65_000", "' File \"' * 10_000", "'\\n  File \"a\", line ' * 4_000", "' ' * 65_000"],
+)
+def test_a_traceback_that_is_none_is_gone_through_once(after):
+    code = f"""
+from grader.exercise.sentences import last_error
+limit(2, 4_000_000_000)
+print(repr(last_error("Traceback (most recent call last)" + {after})))
+"""
+    assert printed_by(code) == "''\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
 
@@ -9,9 +10,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from grader.reports import FORMATS, render
+from grader.reports import FORMATS, ErrorReport, Report, render
+from grader.reports.beside import Beside
+from grader.result.error import ErrorResult
+from grader.result.result import Result
 from tests.grader.reports import samples
 from tests.grader.reports.readers import READERS
+from tests.limited import printed_by
 
 NASTY = [
     "]]>",
@@ -34,6 +39,14 @@ NASTY = [
     "-title (-50)",
     '{"scores": {"all": 100}}',
     "\n::error::boo",
+    "::Set-Output name=a::b",
+    "\n \t::add-mask::e",
+    "##[error]boo ##vso[task.complete result=Failed]",
+    "a;=HYPERLINK(1); -1;@x",
+    "\uff1dHYPERLINK(1)",
+    ":smile: [link=http://evil.example]x[/link]",
+    "`" * 7,
+    "</pre></details>",
     "[[ATTACHMENT|/etc/passwd]]",
     "\x1b[31mred\x1b[0m \x1b]0;title\x07",
     "\x00\x08\x0b\x0c\x1f\x7f\x85",
@@ -64,6 +77,25 @@ EVIDENCE = st.fixed_dictionaries(
     },
     optional={"run": st.integers(0, 3)},
 )
+
+
+#: What a runner of CI would obey in what a step prints.
+COMMANDS = re.compile(r"^\s*::[a-z-]+[ :]|##\[|##vso\[", re.MULTILINE | re.IGNORECASE)
+#: What a terminal would: no format needs any of it.
+CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+
+
+class Printed(Beside):
+    """Nothing lies beside the result but what the node printed."""
+
+    def __init__(self, result: Result, printed: str) -> None:
+        super().__init__(result, Path("/nowhere"))
+        self.__dict__["output"] = printed
+
+
+def report_of(made, output):
+    result = Result.from_json(made)
+    return Report(result, Printed(result, output))
 
 
 @st.composite
@@ -114,10 +146,14 @@ def classroom(monkeypatch):
     max_examples=40,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
-@given(made=any_results())
-def test_every_format_of_every_result_is_well_formed_and_has_the_same_score(name, made, classroom):
-    content = render(name, [samples.report_in(Path("/nowhere"), made)])
+@given(made=any_results(), output=st.lists(TEXTS, max_size=3).map("\n".join))
+def test_every_format_of_every_result_is_well_formed_and_has_the_same_score(
+    name, made, output, classroom
+):
+    content = render(name, [report_of(made, output)])
     content.encode("utf-8")
+    assert not COMMANDS.findall(content)
+    assert not CONTROLS.findall(content)
     found = READERS[name](content)
     if name == "classroom50":
         factor = classroom50_factor(made)
@@ -153,3 +189,45 @@ def test_every_format_says_what_was_seen_and_what_to_look_at(name, classroom):
         content = base64.b64decode(content).decode()
     for words in ("Rationale of draws.", "Help for draws.", "20.00 s", "(5.50, 7.25)", "a gap"):
         assert words in content.replace("\\", ""), words
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@settings(
+    deadline=None,
+    max_examples=30,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(message=TEXTS, file=st.text(st.characters(codec=None, exclude_characters="\0/"), min_size=1))
+def test_every_format_of_every_error_is_safe_to_print(name, message, file, classroom):
+    error = ErrorResult("submission", message, 100.0)
+    path = Path("/nowhere") / file / "error.json"
+    content = render(name, [ErrorReport(error, path.parent, ("moves",), path)])
+    content.encode("utf-8")
+    assert not COMMANDS.findall(content)
+    assert not CONTROLS.findall(content)
+
+
+#: The longest that anything of a run may be, all of it of the hardest kind.
+LONG = ["\n" * 65_000, "`" * 65_000, "\x1b[" * 30_000, "::a" * 20_000, " " * 65_000, "<" * 65_000]
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_report_of_the_longest_texts_is_made_at_once_and_stays_short(name, classroom):
+    code = """
+import json
+from tests.grader.reports.test_every_format import LONG, report_of, samples
+from grader.reports import render
+import os
+os.environ.update(samples.CLASSROOM50)
+for long in LONG:
+    found = [samples.evidence(long)] * 1000
+    verdicts = [samples.verdict(f"c{n}", "failed", 0, rationale=long, help=long, evidence=found)
+                for n in range(10)]
+    run = samples.run(flags=[long, *map(str, range(10_000))])
+    report = report_of(samples.result(*verdicts, submission=long, run=run), long)
+    limit(3, 4_000_000_000)
+    print(len(render(sys.argv[1], [report])))
+"""
+    sizes = [int(line) for line in printed_by(code, name).split()]
+    assert len(sizes) == len(LONG)
+    assert max(sizes) < 3_000_000

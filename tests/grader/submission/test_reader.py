@@ -1,0 +1,327 @@
+"""Whatever is handed in, reading it takes no more than its limits, and nothing of the grader's own.
+
+Each of these has once taken minutes, gigabytes or the grader's process.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from grader.errors import GraderFailure, SubmissionError
+from grader.submission import answer, reader
+from grader.submission.opening import EntryPoint, Script, open_submission
+from tests.limited import printed_by
+
+NODE = "def main():\n    pass\n"
+SETUP = "setup(entry_points={{'console_scripts': ['turtle_controller = pkg.node:main']}}, x={})\n"
+#: Opens what it is given, in a process that may itself take a second and 200 MB.
+OPEN = """
+import json, pathlib
+from grader.errors import SubmissionError
+from grader.submission import reader
+from grader.submission.opening import open_submission
+reader.warm()  # it gets limits of its own, not ours
+limit(1, 200_000_000)
+try:
+    with open_submission(pathlib.Path(sys.argv[1])) as found:
+        print(json.dumps(["found", found.found]))
+except SubmissionError as error:
+    print(json.dumps(["refused", error.message]))
+"""
+
+
+def opened(path: Path) -> tuple[str, str]:
+    """How the reading of a submission ended: found or refused, and its sentence."""
+    how, sentence = json.loads(printed_by(OPEN, path))
+    return how, sentence
+
+
+def lay(root: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return root
+
+
+def package(root: Path, setup: str, **more: str) -> Path:
+    files = {"setup.py": setup, "pkg/__init__.py": "", "pkg/node.py": NODE}
+    return lay(root, files | more)
+
+
+def doubling(plus: str, times: int = 60) -> str:
+    lines = [f"a{i + 1} = {plus.format(f'a{i}')}\n" for i in range(times)]
+    return "a0 = 'aa'\n" + "".join(lines) + SETUP.format(f"a{times}")
+
+
+def test_a_table_with_keys_of_keys_of_keys_is_refused_by_the_memory_that_it_takes(
+    tmp_path: Path,
+) -> None:
+    lay(tmp_path, {"pyproject.toml": ".".join(["a"] * 20_000) + " = 1\n", "node.py": NODE})
+    how, sentence = opened(tmp_path)
+    assert how == "refused"
+    assert "takes more than 512 MB of memory (it got as far as pyproject.toml)" in sentence
+    assert "\n" not in sentence
+
+
+def test_what_takes_too_long_is_refused_by_the_time_that_it_takes(
+    tmp_path: Path,
+) -> None:
+    strings = f"s = '{'%s' * 5000}'\nv = '{'x' * 9000}'\n"
+    package(tmp_path, strings + SETUP.format(f"[{','.join(['s%v'] * 200_000)}]"))
+    with pytest.raises(SubmissionError) as error, open_submission(tmp_path):
+        pass
+    assert "takes more than 10 s of a processor's time (it got as far as setup.py)" in str(
+        error.value
+    )
+
+
+@pytest.mark.parametrize(
+    "setup",
+    [
+        pytest.param("(" * 400_000, id="parentheses"),
+        pytest.param(f"x = {'-' * 400_000}1", id="signs"),
+        pytest.param(f"x = {'lambda:' * 100_000}1", id="functions"),
+        pytest.param("a" + ".a" * 400_000, id="attributes"),
+        pytest.param(SETUP.format("'a'" + "+'a'" * 200_000), id="sums"),
+        pytest.param(f"# coding: {'a' * 900_000}", id="a coding"),
+    ],
+)
+def test_a_set_up_file_that_no_parser_takes_is_named_in_one_line(
+    tmp_path: Path, setup: str
+) -> None:
+    package(tmp_path, setup)
+    how, sentence = opened(tmp_path)
+    assert how == "refused"
+    assert "setup.py" in sentence
+    assert "\n" not in sentence
+    assert len(sentence) < 600
+
+
+@pytest.mark.parametrize(
+    "setup",
+    [
+        pytest.param(doubling("[{0}, {0}]"), id="lists of lists"),
+        pytest.param(doubling("{0} + {0}"), id="sums of sums"),
+        pytest.param(doubling("f'{{{0}}}{{{0}}}'"), id="strings in strings"),
+        pytest.param("x = 'a' * 2 ** 40\n" + SETUP.format("'a' * 2 ** 40"), id="products"),
+        pytest.param("x = 9 ** 9 ** 9\n" + SETUP.format("9 ** 9 ** 9"), id="powers"),
+        pytest.param(SETUP.format("1"), id="an ordinary one"),
+    ],
+)
+def test_constants_that_would_grow_without_end_are_left_alone(tmp_path: Path, setup: str) -> None:
+    assert opened(package(tmp_path, setup)) == (
+        "found",
+        "console script turtle_controller in setup.py",
+    )
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        pytest.param("<".join(["a"] * 400_000), id="a chain of comparisons"),
+        pytest.param("a" + ".a" * 400_000, id="attributes"),
+        pytest.param("import " + ".".join(["a"] * 400_000), id="a package in a package"),
+        pytest.param("(" * 400_000, id="parentheses"),
+        pytest.param("if " + "__name__ " * 100_000 + "\n(", id="guards that do not parse"),
+    ],
+)
+def test_a_node_that_is_hard_to_read_is_found_or_refused_and_takes_nothing_of_ours(
+    tmp_path: Path, more: str
+) -> None:
+    (tmp_path / "node.py").write_text(NODE + more)
+    how, sentence = opened(tmp_path / "node.py")
+    assert "node.py" in sentence
+    assert how == "found" or "node.py cannot be read: that takes more than" in sentence
+
+
+def test_whether_a_file_that_does_not_parse_starts_itself_is_guessed_in_one_go(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "a.py").write_text("if " + "__name__ '__main' " * 50_000 + "\n(")
+    code = """
+from pathlib import Path
+from grader.submission.python_source import read_source
+limit(2, 2_000_000_000)
+print(read_source(Path(sys.argv[1])).has_guard)
+"""
+    assert printed_by(code, tmp_path / "a.py") == "False\n"
+
+
+def test_600_000_members_are_refused_before_any_is_looked_at(tmp_path: Path) -> None:
+    archive = tmp_path / "a.zip"
+    name = b"a/"
+    entry = b"PK\x01\x02" + bytes(24) + len(name).to_bytes(2, "little") + bytes(16) + name
+    size = 600_000 * len(entry)
+    end = b"PK\x05\x06" + bytes(4) + b"\xff" * 4 + size.to_bytes(4, "little") + bytes(4) + bytes(2)
+    archive.write_bytes(entry * 600_000 + end)
+    assert opened(archive) == (
+        "refused",
+        "a.zip lists too many files, or too long names: its list has more than 6 MB. Pack your .py "
+        "file or package folder into a new .zip and hand that in.",
+    )
+
+
+def test_a_member_below_32_000_folders_is_refused(tmp_path: Path) -> None:
+    archive = tmp_path / "a.zip"
+    with zipfile.ZipFile(archive, "w") as packed:
+        for number in range(50):
+            packed.writestr("a/" * 32_000 + str(number), "")
+    how, sentence = opened(archive)
+    assert (how, "a name of 64,001 characters" in sentence) == ("refused", True)
+    assert len(sentence) < 600
+
+
+def test_a_name_that_is_near_thousands_of_others_is_compared_with_some(tmp_path: Path) -> None:
+    package(tmp_path, SETUP.format("1").replace("pkg.node", "ab" * 45))
+    for number in range(3_000):
+        bits = "".join("ab"[number >> bit & 1] for bit in range(12))
+        (tmp_path / f"{bits * 7}.py").write_text(NODE)
+    how, sentence = opened(tmp_path)
+    assert how == "refused"
+    assert "but there is no file " in sentence
+
+
+def test_what_is_no_file_is_passed_over(tmp_path: Path) -> None:
+    package(tmp_path, SETUP.format("1"))
+    os.mkfifo(tmp_path / "setup.cfg")
+    os.mkfifo(tmp_path / "pkg" / "pipe.py")
+    (tmp_path / "pyproject.toml").symlink_to("/dev/zero")
+    (tmp_path / "pkg" / "zero.py").symlink_to("/dev/zero")
+    (tmp_path / "loop").symlink_to("loop")
+    with socket.socket(socket.AF_UNIX) as listening:
+        os.chdir(tmp_path / "pkg")  # a socket's path is short
+        try:
+            listening.bind("s.py")
+        finally:
+            os.chdir("/")
+    (tmp_path / os.fsdecode(b"\xff[b]\n::error::x.py")).write_text(NODE)
+    assert opened(tmp_path) == ("found", "console script turtle_controller in setup.py")
+
+
+def test_a_package_without_init_is_mended_in_a_copy_that_leaves_pipes_out(tmp_path: Path) -> None:
+    lay(tmp_path, {"setup.py": SETUP.format("1"), "pkg/node.py": NODE})
+    os.mkfifo(tmp_path / "pkg" / "pipe")
+    (tmp_path / "pkg" / "zero").symlink_to("/dev/zero")
+    how, sentence = opened(tmp_path)
+    assert (how, "with the missing pkg/__init__.py added" in sentence) == ("found", True)
+
+
+def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path: Path) -> None:
+    here = os.open(tmp_path, os.O_RDONLY)
+    for _ in range(300):
+        os.mkdir("d" * 250, dir_fd=here)
+        below = os.open("d" * 250, os.O_RDONLY, dir_fd=here)
+        os.close(here)
+        here = below
+    os.close(here)
+    try:
+        how, sentence = opened(tmp_path)
+        assert how == "refused"
+        assert "no Python file that could be the node" in sentence
+        (tmp_path / "node.py").write_text(NODE)
+        assert opened(tmp_path) == ("found", "function main of node.py")
+    finally:
+        os.system(f"rm -rf '{tmp_path}'")  # Python's own way down is one of paths
+
+
+@pytest.mark.parametrize("name", ["{}.py", ".{}"])
+def test_a_hundred_thousand_files_are_not_listed(tmp_path: Path, name: str) -> None:
+    for number in range(11_000):
+        (tmp_path / name.format(number)).touch()
+    (tmp_path / "node.py").touch()
+    how, sentence = opened(tmp_path)
+    assert how == "refused"
+    assert "holds more than 10,000 files and folders" in sentence or "is an empty" in sentence
+
+
+@pytest.mark.parametrize("name", ["setup.py", "setup.cfg", "pkg/node.py"])
+def test_a_link_to_a_place_outside_is_not_read(tmp_path: Path, name: str) -> None:
+    secret = tmp_path / "secret"
+    secret.write_text("password = hunter2\n")
+    handed_in = package(tmp_path / "in", SETUP.format("1"))
+    (handed_in / name).unlink(missing_ok=True)
+    (handed_in / name).symlink_to(secret)
+    how, sentence = opened(handed_in)
+    assert how == "refused"
+    assert f"{name} is a link to a place outside of in" in sentence
+    assert "hunter2" not in sentence
+
+
+HOSTILE = ["[/b]", "\x1b[31m", "\n::error::boo", os.fsdecode(b"\xff"), "\u202e", "a" * 250]
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_name_is_shown_in_one_line_without_controls(tmp_path: Path, name: str) -> None:
+    lay(tmp_path, {f"{name}1/a.txt".replace("/b", "b"): "", "b.txt": ""})
+    (tmp_path / f"{name[:200].replace('/', '')}.md").touch()
+    how, sentence = opened(tmp_path)
+    assert how == "refused"
+    assert sentence.isprintable()
+
+
+def test_a_console_script_s_name_is_shown_in_one_line(tmp_path: Path) -> None:
+    entries = "['a\\n::error::x\\x1b[31m = pkg.node:main', 'b = pkg.node:main']"
+    package(tmp_path, f"setup(entry_points={{'console_scripts': {entries}}})")
+    how, sentence = opened(tmp_path)
+    assert (how, sentence.isprintable()) == ("refused", True)
+    assert "a?::error::x?[31m, b" in sentence
+
+
+def test_folders_that_cannot_be_are_no_fault_of_ours(tmp_path: Path) -> None:
+    package(tmp_path, SETUP.format("1, package_dir={'': '\\0', 'pkg': 'loop/pkg'}"))
+    (tmp_path / "loop").symlink_to("loop")
+    assert opened(tmp_path)[0] == "refused"
+
+
+# the process itself
+
+
+def test_a_process_that_was_started_before_is_used_once(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text(NODE)
+    reader.warm()
+    for _ in range(2):
+        with open_submission(tmp_path / "node.py") as found:
+            assert found.start == EntryPoint("node", "main")
+
+
+def test_one_that_has_died_meanwhile_is_not_asked(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text("")
+    reader.warm()
+    waiting = reader._warm[0]._process
+    waiting.kill()
+    waiting.wait()
+    with open_submission(tmp_path / "node.py") as found:
+        assert found.start == Script(tmp_path / "node.py")
+
+
+def test_its_imports_come_along(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text("import turtlesim.msg\ndef main():\n    import this\n")
+    with open_submission(tmp_path / "node.py") as found:
+        assert found.imports.surely == {"turtlesim": "node.py, line 1"}
+        assert found.imports.perhaps == {"this": "node.py, line 3"}
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"",
+        b"null\n",
+        b'{"name": 1}\n',
+        b'{"name": "", "root": "", "found": "", "start": {}, "surely": {}, "perhaps": {}}\n',
+        b'{"refused": "grader", "message": ""}\n',
+        b'{"failed": "Traceback"}\n',
+        b"[" * 100_000 + b"\n",
+    ],
+)
+def test_an_answer_that_makes_no_sense_is_the_grader_s_failure(said: bytes) -> None:
+    data = answer.parsed(said)
+    if data is not None:
+        with pytest.raises(GraderFailure):
+            answer.decoded(data)
