@@ -53,7 +53,7 @@ FIRST_SCENE = "turtlesim"
 FILES = (BAG, RUN, OUTPUT, CIRCUMSTANCES_FILE, SCENARIO, PATH_PICTURE, WINDOW_PICTURE, METADATA)
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
-#: What is read back, and its most bytes. A minute of turtlesim is 0.2 MB.
+#: What is read back, and its most bytes. A minute's usual run is 0.2 MB.
 SIZES = {
     BAG: 2**28,
     METADATA: 2**20,

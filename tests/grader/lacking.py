@@ -114,7 +114,7 @@ def main(system: str, python: str, *words: str) -> None:
     """Run what the interpreter was told."""
     sys.executable = python
     {"macos": like_macos, "windows": like_windows}[system]()
-    kind, *rest = words
+    kind, *rest = (word for word in words if word not in ("-I", "-S"))
     if not kind.endswith("main.py"):  # a submission's process, into which nothing of ours goes
         sys.path[0] = str(Path(__file__).parents[2])
         hide(system)

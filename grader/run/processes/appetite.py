@@ -48,10 +48,10 @@ class Appetite:
     def __init__(self, ancestor: int, end: Callable[[], None], limits: Limits = LIMITS) -> None:
         """Begin; `end` is called, in a thread of ours, when they are to be ended."""
         self.remark = ""
-        self._family, self._end, self._limits = Family(ancestor), end, limits
+        self._family, self._limits = Family(ancestor), limits
         self._next_close_look, self._available = 0.0, 0
         self._is_over = threading.Event()
-        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread = threading.Thread(target=self._watch, args=(end,), daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
@@ -59,10 +59,10 @@ class Appetite:
         self._is_over.set()
         self._thread.join()
 
-    def _watch(self) -> None:
+    def _watch(self, end: Callable[[], None]) -> None:
         while not self._is_over.wait(EVERY_S):
             if self._look():
-                self._end()
+                end()
                 return
 
     def _look(self) -> bool:

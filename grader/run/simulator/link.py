@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import mmap
 import os
 import select
@@ -31,6 +30,9 @@ from grader.run.lockstep.protocol import (
 from grader.run.processes import usage
 from grader.text import without_controls
 
+with suppress(ImportError):  # Windows, which has no virtual time
+    import fcntl
+
 #: How often it is looked at while it is silent [ms], and while it is not [s].
 LOOK_MS = 250
 CPU_LOOK_S = 1.0
@@ -39,8 +41,6 @@ MOST_FLAGS = 20
 MOST_MAIL = 2_000
 #: The longest packet that is taken from a submission's process.
 LIMIT_BYTES = 8_000_000
-#: Nobody changes the size of the page: a process could fill the memory of the machine with it.
-SEALS = fcntl.F_SEAL_SEAL | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW
 #: The kernel's letters for what a process does; see `usage`.
 WANTS_PROCESSOR, HAS_ENDED = "R", ("", "Z", "X")
 NONSENSE = "its process sent what ours never sends"
@@ -103,7 +103,9 @@ class StudentLink:
         self._cpu_before_s = time.process_time()
         self._progress = os.memfd_create("progress", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
         os.ftruncate(self._progress, mmap.PAGESIZE)
-        fcntl.fcntl(self._progress, fcntl.F_ADD_SEALS, SEALS)
+        # nobody changes its size: a process could fill the memory of the machine with it
+        seals = fcntl.F_SEAL_SEAL | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW
+        fcntl.fcntl(self._progress, fcntl.F_ADD_SEALS, seals)
 
     def introduce(self, table: Table) -> None:
         """Say the first word, and hand out what `mail` and `reached` read."""
