@@ -49,7 +49,9 @@ def zygote(env: dict[str, str]) -> Iterator[Zygote]:
         made.close()
 
 
-def measure(level: levels.Level, warm: Zygote | None, env: dict[str, str], times: int) -> list[float]:
+def measure(
+    level: levels.Level, warm: Zygote | None, env: dict[str, str], times: int
+) -> list[float]:
     """How long it takes to have a process and see its end [ms]."""
     taken = []
     for _ in range(times):

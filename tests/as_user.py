@@ -2,8 +2,8 @@
 
     python as_user.py [--root] COMMAND...
 
-With `--root` it remains root, and all that others would see is the same. Where Python lies in a folder of root's alone, the program is shown Python there and nothing else of
-that folder; it gets a home and a TMPDIR of its own below the given TMPDIR.
+With `--root` it remains root, and the rest is the same. Where Python lies in a folder of root's
+alone, the program is shown Python there and nothing else of that folder.
 """
 
 from __future__ import annotations

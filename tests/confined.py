@@ -3,8 +3,8 @@
     python confined.py LEVEL FOLDER PROGRAM WORD...
 
 FOLDER is the submission's, PROGRAM a Python file in it. First the level is printed, as the result
-has it, then what the program prints; which is started only if the level is LEVEL. With `refusing.py` and `as_user.py` before it: at other levels,
-as another user.
+has it; then, if that is LEVEL, what the program prints. With `refusing.py` and `as_user.py` before
+it: at other levels, as another user.
 """
 
 from __future__ import annotations

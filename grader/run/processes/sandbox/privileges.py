@@ -6,7 +6,6 @@ In the process itself, and for good: what it starts has no more either.
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 
 from grader.run.processes import linux
 
@@ -79,9 +78,3 @@ def forbid_new() -> None:
     """
     if not linux.control(linux.PR_SET_NO_NEW_PRIVS, 1):
         raise OSError("no_new_privs is refused")
-
-
-def close_to_others() -> None:
-    """Let no other process of this user look into this one; without prctl, leave it."""
-    with suppress(AttributeError):
-        linux.control(linux.PR_SET_DUMPABLE, 0)
