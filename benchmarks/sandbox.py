@@ -81,7 +81,7 @@ def main() -> None:
     times = parser.parse_args().repetitions
     env = {"PATH": os.environ["PATH"], "PYTHONPATH": str(Path(ROOT))}
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
-        offered = levels.offered(is_apart=bool(isolated.namespaces))
+        offered = levels.offered(isolated)
     print("| level | forked [ms] | started [ms] |\n|---|--:|--:|")
     with zygote(env) as warm:
         for level in (levels.Level(""), *reversed(offered)):

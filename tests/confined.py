@@ -22,14 +22,13 @@ from grader.run.processes.family import start_student
 
 def main(wanted: str, folder: str, *words: str) -> None:
     with scratch.make_folder() as stage, isolation.obtain_isolation(stage) as isolated:
-        is_apart = bool(isolated.namespaces)
-        level = levels.best(is_apart=is_apart)
+        level = levels.best(isolated)
         print(level.name(), flush=True)
         if level.level != wanted:
             return
         (stage / "tmp").mkdir()
         env = {"PATH": os.environ["PATH"], "TMPDIR": str(stage / "tmp"), "GRADER": str(os.getpid())}
-        place = levels.prepare(level, Path(folder), stage, is_apart=is_apart)
+        place = levels.prepare(level, Path(folder), stage, is_apart=bool(isolated.namespaces))
         command = [sys.executable, "-I", "-S", *words]
         student = start_student(
             *(command, {**env, **place.env}, Path(folder), (), isolated.entry, None, place.order)

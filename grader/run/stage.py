@@ -94,7 +94,7 @@ def open_stage() -> Iterator[Stage]:
         GraderFailure: it cannot be isolated from other runs, or confined as was required.
     """
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
-        level = levels.best(is_apart=bool(isolated.namespaces))
+        level = levels.best(isolated)
         env = environment(folder, isolated.env)
         recording, path = _make_recording(folder)
         try:

@@ -27,6 +27,7 @@ from typing import Any
 from grader import scratch, system
 from grader.errors import GraderError, GraderFailure, UsageError
 from grader.run.processes import family, isolation
+from grader.run.processes.isolation import Isolation
 from grader.run.processes.sandbox import landlock, view
 from grader.run.processes.sandbox.confinement import (
     LANDLOCK,
@@ -166,18 +167,19 @@ _found: dict[bool, Level] = {}
 _least = ""
 
 
-def best(*, is_apart: bool) -> Level:
+def best(isolated: Isolation) -> Level:
     """The best that there is here.
 
     Args:
-        is_apart: whether there is a network for the run alone.
+        isolated: what keeps the run apart; if that is a network, there is more.
 
     Raises:
         GraderFailure: that is less than what was required.
     """
+    is_apart = bool(isolated.namespaces)
     with _lock:
         if is_apart not in _found:
-            _found[is_apart] = _look(is_apart=is_apart)
+            _found[is_apart] = _look(isolated)
         found = _found[is_apart]
     if _least and not found.is_at_least(_least):
         raise GraderFailure(f"isolation by {_least} was to be had before, and now is not")
@@ -192,7 +194,7 @@ def require(level: str) -> None:
     """
     global _least
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
-        there = best(is_apart=bool(isolated.namespaces))
+        there = best(isolated)
     if not there.is_at_least(level):
         missing = there.refused.get(level, "this system has nothing of it")
         what = f"the best here is {there.name()!r}" if there.level else "there is none here"
@@ -202,21 +204,21 @@ def require(level: str) -> None:
     _least = level
 
 
-def _look(*, is_apart: bool) -> Level:
+def _look(isolated: Isolation) -> Level:
     refused: dict[str, str] = {}
     if not system.has_supervision():
         return Level("", refused=dict.fromkeys(LEVELS, "this is not Linux, or it lacks /proc"))
     for level in _candidates():
-        if why := _try(level, is_apart=is_apart):
+        if why := _try(level, isolated):
             refused.setdefault(level.level, why)
         else:
             return Level(level.level, level.user, refused)
     return Level("", refused=refused)
 
 
-def offered(*, is_apart: bool) -> list[Level]:
+def offered(isolated: Isolation) -> list[Level]:
     """All that there is here, the best first; for tests and benchmarks."""
-    return [level for level in _candidates() if not _try(level, is_apart=is_apart)]
+    return [level for level in _candidates() if not _try(level, isolated)]
 
 
 def _candidates() -> Iterator[Level]:
@@ -227,13 +229,14 @@ def _candidates() -> Iterator[Level]:
     yield Level(LIMITS)
 
 
-def _try(level: Level, *, is_apart: bool) -> str:
+def _try(level: Level, isolated: Isolation) -> str:
     """Confine a process so; what is refused, or ''."""
     if level.level == LANDLOCK and not landlock.abi():
         return "this kernel has no Landlock, or a container refuses it"
+    is_apart = bool(isolated.namespaces)
     if level.level == NAMESPACES and not is_apart:
         return "namespaces of users and networks are refused"
-    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+    with scratch.make_folder() as folder:
         (folder / "tmp").mkdir()
         (folder / "tried").mkdir()
         try:

@@ -13,7 +13,7 @@ from grader import cli
 from grader.cli import run
 from grader.errors import GraderFailure, UsageError
 from grader.run import stage
-from grader.run.processes import levels
+from grader.run.processes import isolation, levels
 from grader.run.processes.family import Student
 from grader.run.processes.sandbox import view
 from grader.run.processes.zygote import Warm, Zygote
@@ -79,7 +79,7 @@ def test_where_nothing_can_be_confined_nothing_is_said_of_it(
 ) -> None:
     monkeypatch.setattr(levels.system, "has_supervision", lambda: False)
     monkeypatch.setattr(levels, "_found", {})
-    found = levels.best(is_apart=False)
+    found = levels.best(isolation.Isolation("", {}))
     assert (found.level, found.name()) == ("", "")
     assert levels.prepare(found, Path("/"), Path("/"), is_apart=False) == levels.Place(None, {})
 
