@@ -39,7 +39,8 @@ shown("where", os.getcwd(), tempfile.gettempdir(), os.getpid(), os.getppid(), os
 fds = [(fd, f"/proc/self/fd/{fd}") for fd in range(64)]
 kinds = [os.readlink(at).partition(":")[0] for fd, at in fds if os.path.exists(at)]
 shown("open", sorted(kinds), sys.stdout, sys.stderr)
-shown("limits", [resource.getrlimit(number) for number in range(16)])
+limits = [n for n in range(16) if n != resource.RLIMIT_NPROC]  # that one may leave room for others
+shown("limits", [resource.getrlimit(number) for number in limits])
 shown("signals", [(n, str(signal.getsignal(n)).partition(" at ")[0]) for n in range(1, 32)])
 shown("threads", threading.enumerate(), threading.active_count(), threading.main_thread().name)
 shown("chance", random.random(), uuid.uuid4(), hash("x"), os.urandom(4), list({"a", "b", "c"}))
