@@ -47,7 +47,8 @@ def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
             raise ValueError(f"more than {MOST_BYTES} bytes")
         (length,) = _LENGTH.unpack_from(data)
         end = _LENGTH.size + length
-        topics = tuple(map(_topic, json.loads(data[_LENGTH.size : end])))
+        # of bytes, json.loads would guess the encoding
+        topics = tuple(map(_topic, json.loads(data[_LENGTH.size : end].decode("utf-8"))))
         return scene.decode(data[end:]), topics
     except Exception as error:
         raise GraderFailure(f"the simulator left no recording: {error!s:.200}") from error

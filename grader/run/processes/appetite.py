@@ -58,7 +58,6 @@ class Appetite:
         """Look no more; what has been found stays."""
         self._is_over.set()
         self._thread.join()
-        self._end = lambda: None  # who is held by nobody else goes at once, with his descriptors
 
     def _watch(self, end: Callable[[], None]) -> None:
         while not self._is_over.wait(EVERY_S):
