@@ -1,0 +1,135 @@
+"""The attacks: what each is about, and which level stops it.
+
+`docs/threat-model.md` shows this table; a test holds the two together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.attacks import handed_in
+
+ALL = ("namespaces", "landlock", "limits")
+SANDBOX = ("namespaces", "landlock")
+NAMESPACES = ("namespaces",)
+#: Points and limits of a short grading, in which moving is all that is asked for.
+MOVES = "points: {moves: 100}\nlimits: {first_motion_s: 3, rest_s: 0.5, total_s: 10}\n"
+
+
+@dataclass(frozen=True)
+class Attack:
+    """One hostile submission.
+
+    Attributes:
+        about: the part of a grading that it attacks: see `docs/threat-model.md`.
+        stopped_by: the grader's levels at which it achieves nothing. At the others it may achieve
+            what it is after, but earns no points, and the grader goes on.
+        make: makes the submission.
+        exercise: exercise.yaml, without its first line.
+        most: the points that it may have: what it earns by what is no attack.
+        lacks: checks that it must not pass.
+        codes: how the grader may end.
+        out: where the results go, in the submission; empty: elsewhere.
+    """
+
+    about: str
+    stopped_by: tuple[str, ...] = SANDBOX
+    make: Callable[[Path], Path] | None = None
+    exercise: str = MOVES
+    most: float = 0
+    lacks: tuple[str, ...] = ()
+    codes: tuple[int, ...] = (0,)
+    out: str = ""
+
+
+FILES, PROCESSES, NETWORK = "files", "other processes", "network and terminal"
+KERNEL, LIMITS, LINK = "the kernel", "limits", "the link and the clock"
+SIMULATOR, RUBRIC, READING = "the simulator", "the rubric", "reading and reporting"
+TOKENS, LEFTOVERS = "tokens", "what is left behind"
+SPIRAL = """points: {moves: 5, spiral: 30, edge_stop: 25, pen_per_quadrant: 20, picture: 20}
+limits: {first_motion_s: 3, rest_s: 1.5, total_s: 15}
+"""
+VARIED = SPIRAL + "varied_runs: {count: 1, seed: 2022, nearest_m: 1.0, farthest_m: 1.5}\n"
+READ = (0, 2)
+
+ATTACKS = {
+    "reads_home": Attack(FILES),
+    "writes_home": Attack(FILES),
+    "neighbours": Attack(FILES),
+    "forges_results": Attack(FILES),
+    "changes_its_source": Attack(FILES),
+    "changes_the_grader": Attack(FILES),
+    "reads_the_exercise": Attack(FILES),
+    "opens_devices": Attack(FILES),
+    "runs_the_reference": Attack(FILES),
+    "imports_the_reference": Attack(FILES),
+    "changes_verdict_code": Attack(FILES),
+    "reads_environment": Attack(TOKENS),
+    "looks_at_processes": Attack(PROCESSES),
+    "writes_memory": Attack(PROCESSES),
+    "process_vm": Attack(PROCESSES),
+    "ptraces": Attack(PROCESSES),
+    "takes_descriptors": Attack(PROCESSES),
+    "replaces_the_recording": Attack(PROCESSES),
+    "kills_all": Attack(PROCESSES),
+    "kills_each": Attack(PROCESSES),
+    "stops_all": Attack(PROCESSES),
+    "unmounts": Attack(KERNEL),
+    "mounts": Attack(KERNEL),
+    "enters_namespaces": Attack(KERNEL),
+    "asks_the_kernel": Attack(KERNEL),
+    "has_privileges": Attack(KERNEL),
+    "plants_locks": Attack(LEFTOVERS),
+    "replaces_the_folder_of_locks": Attack(LEFTOVERS),
+    "keeps_locks": Attack(LEFTOVERS),
+    "leaves_files": Attack(LEFTOVERS, NAMESPACES),
+    "daemons": Attack(LEFTOVERS),
+    "daemons_of_libc": Attack(LEFTOVERS),
+    "outlives_main": Attack(LEFTOVERS, ALL),
+    "many_processes": Attack(LIMITS, NAMESPACES),
+    "many_threads_and_files": Attack(LIMITS, ALL),
+    "takes_memory": Attack(LIMITS, ALL),
+    "fills_disk": Attack(LIMITS, NAMESPACES),
+    "endless_output": Attack(LIMITS, ALL),
+    "reaches_services": Attack(NETWORK, NAMESPACES),
+    "types_into_the_terminal": Attack(NETWORK),
+    "prints_escapes": Attack(READING, ALL),
+    "imitates_results": Attack(READING, ALL),
+    "fakes_a_traceback": Attack(READING, ALL),
+    "misuses_the_link": Attack(LINK, ALL),
+    "asks_and_never_reads": Attack(LINK, ALL),
+    "lies_about_time": Attack(LINK, ALL),
+    "replaces_builtins": Attack(LINK, ALL),
+    "closes_descriptors": Attack(LINK, ALL),
+    "exits_oddly": Attack(LINK, ALL),
+    "becomes_another_program": Attack(LINK, ALL),
+    "stops_itself": Attack(LINK, ALL),
+    "crashes": Attack(LINK, ALL),
+    "kills_the_simulator": Attack(SIMULATOR, ALL),
+    "writes_by_the_simulator": Attack(SIMULATOR, ALL),
+    "floods_the_simulator": Attack(SIMULATOR, ALL),
+    "stops_the_clock": Attack(SIMULATOR, ALL, most=100, lacks=()),
+    "sends_broken_packets": Attack(SIMULATOR, ALL),
+    "turns_on_the_spot": Attack(RUBRIC, ALL, exercise=SPIRAL, most=50, lacks=("spiral",)),
+    "goes_back_to_the_centre": Attack(
+        RUBRIC, ALL, exercise=VARIED, most=60, lacks=("edge_stop", "pen_per_quadrant")
+    ),
+    "drives_beyond_all_numbers": Attack(RUBRIC, ALL, exercise=SPIRAL, most=40, lacks=("spiral",)),
+    "draws_with_another_turtle": Attack(
+        RUBRIC, ALL, exercise=SPIRAL, most=60, lacks=("picture", "pen_per_quadrant")
+    ),
+    "does_not_parse": Attack(READING, ALL, handed_in.does_not_parse),
+    "is_nested": Attack(READING, ALL, handed_in.is_nested, codes=READ),
+    "has_a_long_key": Attack(READING, ALL, handed_in.has_a_long_key, codes=READ),
+    "holds_no_files": Attack(READING, ALL, handed_in.holds_no_files, codes=READ),
+    "is_called_by_markup": Attack(READING, ALL, handed_in.is_called_by_markup, codes=READ),
+    "has_results_already": Attack(
+        READING, ALL, handed_in.has_results_already, codes=READ, out="graded"
+    ),
+    "is_a_hostile_archive": Attack(READING, ALL, handed_in.is_a_hostile_archive, codes=READ),
+    "imports_a_neighbour": Attack(
+        FILES, make=lambda target: handed_in.single("imports_a_neighbour", target, "")
+    ),
+}

@@ -1,0 +1,200 @@
+"""A container for attacks: what they do to the machine is done to a copy of it, which goes.
+
+    python -m tests.attacks.container
+
+It has processes, network, IPC and terminals of its own, and the files of this machine below a layer
+that takes all that is written (overlayfs), so that even an attack that succeeds as root harms
+nothing, and all that was written can be told. The first process of it is ours, which no signal from
+inside ends. It reads a job (JSON) from standard input and writes what it saw (JSON) to standard
+output; see `observing`.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from grader.run.processes import supervisor
+
+ROOT = Path(__file__).parents[2]
+CLONE_NEWUTS = 0x04000000
+MS_BIND, MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE, MS_RDONLY = 0x1000, 2, 4, 0x4000, 1 << 18, 1
+MNT_DETACH, PIVOT_ROOT, PR_SET_DUMPABLE = 2, 155, 4
+DEVICES = ("null", "zero", "full", "random", "urandom", "tty")
+#: All that attacks may write together, to files and to shared memory [bytes].
+ROOM, SHARED = "1g", "512m"
+PROBE = {"probe": True}
+
+
+class NoContainer(Exception):
+    """This system allows none; the text says why."""
+
+
+def run(job: dict[str, Any]) -> Any:
+    """Do a job in a container of its own, and give what it tells.
+
+    Raises:
+        NoContainer: there can be none here.
+        RuntimeError: it has died.
+    """
+    done = subprocess.run(
+        [sys.executable, "-P", "-m", "tests.attacks.container"],
+        input=json.dumps(job),
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"},
+    )
+    try:
+        answer = json.loads(done.stdout)
+    except ValueError:
+        raise RuntimeError(f"no answer ({done.returncode}): {done.stderr[-4000:]}") from None
+    if isinstance(answer, dict) and "refused" in answer:
+        raise NoContainer(answer["refused"])
+    return answer
+
+
+def main() -> int:
+    """Make it, and go on in it as its first process."""
+    job = json.loads(sys.stdin.read())
+    folder = tempfile.mkdtemp()
+    try:
+        kinds = (
+            supervisor.CLONE_NEWNS
+            | supervisor.CLONE_NEWPID
+            | supervisor.CLONE_NEWIPC
+            | supervisor.CLONE_NEWNET
+            | CLONE_NEWUTS
+        )
+        _leave(kinds)
+        if child := os.fork():
+            return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        supervisor.signal_at_parents_death(9)
+        layer = _enter(Path(folder), [ROOT, *map(Path, (sys.prefix, sys.base_prefix))])
+    except OSError as error:
+        print(json.dumps({"refused": str(error)}))
+        return 0
+    finally:
+        with suppress(OSError):
+            Path(folder).rmdir()  # the mounts in it are not seen from outside
+    if job == PROBE:
+        print(json.dumps("works"))
+        return 0
+    from tests.attacks import observing
+
+    # what it says must not lie within reach: all that we hold is closed to who is not root
+    supervisor.control(PR_SET_DUMPABLE, 0)
+    said = os.dup(1)
+    os.set_inheritable(said, False)
+    os.dup2(2, 1)
+    answer = observing.observe(job, layer)
+    with os.fdopen(said, "w") as file:
+        file.write(json.dumps(answer))
+    return 0
+
+
+def _leave(kinds: int) -> None:
+    user, group = os.getuid(), os.getgid()
+    if user == 0:
+        supervisor.unshare(kinds)
+        return
+    supervisor.unshare(kinds | supervisor.CLONE_NEWUSER)
+    for name, text in (
+        ("setgroups", "deny"),
+        ("uid_map", f"{user} {user} 1"),
+        ("gid_map", f"{group} {group} 1"),
+    ):
+        Path(f"/proc/self/{name}").write_text(text)
+
+
+def _mount(source: Path | str, target: Path, kind: str, flags: int = 0, data: str = "") -> None:
+    libc = ctypes.CDLL(None, use_errno=True)
+    words = (str(source).encode(), str(target).encode(), kind.encode(), ctypes.c_ulong(flags))
+    if libc.mount(*words, data.encode()):
+        error = ctypes.get_errno()
+        raise OSError(error, f"mount of {target}: {os.strerror(error)}")
+
+
+def _enter(folder: Path, needed: Iterable[Path]) -> int:
+    """Have files of our own from here on; the layer that takes what is written, as a descriptor."""
+    _mount("none", Path("/"), "", MS_REC | MS_PRIVATE)
+    _mount("tmpfs", folder, "tmpfs", 0, f"size={ROOM}")
+    root = folder / "root"
+    root.mkdir()
+    _overlay(Path("/"), root, folder / "layer")
+    for number, place in enumerate(sorted({_mount_point(path) for path in needed} - {Path("/")})):
+        _overlay(place, root / place.relative_to("/"), folder / f"other{number}")
+    _mount("proc", root / "proc", "proc")
+    _mount("/sys", root / "sys", "", MS_BIND | MS_REC)
+    _make_devices(root / "dev")
+    layer = os.open(folder / "layer" / "upper", os.O_RDONLY | os.O_DIRECTORY)
+    os.chdir(root)
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.syscall(PIVOT_ROOT, b".", b".") or libc.umount2(b".", MNT_DETACH):
+        raise OSError(ctypes.get_errno(), "pivot_root")
+    os.chdir("/")
+    supervisor.raise_loopback()
+    _clear_tmp()
+    _open_to_all(needed)
+    return layer
+
+
+def _mount_point(path: Path) -> Path:
+    return next(each for each in (path, *path.parents) if each.is_mount())
+
+
+def _overlay(lower: Path, target: Path, layer: Path) -> None:
+    for name in ("upper", "work"):
+        (layer / name).mkdir(parents=True)
+    options = f"lowerdir={lower},upperdir={layer}/upper,workdir={layer}/work"
+    if os.getuid():
+        options += ",userxattr"
+    _mount("overlay", target, "overlay", 0, options)
+
+
+def _make_devices(dev: Path) -> None:
+    _mount("tmpfs", dev, "tmpfs", MS_NOSUID, "mode=755,size=64k")
+    for name in DEVICES:
+        (dev / name).touch()
+        _mount(Path("/dev", name), dev / name, "", MS_BIND)
+    for name, kind, options in (
+        ("shm", "tmpfs", f"mode=1777,size={SHARED}"),
+        ("pts", "devpts", "newinstance,mode=620,ptmxmode=666"),
+        ("mqueue", "mqueue", ""),
+    ):
+        (dev / name).mkdir()
+        _mount(kind, dev / name, kind, MS_NOSUID, options)
+    (dev / "ptmx").symlink_to("pts/ptmx")
+    (dev / "fd").symlink_to("/proc/self/fd")
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        (dev / name).symlink_to(f"/proc/self/fd/{number}")
+
+
+def _clear_tmp() -> None:
+    """What other gradings have in this machine's /tmp is not seen."""
+    for place in (Path("/tmp"), Path("/var/tmp")):
+        if os.getuid() == 0:
+            place.chmod(0o1777)
+        for theirs in place.glob("turtlesim-grader*"):
+            shutil.rmtree(theirs, ignore_errors=True)
+
+
+def _open_to_all(needed: Iterable[Path]) -> None:
+    """Whoever grades finds Python and this checkout, also where they lie in root's own folder."""
+    if os.getuid() == 0:
+        for place in {parent for path in needed for parent in path.resolve().parents}:
+            place.chmod(place.stat().st_mode | 0o055)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+"""What is handed in: for most attacks a folder with a file; for some, the folder is the attack.
+
+A function here makes a submission in a folder and returns what the grader is told to grade. It
+gets the attack's folder, which is `attacker` in the class's.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import zipfile
+from pathlib import Path
+
+SUBMISSIONS = Path(__file__).parent / "submissions"
+EMPTY = "import rclpy\n"
+#: What reads these may go to and fro; today's answer is at once, yesterday's took minutes.
+MANY = 30_000
+
+
+def folder(name: str, target: Path, known: str) -> Path:
+    """A folder with one program."""
+    target.mkdir()
+    shutil.copy(SUBMISSIONS / f"{name}.py", target / "turtle_controller.py")
+    shutil.copy(SUBMISSIONS / "tools.py", target)
+    (target / "known.py").write_text(known)
+    return target
+
+
+def single(name: str, target: Path, known: str) -> Path:
+    """A single file, in the folder of all that was handed in."""
+    path = target.parent / f"{target.name}.py"
+    shutil.copy(SUBMISSIONS / f"{name}.py", path)
+    return path
+
+
+def _folder_with(target: Path, text: str = EMPTY, **files: str) -> Path:
+    target.mkdir()
+    (target / "turtle_controller.py").write_text(text)
+    for name, content in files.items():
+        (target / name.replace("_dot_", ".")).write_text(content)
+    return target
+
+
+def does_not_parse(target: Path) -> Path:
+    """Does not parse, and says `__name__` all over."""
+    return _folder_with(target, 'if (((__name__ == "' + "if __name__ " * MANY + "\n")
+
+
+def is_nested(target: Path) -> Path:
+    """A setup.py so deep and so doubled that reading it takes all the memory."""
+    deep = "x = " + "(" * 5000 + ")" * 5000 + "\n"
+    doubled = "a0 = ['x'] * 10\n" + "".join(f"a{n + 1} = a{n} + a{n}\n" for n in range(60))
+    setup = f"from setuptools import setup\n{doubled}setup(name=a60, entry_points=a60)\n"
+    _folder_with(target, setup_dot_py=setup, package_dot_xml="<package><name>a</name></package>")
+    (target / "deep.py").write_text(deep)
+    (target / "chain.py").write_text("x = 0" + " < 0" * MANY)
+    (target / "attributes.py").write_text("x = y" + ".z" * MANY)
+    return target
+
+
+def has_a_long_key(target: Path) -> Path:
+    """A pyproject.toml whose one key has 20,000 parts."""
+    return _folder_with(target, pyproject_dot_toml="[project]\n" + ".".join(["a"] * 20_000) + " = 1\n")
+
+
+def holds_no_files(target: Path) -> Path:
+    """FIFOs, sockets, links to devices and to itself, folders without end, names that are no text."""
+    _folder_with(target)
+    for place in (target, target / "package"):
+        place.mkdir(exist_ok=True)
+        os.mkfifo(place / "setup.cfg")
+        os.mkfifo(place / "a.py")
+        (place / "setup.py").symlink_to("/dev/zero")
+        (place / "package.xml").symlink_to("/dev/zero")
+        (place / "pyproject.toml").symlink_to("pyproject.toml")
+        (place / "loop").symlink_to(".")
+        (place / "root").symlink_to("/")
+    os.chdir(target / "package")
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind("s.py")
+    Path(os.fsdecode(b"\xff\xfe\x9b31m\n.py")).write_text(EMPTY)
+    Path("n" * 250 + ".py").write_text(EMPTY)
+    for number in range(2000):
+        Path(f"f{number}.py").touch()
+    for _ in range(300):
+        Path("d").mkdir()
+        os.chdir("d")
+    os.chdir("/")
+    return target
+
+
+def is_called_by_markup(target: Path) -> Path:
+    """Names that terminals, markup and CI systems obey."""
+    target.mkdir()
+    (target / "[/b]").mkdir()
+    path = target / "[/b]" / "\033[31m::error::[red]\u202e.py"
+    path.write_text("raise RuntimeError('[/b][bold]\\033[2J')\n")
+    return path
+
+
+def has_results_already(target: Path) -> Path:
+    """Where the results will be there is something already: links to what is not the student's."""
+    _folder_with(target, "print('attacked')\n")
+    out = target / "graded"
+    out.mkdir()
+    home = target.parents[1]
+    for name in ("output.txt", "result.json", "report.html", "canvas.png"):
+        (out / name).symlink_to(home / "notes.txt")
+    (out / "recording").symlink_to(home / ".ssh")
+    return target
+
+
+def is_a_hostile_archive(target: Path) -> Path:
+    """Paths that lead out, links, a bomb, and more entries than anybody reads."""
+    path = target.parent / f"{target.name}.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("turtle_controller.py", EMPTY)
+        archive.writestr("../../.bash_login", "attacked")
+        archive.writestr("/tmp/attack-unpacked", "attacked")
+        link = zipfile.ZipInfo("link")
+        link.external_attr = 0o120777 << 16
+        archive.writestr(link, "../../..")
+        archive.writestr("link/.bash_login", "attacked")
+        archive.writestr("bomb.py", b"\0" * (64 << 20))
+        for number in range(20_000):
+            archive.writestr(f"e{number}", b"")
+    return path

@@ -1,0 +1,483 @@
+"""In the container: canaries are set out, the grader grades attacks, and what has changed is told.
+
+The observer is the container's first process: root of the container, if anybody is, out of reach
+of signals, and the parent of all that nobody else waits for. Nothing that a submission says is
+believed but that it has achieved something.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import pty
+import pwd
+import secrets
+import shutil
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import sysconfig
+import termios
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tests.attacks import bystander, handed_in, levels
+from tests.attacks.attacks import ATTACKS, MOVES
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
+#: So long a grading may take before it counts as one that never ends, and what it leaves may take
+#: to go [s].
+PATIENCE_S, LINGERS_S = 75.0, 5.0
+#: The memory that one process of a run has at most [bytes], and the processes of a run.
+MOST_MEMORY = 2 << 30
+START = (
+    "import sys; sys.path.insert(0, sys.argv.pop(1)); sys.argv[0] = 'grader'; "
+    "from grader.cli import main; sys.exit(main())"
+)
+TOKENS = ("GITHUB_TOKEN", "AWS_SECRET_ACCESS_KEY", "CI_JOB_TOKEN", "COURSE_TOKEN", "GRADER_SECRET")
+HONEST = """
+import time
+import rclpy
+from geometry_msgs.msg import Twist
+rclpy.init()
+publisher = rclpy.create_node("honest").create_publisher(Twist, "/turtle1/cmd_vel", 10)
+twist = Twist()
+twist.linear.x = 2.0
+for _ in range(20):
+    publisher.publish(twist)
+    time.sleep(0.05)
+"""
+
+
+def observe(job: dict[str, Any], layer: int) -> list[dict[str, Any]]:
+    """Grade attacks one after the other, and an honest submission after each.
+
+    Args:
+        job: `level`, a key of `levels.LEVELS`, or "unconfined": then the attacks are run by Python
+            alone, and nothing is graded; and `attacks`, a list of keys of `ATTACKS`.
+        layer: where everything is that was written into this machine's files.
+    """
+    level = levels.LEVELS.get(job["level"], levels.UNCONFINED)
+    told = []
+    for name in job["attacks"]:
+        told.append(_Trial(level, name, layer).run())
+    return told
+
+
+@dataclass
+class _Home:
+    """The folders of whoever grades."""
+
+    path: Path
+    class_: Path = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.class_ = self.path / "class"
+
+    @property
+    def tree(self) -> Path:
+        return self.path / "checkout"
+
+
+class _Trial:
+    """One attack, with canaries of its own."""
+
+    def __init__(self, level: levels.Level, name: str, layer: int) -> None:
+        self._level, self._name, self._layer = level, name, layer
+        self._attack = ATTACKS[name]
+        self._uid = level.uid if os.getuid() == 0 else os.getuid()
+        self._user = self._name_of_user()
+        self._home = _Home(Path(pwd.getpwuid(self._uid).pw_dir))
+        self._secrets: dict[str, str] = {}
+        self._harm: list[str] = []
+
+    def run(self) -> dict[str, Any]:
+        """Grade it, and an honest one after it."""
+        with ExitStack() as held:
+            self._set_out(held)
+            submission = self._hand_in()
+            self._give_to_user(self._home.path)
+            before = self._files()
+            out = (submission if self._attack.out else self._home.class_ / "graded") / (
+                self._attack.out or "attacker"
+            )
+            graded = self._grade(submission, out)
+            self._look(before, out, graded)
+            if self._level == levels.UNCONFINED:
+                self._clear()
+                return {"attack": self._name, "harm": sorted(set(self._harm))}
+            honest = self._home.class_ / "honest.py"
+            honest.write_text(HONEST)
+            self._give_to_user(honest)
+            after = self._grade(honest, self._home.class_ / "graded" / "honest")
+            if (after["code"], after["score"]) != (0, 100):
+                self._harm.append(f"the next submission: {_short(after)}")
+            self._harm += [f"later: {harm}" for harm in self._changed(before) if harm not in self._harm]
+            self._clear()
+        return {"attack": self._name, "harm": sorted(set(self._harm)), **graded}
+
+    # -- what is there --------------------------------------------------------------------------
+
+    def _name_of_user(self) -> str:
+        with suppress(KeyError):
+            return pwd.getpwuid(self._uid).pw_name
+        name = levels.NAMES[self._uid]
+        with Path("/etc/passwd").open("a") as file:
+            file.write(f"{name}:x:{self._uid}:{self._uid}::/home/{name}:/bin/sh\n")
+        Path("/home", name).mkdir(parents=True, exist_ok=True)
+        return name
+
+    def _secret(self, where: str) -> str:
+        return self._secrets.setdefault(where, f"CANARY-{where}-{secrets.token_hex(8)}")
+
+    def _give_to_user(self, path: Path) -> None:
+        if os.getuid() == 0 and self._uid:
+            for each in (path, *path.rglob("*")):
+                os.chown(each, self._uid, self._uid, follow_symlinks=False)
+
+    def _write(self, path: Path, text: str) -> Path:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        self._canaries.append(path)
+        return path
+
+    def _set_out(self, held: ExitStack) -> None:
+        home = self._home.path
+        for place in (home / "class", home / "checkout"):
+            shutil.rmtree(place, ignore_errors=True)
+        self._canaries: list[Path] = []
+        for name in (".netrc", ".ssh/id_ed25519", "notes.txt"):
+            self._write(home / name, self._secret("home"))
+        neighbour = self._secret("neighbour")
+        self._write(home / "class/neighbour/turtle_controller.py", f"SOLUTION = {neighbour!r}\n")
+        self._write(home / "class/neighbour.py", f"SOLUTION = {neighbour!r}\n")
+        self._write(home / "class/graded/neighbour/result.json", f'"{self._secret("results")}"')
+        exercise = f"# {self._secret('exercise')}\nexercise: turtlesim_challenge\n"
+        self._write(home / "class/exercise.yaml", exercise + self._attack.exercise)
+        self._write(home / "class/honest.yaml", "exercise: turtlesim_challenge\n" + MOVES)
+        for package in PACKAGES:
+            shutil.copytree(ROOT / package, self._home.tree / package)
+        self._give_to_user(home)
+        self._tcp = held.enter_context(socket.create_server(("127.0.0.1", 0)))
+        self._udp = held.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        self._udp.bind(("0.0.0.0", 0))
+        self._path = home / "service.sock"
+        self._abstract = f"service-{secrets.token_hex(4)}"
+        self._unix = []
+        self._path.unlink(missing_ok=True)
+        for address in (str(self._path), f"\0{self._abstract}"):
+            listener = held.enter_context(socket.socket(socket.AF_UNIX))
+            listener.bind(address)
+            listener.listen()
+            self._unix.append(listener)
+        for listener in (self._tcp, self._udp, *self._unix):
+            listener.setblocking(False)
+        self._path.chmod(0o666)
+        self._master, self._slave = pty.openpty()
+        held.callback(os.close, self._master)
+        held.callback(os.close, self._slave)
+        self._terminal = os.ttyname(self._slave)
+        if os.getuid() == 0:
+            os.chown(self._terminal, self._uid, -1)
+        os.set_blocking(self._master, False)
+        raw = termios.tcgetattr(self._slave)
+        raw[3] &= ~(termios.ECHO | termios.ICANON)
+        termios.tcsetattr(self._slave, termios.TCSANOW, raw)
+        self._bystander = held.enter_context(
+            subprocess.Popen(
+                [sys.executable, "-I", "-S", bystander.__file__, "bystander", self._secret("args")],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+                env={"COURSE_TOKEN": self._secret("environ")},
+                preexec_fn=lambda: levels.become(self._level),
+            )
+        )
+        held.callback(self._bystander.kill)
+        assert self._bystander.stdout is not None
+        self._address = int(self._bystander.stdout.readline())
+
+    def _hand_in(self) -> Path:
+        home, target = self._home, self._home.class_ / "attacker"
+        for left in (target.with_suffix(".py"), target.with_suffix(".zip")):
+            left.unlink(missing_ok=True)
+        if self._attack.make is not None:
+            return self._attack.make(target)
+        known = {
+            "HOME": str(home.path),
+            "CLASS": str(home.class_),
+            "NEIGHBOUR": str(home.class_ / "neighbour/turtle_controller.py"),
+            "NEIGHBOURS_RESULT": str(home.class_ / "graded/neighbour/result.json"),
+            "OUT": str(home.class_ / "graded/attacker"),
+            "SOURCE": str(target / "turtle_controller.py"),
+            "EXERCISE": str(home.class_ / "exercise.yaml"),
+            "TREE": str(home.tree),
+            "TEMP": "/tmp",
+            "USER": self._user,
+            "UID": self._uid,
+            "BYSTANDER": self._bystander.pid,
+            "BYSTANDER_ADDRESS": self._address,
+            "TCP": self._tcp.getsockname()[1],
+            "UDP": self._udp.getsockname()[1],
+            "ADDRESS": "127.0.0.1",
+            "UNIX": str(self._path),
+            "ABSTRACT": self._abstract,
+            "TERMINAL": self._terminal,
+        }
+        text = "".join(f"{name} = {value!r}\n" for name, value in known.items())
+        return handed_in.folder(self._name, target, text)
+
+    # -- a grading ------------------------------------------------------------------------------
+
+    def _environment(self) -> dict[str, str]:
+        kept = ("ROS_", "AMENT_", "PYTHONPATH", "LD_LIBRARY_PATH") if "ROS_DISTRO" in os.environ else ()
+        return {
+            **{name: value for name, value in os.environ.items() if name.startswith(kept)},
+            **{name: self._secret("environment") for name in TOKENS},
+            "HOME": str(self._home.path),
+            "USER": self._user,
+            "PATH": "/usr/local/bin:/usr/bin:/bin",
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "TERM": "xterm",
+        }
+
+    def _grade(self, submission: Path, out: Path) -> dict[str, Any]:
+        """Run the real command line, as the user, on a terminal of its own."""
+        streams = [os.memfd_create(name) for name in ("stdout", "stderr")]
+        exercise = "honest.yaml" if submission.name == "honest.py" else "exercise.yaml"
+        words = ["run", str(submission), "--exercise", exercise, "--out", str(out)]
+
+        command = [sys.executable, "-P", "-c", START, str(self._home.tree), *words]
+        if self._level == levels.UNCONFINED:
+            command = [sys.executable, str(submission / "turtle_controller.py")]
+
+        def begin() -> None:
+            os.setsid()
+            fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+            levels.become(self._level)
+
+        most, hung, deadline = 0, False, time.monotonic() + PATIENCE_S
+        with subprocess.Popen(
+            command,
+            stdin=self._slave,
+            stdout=streams[0],
+            stderr=streams[1],
+            cwd=self._home.class_,
+            env=self._environment(),
+            preexec_fn=begin,
+        ) as process:
+            while process.poll() is None:
+                most = max(most, len(_processes()))
+                if time.monotonic() > deadline:
+                    hung = True
+                    process.kill()
+                    self._end_others()
+                with suppress(subprocess.TimeoutExpired):
+                    process.wait(0.05)
+        left = self._left()
+        graded: dict[str, Any] = {
+            "code": process.returncode,
+            "hung": hung,
+            "left": left,
+            "said": "".join(_text(fd) for fd in streams),
+            "most_processes": most,
+            **_result(out),
+        }
+        for fd in streams:
+            os.close(fd)
+        return graded
+
+    def _left(self) -> list[str]:
+        """What still runs a while after the grader has ended; it is ended."""
+        deadline = time.monotonic() + LINGERS_S
+        while (left := self._others()) and time.monotonic() < deadline:
+            _reap(left)
+            time.sleep(0.02)
+        names = [_command_line(pid) for pid in left]
+        self._end_others()
+        return names
+
+    def _others(self) -> list[int]:
+        return [pid for pid in _processes() if pid != self._bystander.pid]
+
+    def _end_others(self) -> None:
+        while others := self._others():
+            for pid in others:
+                with suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
+            _reap(others)
+            time.sleep(0.01)
+
+    # -- what has changed -----------------------------------------------------------------------
+
+    def _look(self, before: dict[str, Any], out: Path, graded: dict[str, Any]) -> None:
+        harm = self._harm
+        harm += [f"left running: {line}" for line in graded.pop("left")]
+        if graded["hung"]:
+            harm.append("the grading never ended")
+        elif graded["code"] not in self._attack.codes:
+            harm.append(f"the grader failed: {_short(graded)}")
+        said = graded["said"].encode() + b"".join(
+            each.read_bytes() for each in out.rglob("*") if each.is_file() and not each.is_symlink()
+        )
+        links = [str(each) for each in out.rglob("*") if each.is_symlink()]
+        harm += [f"a link among the results: {link}" for link in links]
+        harm += [f"told a secret: {where}" for where, it in self._secrets.items() if it.encode() in said]
+        with suppress(OSError):
+            graded["printed"] = (out / "output.txt").read_text(errors="replace")[:4000]
+        lines = (line for line in said.split(b"\n") if line.startswith(b"ACHIEVED "))
+        lines = (line for line in lines if b"&#" not in line)  # the page says it again
+        for line in sorted({b" ".join(line.split(b" ")[1:8]) for line in lines})[:40]:
+            if not line.startswith((b"environment", b"getenv", b"None")):
+                harm.append(f"achieved: {line.decode(errors='replace')[:160]}")
+        if "\033" in graded["said"] or "\x9b" in graded["said"]:
+            harm.append("an escape on the grader's own streams")
+        harm += self._heard()
+        harm += self._changed(before)
+        with suppress(BlockingIOError, OSError):
+            harm.append(f"wrote to the terminal: {os.read(self._master, 200)!r}")
+        os.set_blocking(self._slave, False)
+        with suppress(BlockingIOError, OSError):
+            harm.append(f"typed into the terminal: {os.read(self._slave, 200)!r}")
+        harm += self._asked_bystander()
+
+    def _heard(self) -> Iterator[str]:
+        for name, listener in (("TCP", self._tcp), *(("unix", each) for each in self._unix)):
+            with suppress(BlockingIOError):
+                listener.accept()[0].close()
+                yield f"a service was reached: {name}"
+        with suppress(BlockingIOError):
+            yield f"a service was told by UDP: {self._udp.recv(100)!r}"
+
+    def _asked_bystander(self) -> Iterator[str]:
+        process = self._bystander
+        assert process.stdin is not None and process.stdout is not None
+        state = "gone"
+        with suppress(OSError):
+            state = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[0]
+        if process.poll() is not None or state in "TtZ":
+            yield f"another process was ended or stopped: {process.poll()}, {state}"
+            with suppress(ProcessLookupError):
+                os.kill(process.pid, signal.SIGKILL)
+            return
+        process.stdin.write("?\n")
+        process.stdin.flush()
+        answer = process.stdout.readline().strip()
+        if answer != "True []":
+            yield f"another process was changed or signalled: {answer}"
+
+    def _files(self) -> dict[str, Any]:
+        """Everything that was written in this container, and what lies in shared memory."""
+        found: dict[str, Any] = {}
+        for top, fd in (("", self._layer), ("/dev/shm", None)):
+            base = f"/proc/self/fd/{fd}" if fd is not None else top
+            for folder, folders, files in os.walk(base):
+                place = top + folder[len(base) :]
+                for name in (*files, *folders):
+                    with suppress(OSError):
+                        entry = os.lstat(f"{folder}/{name}")
+                        kind = stat.S_IFMT(entry.st_mode)
+                        same = (entry.st_mtime_ns, entry.st_size) if not stat.S_ISDIR(kind) else ()
+                        found[f"{place}/{name}"] = (kind, entry.st_mode, entry.st_uid, *same)
+        for kind in ("shm", "sem", "msg"):
+            with suppress(OSError):
+                for line in Path(f"/proc/sysvipc/{kind}").read_text().splitlines()[1:]:
+                    found[f"{kind} {line.split()[0]}"] = ()
+        with suppress(OSError):
+            found.update({f"queue {name}": () for name in os.listdir("/dev/mqueue")})
+        return found
+
+    def _changed(self, before: dict[str, Any]) -> list[str]:
+        after = self._files()
+        changed = {path for path in before.keys() | after.keys() if before.get(path) != after.get(path)}
+        return [f"changed: {path}" for path in sorted(changed) if not self._is_ours(path, after)][:40]
+
+    def _is_ours(self, path: str, after: dict[str, Any]) -> bool:
+        """Whether a grading may leave this: results, and empty files for locks."""
+        graded = self._home.class_ / "graded"
+        if path == f"{self._home.class_}/honest.py" or path.startswith((f"{graded}/attacker", f"{graded}/honest")):
+            return True
+        if self._attack.out and path.startswith(f"{self._home.class_}/attacker/{self._attack.out}"):
+            return True
+        if path.startswith("/dev/shm/lttng-ust-wait-"):
+            return True  # of every process with rclpy in it
+        parts = Path(path).parts
+        if parts[:2] == ("/", "tmp") and len(parts) > 2 and parts[2].startswith("turtlesim-grader"):
+            kind = after.get(path, (stat.S_IFREG,))[0]
+            if len(parts) == 3:
+                return bool(kind == stat.S_IFDIR)
+            return kind == stat.S_IFDIR or (kind == stat.S_IFREG and path.endswith(".lock"))
+        return False
+
+    def _clear(self) -> None:
+        """What lies about is not for the next trial."""
+        for place in ("/dev/shm", "/tmp", "/var/tmp", "/run"):
+            for each in Path(place).glob("*attack*"):
+                with suppress(OSError):
+                    each.unlink() if not each.is_dir() or each.is_symlink() else shutil.rmtree(each)
+        for each in Path("/tmp").glob("turtlesim-grader*"):
+            with suppress(OSError):
+                shutil.rmtree(each) if each.is_dir() and not each.is_symlink() else each.unlink()
+        with suppress(OSError):
+            each_home = self._home.path
+            for name in (".bash_login", "attacked", "owned", ".ssh2", "pictures"):
+                shutil.rmtree(each_home / name, ignore_errors=True)
+                (each_home / name).unlink(missing_ok=True)
+        subprocess.run(["ipcrm", "--all"], check=False, capture_output=True)
+
+
+def _processes() -> list[int]:
+    return [pid for pid in map(int, filter(str.isdigit, os.listdir("/proc"))) if pid != 1]
+
+
+def _reap(pids: list[int]) -> None:
+    """Take leave of those that were left to us; not of our own children, whom others wait for."""
+    for pid in pids:
+        with suppress(ChildProcessError):
+            os.waitpid(pid, os.WNOHANG)
+
+
+def _command_line(pid: int) -> str:
+    with suppress(OSError):
+        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")[-120:]
+    return "?"
+
+
+def _text(fd: int) -> str:
+    size = os.fstat(fd).st_size
+    return os.pread(fd, min(size, 1 << 20), 0).decode("utf-8", "replace")
+
+
+def _result(out: Path) -> dict[str, Any]:
+    """What the result file says; `size` is that of all files."""
+    nothing: dict[str, Any] = {"score": None, "passed": [], "outcome": "", "isolation": ""}
+    path = out / "result.json"
+    if path.is_symlink() or not path.is_file():
+        return nothing
+    try:
+        result = json.loads(path.read_text())
+        run = result["run"]
+        return {
+            "score": result["score"],
+            "passed": [each["check"] for each in result["verdicts"] if each["status"] == "passed"],
+            "outcome": run["outcome"],
+            "isolation": run["isolation"],
+            "flags": run["flags"],
+            "rationale": [each["rationale"] for each in result["verdicts"]][:1],
+            "size": sum(each.stat().st_size for each in out.rglob("*") if each.is_file()),
+            "largest": max((each.stat().st_size, each.name) for each in out.rglob("*") if each.is_file()),
+        }
+    except (ValueError, KeyError) as error:
+        return {**nothing, "outcome": f"no result: {error!r}"}
+
+
+def _short(graded: dict[str, Any]) -> str:
+    return f"code {graded['code']}, score {graded['score']}, hung {graded['hung']}: {graded['said'][-600:]}"

@@ -1,0 +1,19 @@
+"""Finds the link to the simulator; sends lies, nonsense, floods, and then hangs up."""
+
+import os
+
+from tools import libc
+
+PACKETS = [
+    b"A" + b"\xff" * 24 + b"\1",
+    b'I[["topic /turtle1/pose"], []]',
+    b"I" + b"[" * 60_000,
+    b"M" + bytes(25) + b"\xff" * 4000,
+    b"N" + bytes(25) + b"\x1b[31mred" * 50,
+    b"T{}",
+    b"",
+    os.urandom(60_000),
+]
+for fd in range(3, 64):
+    for packet in PACKETS * 20:
+        libc.send(fd, packet, len(packet), 0x4040)

@@ -1,0 +1,105 @@
+"""Hostile submissions, graded as in a course: what they gain, and what they do to anything else.
+
+`attacks.ATTACKS` says what there is, `submissions/` what each does. Each is graded by the real
+command line, in a container that makes a machine of each kind out of this one (`levels`), among
+canaries (`observing`). TURTLESIM_ATTACKS=all tries every attack at every level.
+"""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from tests.attacks import container, levels
+from tests.attacks.attacks import ATTACKS, LINK, READING, RUBRIC, SIMULATOR
+from tests.attacks.conftest import Graded
+from tests.attacks.handed_in import SUBMISSIONS
+
+pytestmark = pytest.mark.timeout(900)  # the first waits for all that share its container
+
+#: What no level changes is tried at one.
+EVERYWHERE_THE_SAME = {READING, RUBRIC, SIMULATOR, LINK}
+ONE = "namespaces-user"
+#: With rlimits only: what the grader itself has to survive.
+AT_LIMITS = {
+    *("kills_all", "stops_all", "daemons_of_libc", "endless_output", "takes_memory"),
+    *("replaces_the_recording", "plants_locks", "stops_itself", "prints_escapes"),
+}
+#: What is wrong wherever it happens, whatever the level lets through.
+NEVER = ("the grader failed", "the grading never ended", "the next submission", "an escape on")
+
+
+def chosen() -> list[tuple[str, str]]:
+    """Level and attack of each grading."""
+    pairs = []
+    for level in levels.LEVELS:
+        for name, attack in ATTACKS.items():
+            is_told = attack.about not in EVERYWHERE_THE_SAME or level == ONE
+            if level == "limits-user":
+                is_told = name in AT_LIMITS
+            if is_told or os.environ.get("TURTLESIM_ATTACKS") == "all":
+                pairs.append((level, name))
+    return pairs
+
+
+GRADINGS = chosen()
+
+
+@pytest.mark.parametrize(("level", "attack"), GRADINGS)
+def test_it_does_no_harm(graded: Graded, level: str, attack: str) -> None:
+    outcome = graded(level, attack)
+    harm = outcome.harm
+    if levels.LEVELS[level].grader not in ATTACKS[attack].stopped_by:
+        harm = tuple(each for each in harm if each.startswith(NEVER))
+    assert not harm, outcome.told
+    assert outcome.code in ATTACKS[attack].codes, outcome.told
+
+
+@pytest.mark.parametrize(("level", "attack"), GRADINGS)
+def test_it_earns_no_points(graded: Graded, level: str, attack: str) -> None:
+    outcome = graded(level, attack)
+    assert (outcome.score or 0) <= ATTACKS[attack].most, outcome.told
+    assert not set(outcome.passed) & set(ATTACKS[attack].lacks), outcome.told
+
+
+@pytest.mark.parametrize("attack", ["has_privileges"])
+@pytest.mark.parametrize("level", list(levels.LEVELS))
+def test_the_result_names_the_level(graded: Graded, level: str, attack: str) -> None:
+    outcome = graded(level, attack)
+    assert outcome.isolation.startswith(levels.LEVELS[level].grader), outcome.told
+
+
+#: What a program achieves that nothing confines: for each, one of the sentences about it.
+UNCONFINED = {
+    "reads_home": "told a secret: home",
+    "writes_home": "changed: ",
+    "neighbours": "told a secret: neighbour",
+    "reads_environment": "told a secret: environment",
+    "process_vm": "another process was changed",
+    "kills_each": "another process was ended or stopped",
+    "reaches_services": "a service was reached: TCP",
+    "types_into_the_terminal": "typed into the terminal",
+    "daemons": "left running",
+    "leaves_files": "changed: /dev/shm",
+}
+
+
+@pytest.fixture(scope="module")
+def unconfined(no_container: str) -> dict[str, list[str]]:
+    """What is seen when these are run by Python alone: sentences, for each attack."""
+    if no_container:
+        pytest.skip(no_container)
+    told = container.run({"level": "unconfined", "attacks": list(UNCONFINED)})
+    return {each["attack"]: each["harm"] for each in told}
+
+
+@pytest.mark.parametrize("attack", UNCONFINED)
+def test_the_canaries_sing_where_nothing_confines_an_attack(unconfined, attack: str) -> None:
+    assert any(each.startswith(UNCONFINED[attack]) for each in unconfined[attack]), unconfined
+
+
+def test_every_submission_is_tried() -> None:
+    there = {path.stem for path in SUBMISSIONS.glob("*.py")} - {"tools"}
+    assert there == {name for name in ATTACKS if (SUBMISSIONS / f"{name}.py").exists()}
+    assert len(ATTACKS) >= 40
