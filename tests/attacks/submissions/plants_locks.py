@@ -5,7 +5,7 @@ import os
 import tempfile
 
 import known
-from tools import achieved, attempt
+from tools import attempt
 
 homes = {os.path.dirname(tempfile.gettempdir().rstrip("/")), "/tmp", known.TEMP}
 homes |= {os.path.dirname(home) for home in set(homes)}
@@ -30,5 +30,3 @@ for home in homes:
                 os.symlink(f"{known.HOME}/notes.txt", path)
             else:
                 os.mkdir(path)
-            if "turtlesim-grader" in path and os.path.exists("/proc/1/cmdline"):
-                achieved("planted a lock", path) if number < 2 else None

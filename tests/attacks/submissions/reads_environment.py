@@ -10,7 +10,7 @@ for name in ("GITHUB_TOKEN", "AWS_SECRET_ACCESS_KEY", "COURSE_TOKEN", "CI_JOB_TO
     libc.getenv.restype = ctypes.c_char_p
     achieved("getenv", libc.getenv(name.encode()))
 for pid in ["self", "thread-self", *processes()]:
-    reads(f"/proc/{pid}/environ", "read an environment")
+    reads(f"/proc/{pid}/environ", "environment")  # what is in it is looked for
 with attempt():  # what is left on the stack, above the environment that Python knows
     with open("/proc/self/maps") as maps, open("/proc/self/mem", "rb", 0) as memory:
         for line in maps:

@@ -1,0 +1,36 @@
+"""docs/threat-model.md says what the attack suite proves, and nothing else."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.attacks.attacks import ATTACKS
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "threat-model.md").read_text(encoding="utf-8")
+LEVELS = ("namespaces", "landlock", "limits")
+
+
+def rows() -> dict[str, tuple[str, ...]]:
+    """The table of attacks: name -> what happens at each level."""
+    found = re.findall(r"^\| `(\w+)` \| .* \| (\w+) \| (\w+) \| (\w+) \|$", PAGE, re.MULTILINE)
+    return {name: tuple(at_levels) for name, *at_levels in found}
+
+
+def test_every_attack_is_in_the_table_and_no_other() -> None:
+    assert list(rows()) == list(ATTACKS)
+
+
+@pytest.mark.parametrize("attack", ATTACKS)
+def test_the_table_says_what_stops_it(attack: str) -> None:
+    stopped_by = ATTACKS[attack].stopped_by
+    expected = tuple("stopped" if level in stopped_by else "survived" for level in LEVELS)
+    assert rows()[attack] == expected
+
+
+def test_every_test_that_is_named_is_there() -> None:
+    for file, test in re.findall(r"`(tests/[\w/]+\.py)::(\w+)`", PAGE):
+        assert f"def {test}(" in (ROOT / file).read_text(encoding="utf-8"), (file, test)
