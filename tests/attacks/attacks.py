@@ -32,6 +32,7 @@ class Attack:
         lacks: checks that it must not pass.
         codes: how the grader may end.
         out: where the results go, in the submission; empty: elsewhere.
+        outcome: how the run has to end, where that tells whether the attack works.
     """
 
     about: str
@@ -42,6 +43,7 @@ class Attack:
     lacks: tuple[str, ...] = ()
     codes: tuple[int, ...] = (0,)
     out: str = ""
+    outcome: str = ""
 
 
 FILES, PROCESSES, NETWORK = "files", "other processes", "network and terminal"
@@ -49,7 +51,7 @@ KERNEL, LIMITS, LINK = "the kernel", "limits", "the link and the clock"
 SIMULATOR, RUBRIC, READING = "the simulator", "the rubric", "reading and reporting"
 TOKENS, LEFTOVERS = "tokens", "what is left behind"
 SPIRAL = """points: {moves: 5, spiral: 30, edge_stop: 25, pen_per_quadrant: 20, picture: 20}
-limits: {first_motion_s: 3, rest_s: 1.5, total_s: 15}
+limits: {first_motion_s: 3, rest_s: 1.5, total_s: 40}
 """
 VARIED = SPIRAL + "varied_runs: {count: 1, seed: 2022, nearest_m: 1.0, farthest_m: 1.5}\n"
 READ = (0, 2)
@@ -110,7 +112,7 @@ ATTACKS = {
     "kills_the_simulator": Attack(SIMULATOR, ALL),
     "writes_by_the_simulator": Attack(SIMULATOR, ALL),
     "floods_the_simulator": Attack(SIMULATOR, ALL),
-    "stops_the_clock": Attack(SIMULATOR, ALL, most=100, lacks=()),
+    "stops_the_clock": Attack(SIMULATOR, ALL, most=100, outcome="finished"),
     "sends_broken_packets": Attack(SIMULATOR, ALL),
     "turns_on_the_spot": Attack(RUBRIC, ALL, exercise=SPIRAL, most=50, lacks=("spiral",)),
     "goes_back_to_the_centre": Attack(
@@ -118,7 +120,7 @@ ATTACKS = {
     ),
     "drives_beyond_all_numbers": Attack(RUBRIC, ALL, exercise=SPIRAL, most=40, lacks=("spiral",)),
     "draws_with_another_turtle": Attack(
-        RUBRIC, ALL, exercise=SPIRAL, most=60, lacks=("picture", "pen_per_quadrant")
+        RUBRIC, ALL, exercise=SPIRAL, most=65, lacks=("picture", "pen_per_quadrant")
     ),
     "does_not_parse": Attack(READING, ALL, handed_in.does_not_parse),
     "is_nested": Attack(READING, ALL, handed_in.is_nested, codes=READ),

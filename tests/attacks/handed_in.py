@@ -92,9 +92,8 @@ def holds_no_files(target: Path) -> Path:
 
 def is_called_by_markup(target: Path) -> Path:
     """Names that terminals, markup and CI systems obey."""
-    target.mkdir()
-    (target / "[/b]").mkdir()
-    path = target / "[/b]" / "\033[31m::error::[red]\u202e.py"
+    (target / "[" / "b]").mkdir(parents=True)
+    path = target / "[" / "b]" / "\033[31m::error::[red]\u202e.py"
     path.write_text("raise RuntimeError('[/b][bold]\\033[2J')\n")
     return path
 

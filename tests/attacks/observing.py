@@ -35,9 +35,10 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
 #: So long a grading may take before it counts as one that never ends, and what it leaves may take
 #: to go [s].
-PATIENCE_S, LINGERS_S = 75.0, 5.0
-#: The memory that one process of a run has at most [bytes], and the processes of a run.
-MOST_MEMORY = 2 << 30
+PATIENCE_S, LINGERS_S = 100.0, 5.0
+#: The memory that all processes of a grading may have at most, what its results may take [bytes],
+#: and how many processes there may be.
+MOST_MEMORY, MOST_RESULTS, MOST_PROCESSES = 1400 << 20, 32 << 20, 700
 START = (
     "import sys; sys.path.insert(0, sys.argv.pop(1)); sys.argv[0] = 'grader'; "
     "from grader.cli import main; sys.exit(main())"
@@ -264,7 +265,7 @@ class _Trial:
             fcntl.ioctl(0, termios.TIOCSCTTY, 0)
             levels.become(self._level)
 
-        most, hung, deadline = 0, False, time.monotonic() + PATIENCE_S
+        most, memory, hung, deadline = 0, 0, False, time.monotonic() + PATIENCE_S
         with subprocess.Popen(
             command,
             stdin=self._slave,
@@ -275,7 +276,9 @@ class _Trial:
             preexec_fn=begin,
         ) as process:
             while process.poll() is None:
-                most = max(most, len(_processes()))
+                others = self._others()
+                most = max(most, len(others))
+                memory = max(memory, sum(map(_memory, others)) if len(others) < 50 else 0)
                 if time.monotonic() > deadline:
                     hung = True
                     process.kill()
@@ -289,6 +292,7 @@ class _Trial:
             "left": left,
             "said": "".join(_text(fd) for fd in streams),
             "most_processes": most,
+            "most_memory": memory,
             **_result(out),
         }
         for fd in streams:
@@ -340,6 +344,11 @@ class _Trial:
                 harm.append(f"achieved: {line.decode(errors='replace')[:160]}")
         if "\033" in graded["said"] or "\x9b" in graded["said"]:
             harm.append("an escape on the grader's own streams")
+        for name, most in (("most_memory", MOST_MEMORY), ("most_processes", MOST_PROCESSES)):
+            if graded[name] > most:
+                harm.append(f"took too much: {name} {graded[name]}")
+        if graded.get("size", 0) > MOST_RESULTS:
+            harm.append(f"results of {graded['size']} bytes: {graded['largest']}")
         harm += self._heard()
         harm += self._changed(before)
         with suppress(BlockingIOError, OSError):
@@ -436,6 +445,14 @@ class _Trial:
 
 def _processes() -> list[int]:
     return [pid for pid in map(int, filter(str.isdigit, os.listdir("/proc"))) if pid != 1]
+
+
+def _memory(pid: int) -> int:
+    """What of its memory is its own alone [bytes]."""
+    with suppress(OSError, IndexError, ValueError):
+        words = Path(f"/proc/{pid}/statm").read_text().split()
+        return (int(words[1]) - int(words[2])) * os.sysconf("SC_PAGE_SIZE")
+    return 0
 
 
 def _reap(pids: list[int]) -> None:

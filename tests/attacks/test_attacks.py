@@ -54,6 +54,8 @@ def test_it_does_no_harm(graded: Graded, level: str, attack: str) -> None:
         harm = tuple(each for each in harm if each.startswith(NEVER))
     assert not harm, outcome.told
     assert outcome.code in ATTACKS[attack].codes, outcome.told
+    if expected := ATTACKS[attack].outcome:
+        assert outcome.told["outcome"] == expected, outcome.told
 
 
 @pytest.mark.parametrize(("level", "attack"), GRADINGS)

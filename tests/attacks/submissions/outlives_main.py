@@ -14,7 +14,7 @@ class Stays:
 
 def go_on(*_):
     while True:
-        rest(0.05)
+        rest(100)
 
 
 stays = Stays()
