@@ -61,11 +61,13 @@ def is_nested(target: Path) -> Path:
 
 def has_a_long_key(target: Path) -> Path:
     """A pyproject.toml whose one key has 20,000 parts."""
-    return _folder_with(target, pyproject_dot_toml="[project]\n" + ".".join(["a"] * 20_000) + " = 1\n")
+    return _folder_with(
+        target, pyproject_dot_toml="[project]\n" + ".".join(["a"] * 20_000) + " = 1\n"
+    )
 
 
 def holds_no_files(target: Path) -> Path:
-    """FIFOs, sockets, links to devices and to itself, folders without end, names that are no text."""
+    """FIFOs, sockets, links to devices and to itself, deep folders, names that are no text."""
     _folder_with(target)
     for place in (target, target / "package"):
         place.mkdir(exist_ok=True)

@@ -134,6 +134,8 @@ def _install_filter(level: Level) -> None:
     program += unless(has_bits, CLONE_NEW_ANY) + answer(fails | EPERM)
     program += answer(passes)
     code = ctypes.create_string_buffer(program, len(program))
-    words = ctypes.create_string_buffer(struct.pack("HxxxxxxP", len(program) // 8, ctypes.addressof(code)))
+    words = ctypes.create_string_buffer(
+        struct.pack("HxxxxxxP", len(program) // 8, ctypes.addressof(code))
+    )
     if _libc().prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, words, 0, 0):
         raise OSError(ctypes.get_errno(), "no filter")

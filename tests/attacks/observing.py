@@ -19,10 +19,9 @@ import socket
 import stat
 import subprocess
 import sys
-import sysconfig
 import termios
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -121,7 +120,9 @@ class _Trial:
             after = self._grade(honest, self._home.class_ / "graded" / "honest")
             if (after["code"], after["score"]) != (0, 100):
                 self._harm.append(f"the next submission: {_short(after)}")
-            self._harm += [f"later: {harm}" for harm in self._changed(before) if harm not in self._harm]
+            self._harm += [
+                f"later: {harm}" for harm in self._changed(before) if harm not in self._harm
+            ]
             self._clear()
         return {"attack": self._name, "harm": sorted(set(self._harm)), **graded}
 
@@ -239,7 +240,11 @@ class _Trial:
     # -- a grading ------------------------------------------------------------------------------
 
     def _environment(self) -> dict[str, str]:
-        kept = ("ROS_", "AMENT_", "PYTHONPATH", "LD_LIBRARY_PATH") if "ROS_DISTRO" in os.environ else ()
+        kept = (
+            ("ROS_", "AMENT_", "PYTHONPATH", "LD_LIBRARY_PATH")
+            if "ROS_DISTRO" in os.environ
+            else ()
+        )
         return {
             **{name: value for name, value in os.environ.items() if name.startswith(kept)},
             **{name: self._secret("environment") for name in TOKENS},
@@ -332,9 +337,12 @@ class _Trial:
         said = graded["said"].encode() + b"".join(
             each.read_bytes() for each in out.rglob("*") if each.is_file() and not each.is_symlink()
         )
-        links = [str(each) for each in out.rglob("*") if each.is_symlink()]
+        # where nothing could be graded the folder is what was handed in
+        links = [str(each) for each in out.rglob("*") if each.is_symlink() and graded["code"] != 2]
         harm += [f"a link among the results: {link}" for link in links]
-        harm += [f"told a secret: {where}" for where, it in self._secrets.items() if it.encode() in said]
+        harm += [
+            f"told a secret: {where}" for where, it in self._secrets.items() if it.encode() in said
+        ]
         with suppress(OSError):
             graded["printed"] = (out / "output.txt").read_text(errors="replace")[:4000]
         lines = (line for line in said.split(b"\n") if line.startswith(b"ACHIEVED "))
@@ -401,18 +409,24 @@ class _Trial:
                 for line in Path(f"/proc/sysvipc/{kind}").read_text().splitlines()[1:]:
                     found[f"{kind} {line.split()[0]}"] = ()
         with suppress(OSError):
-            found.update({f"queue {name}": () for name in os.listdir("/dev/mqueue")})
+            found.update({f"queue {each.name}": () for each in Path("/dev/mqueue").iterdir()})
         return found
 
     def _changed(self, before: dict[str, Any]) -> list[str]:
         after = self._files()
-        changed = {path for path in before.keys() | after.keys() if before.get(path) != after.get(path)}
-        return [f"changed: {path}" for path in sorted(changed) if not self._is_ours(path, after)][:40]
+        changed = {
+            path for path in before.keys() | after.keys() if before.get(path) != after.get(path)
+        }
+        return [f"changed: {path}" for path in sorted(changed) if not self._is_ours(path, after)][
+            :40
+        ]
 
     def _is_ours(self, path: str, after: dict[str, Any]) -> bool:
         """Whether a grading may leave this: results, and empty files for locks."""
         graded = self._home.class_ / "graded"
-        if path == f"{self._home.class_}/honest.py" or path.startswith((f"{graded}/attacker", f"{graded}/honest")):
+        if path == f"{self._home.class_}/honest.py" or path.startswith(
+            (f"{graded}/attacker", f"{graded}/honest")
+        ):
             return True
         if self._attack.out and path.startswith(f"{self._home.class_}/attacker/{self._attack.out}"):
             return True
@@ -444,7 +458,8 @@ class _Trial:
 
 
 def _processes() -> list[int]:
-    return [pid for pid in map(int, filter(str.isdigit, os.listdir("/proc"))) if pid != 1]
+    names = [each.name for each in Path("/proc").iterdir()]
+    return [pid for pid in map(int, filter(str.isdigit, names)) if pid != 1]
 
 
 def _memory(pid: int) -> int:
@@ -464,7 +479,12 @@ def _reap(pids: list[int]) -> None:
 
 def _command_line(pid: int) -> str:
     with suppress(OSError):
-        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")[-120:]
+        return (
+            Path(f"/proc/{pid}/cmdline")
+            .read_bytes()
+            .replace(b"\0", b" ")
+            .decode(errors="replace")[-120:]
+        )
     return "?"
 
 
@@ -490,11 +510,14 @@ def _result(out: Path) -> dict[str, Any]:
             "flags": run["flags"],
             "rationale": [each["rationale"] for each in result["verdicts"]][:1],
             "size": sum(each.stat().st_size for each in out.rglob("*") if each.is_file()),
-            "largest": max((each.stat().st_size, each.name) for each in out.rglob("*") if each.is_file()),
+            "largest": max(
+                (each.stat().st_size, each.name) for each in out.rglob("*") if each.is_file()
+            ),
         }
     except (ValueError, KeyError) as error:
         return {**nothing, "outcome": f"no result: {error!r}"}
 
 
 def _short(graded: dict[str, Any]) -> str:
-    return f"code {graded['code']}, score {graded['score']}, hung {graded['hung']}: {graded['said'][-600:]}"
+    words = [f"{name} {graded[name]}" for name in ("code", "score", "hung")]
+    return f"{', '.join(words)}: {graded['said'][-600:]}"

@@ -7,4 +7,7 @@ for number in range(3, 64):
         os.set_inheritable(number, True)
     except OSError:
         pass
-os.execv("/bin/sh", ["sh", "-c", "for n in 3 4 5 6 7 8 9; do echo '{\"score\": 100}' >&$n; done; sleep 1"])
+os.execv(
+    "/bin/sh",
+    ["sh", "-c", "for n in 3 4 5 6 7 8 9; do echo '{\"score\": 100}' >&$n; done; sleep 1"],
+)

@@ -6,7 +6,9 @@ import sys
 
 from tools import achieved, attempt
 
-sys.meta_path[:] = [each for each in sys.meta_path if "frozen" in repr(each) or "Path" in repr(each)]
+sys.meta_path[:] = [
+    each for each in sys.meta_path if "frozen" in repr(each) or "Path" in repr(each)
+]
 for name in ("grader.exercise.verdict", "grader.grading", "grader.result.result"):
     with attempt():
         module = importlib.import_module(name)

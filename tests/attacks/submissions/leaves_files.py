@@ -6,7 +6,16 @@ import tempfile
 import known
 from tools import attempt, call, creates
 
-for place in (tempfile.gettempdir(), "/tmp", "/var/tmp", "/dev/shm", "/run", known.TEMP, os.getcwd(), "/"):
+for place in (
+    tempfile.gettempdir(),
+    "/tmp",
+    "/var/tmp",
+    "/dev/shm",
+    "/run",
+    known.TEMP,
+    os.getcwd(),
+    "/",
+):
     creates(f"{place}/attack-left", None)
     with attempt():
         os.makedirs(f"{place}/attack-folder/inner")

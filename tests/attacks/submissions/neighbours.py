@@ -17,4 +17,6 @@ for place in (here, os.getcwd(), known.CLASS):
             for name in os.listdir(os.path.join(place, step)):
                 if name in ("neighbour", "neighbour.py", "graded"):
                     achieved("saw a neighbour", name)
-                    reads(os.path.join(place, step, name, "turtle_controller.py"), "read a neighbour")
+                    reads(
+                        os.path.join(place, step, name, "turtle_controller.py"), "read a neighbour"
+                    )

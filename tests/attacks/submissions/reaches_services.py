@@ -1,8 +1,5 @@
 """Talks to services of this machine: on loopback, by unix sockets, by packets of its own making."""
 
-import ctypes
-import struct
-
 import known
 from tools import achieved, attempt, connect, inet, libc, unix
 
@@ -18,7 +15,12 @@ for host in ("127.0.0.1", known.ADDRESS, "255.255.255.255", "239.255.0.1"):
 with attempt():
     connect(INET, 1, inet(80, "10.0.2.2"))
     achieved("reached another machine")
-for path in (known.UNIX, b"\0" + known.ABSTRACT.encode(), "/run/docker.sock", "/run/dbus/system_bus_socket"):
+for path in (
+    known.UNIX,
+    b"\0" + known.ABSTRACT.encode(),
+    "/run/docker.sock",
+    "/run/dbus/system_bus_socket",
+):
     with attempt():
         fd = connect(UNIX, 1, unix(path))
         achieved("reached a unix socket", path)

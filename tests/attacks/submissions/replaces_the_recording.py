@@ -8,7 +8,7 @@ import os
 import pickle
 
 import known
-from tools import attempt, daemon, libc, rest
+from tools import attempt, libc, rest
 
 
 class Code:

@@ -22,5 +22,9 @@ for pid in processes():
 with attempt():
     for number in os.listdir("/proc/self/fd"):
         target = os.readlink(f"/proc/self/fd/{number}")
-        if int(number) > 2 and ("/" in target.split(" ")[0] and not target.startswith(("/proc", "/dev/null", "/dev/random", "/dev/urandom"))):
-            achieved("was left a descriptor", target) if "memfd:lockstep" not in target else None
+        if int(number) > 2 and (
+            "/" in target.split(" ")[0]
+            and not target.startswith(("/proc", "/dev/null", "/dev/random", "/dev/urandom"))
+        ):
+            if "memfd:" not in target:  # the page with the tick is one
+                achieved("was left a descriptor", target)

@@ -138,8 +138,10 @@ def inet(port, host="127.0.0.1"):
 
 def unix(path):
     """The address of a unix socket; an abstract one begins with a zero."""
-    return struct.pack("=H", 1) + (path if isinstance(path, bytes) else path.encode()) + b"\0" * (
-        not path[:1] == b"\0"
+    return (
+        struct.pack("=H", 1)
+        + (path if isinstance(path, bytes) else path.encode())
+        + b"\0" * (not path[:1] == b"\0")
     )
 
 
