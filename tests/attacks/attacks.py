@@ -60,6 +60,9 @@ ATTACKS = {
     "reads_home": Attack(FILES),
     "writes_home": Attack(FILES),
     "neighbours": Attack(FILES),
+    "imports_a_neighbour": Attack(
+        FILES, make=lambda target: handed_in.single("imports_a_neighbour", target, "")
+    ),
     "forges_results": Attack(FILES),
     "changes_its_source": Attack(FILES),
     "changes_the_grader": Attack(FILES),
@@ -97,9 +100,6 @@ ATTACKS = {
     "endless_output": Attack(LIMITS, ALL),
     "reaches_services": Attack(NETWORK, NAMESPACES),
     "types_into_the_terminal": Attack(NETWORK),
-    "prints_escapes": Attack(READING, ALL),
-    "imitates_results": Attack(READING, ALL),
-    "fakes_a_traceback": Attack(READING, ALL),
     "misuses_the_link": Attack(LINK, ALL),
     "asks_and_never_reads": Attack(LINK, ALL),
     "lies_about_time": Attack(LINK, ALL),
@@ -122,6 +122,9 @@ ATTACKS = {
     "draws_with_another_turtle": Attack(
         RUBRIC, ALL, exercise=SPIRAL, most=65, lacks=("picture", "pen_per_quadrant")
     ),
+    "prints_escapes": Attack(READING, ALL),
+    "imitates_results": Attack(READING, ALL),
+    "fakes_a_traceback": Attack(READING, ALL),
     "does_not_parse": Attack(READING, ALL, handed_in.does_not_parse),
     "is_nested": Attack(READING, ALL, handed_in.is_nested, codes=READ),
     "has_a_long_key": Attack(READING, ALL, handed_in.has_a_long_key, codes=READ),
@@ -131,7 +134,17 @@ ATTACKS = {
         READING, ALL, handed_in.has_results_already, codes=READ, out="graded"
     ),
     "is_a_hostile_archive": Attack(READING, ALL, handed_in.is_a_hostile_archive, codes=READ),
-    "imports_a_neighbour": Attack(
-        FILES, make=lambda target: handed_in.single("imports_a_neighbour", target, "")
-    ),
 }
+
+#: With limits only: what achieves its end, of that user's, but the grader has to survive.
+AT_LIMITS = {
+    *("kills_all", "stops_all", "daemons_of_libc", "endless_output", "takes_memory"),
+    *("replaces_the_recording", "plants_locks", "stops_itself", "prints_escapes"),
+}
+
+
+def what_happens(name: str, level: str) -> str:
+    """What becomes of an attack at a level of the grader's: `stopped`, `survived` or `open`."""
+    if level in ATTACKS[name].stopped_by:
+        return "stopped"
+    return "survived" if level != "limits" or name in AT_LIMITS else "open"

@@ -12,7 +12,7 @@ import os
 import pytest
 
 from tests.attacks import container, levels
-from tests.attacks.attacks import ATTACKS, LINK, READING, RUBRIC, SIMULATOR
+from tests.attacks.attacks import AT_LIMITS, ATTACKS, LINK, READING, RUBRIC, SIMULATOR
 from tests.attacks.conftest import Graded
 from tests.attacks.handed_in import SUBMISSIONS
 
@@ -21,11 +21,6 @@ pytestmark = pytest.mark.timeout(900)  # the first waits for all that share its 
 #: What no level changes is tried at one.
 EVERYWHERE_THE_SAME = {READING, RUBRIC, SIMULATOR, LINK}
 ONE = "namespaces-user"
-#: With rlimits only: what the grader itself has to survive.
-AT_LIMITS = {
-    *("kills_all", "stops_all", "daemons_of_libc", "endless_output", "takes_memory"),
-    *("replaces_the_recording", "plants_locks", "stops_itself", "prints_escapes"),
-}
 #: What is wrong wherever it happens, whatever the level lets through.
 NEVER = ("the grader failed", "the grading never ended", "the next submission", "an escape on")
 
