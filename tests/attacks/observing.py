@@ -63,7 +63,7 @@ def observe(job: dict[str, Any], layer: int) -> list[dict[str, Any]]:
     Args:
         job: `level`, a key of `levels.LEVELS`, or "unconfined": then the attacks are run by Python
             alone, and nothing is graded; and `attacks`, a list of keys of `ATTACKS`.
-        layer: where everything is that was written into this machine's files.
+        layer: a folder in which all is that was written: see `container`.
     """
     level = levels.LEVELS.get(job["level"], levels.UNCONFINED)
     told = []
@@ -394,16 +394,18 @@ class _Trial:
     def _files(self) -> dict[str, Any]:
         """Everything that was written in this container, and what lies in shared memory."""
         found: dict[str, Any] = {}
-        for top, fd in (("", self._layer), ("/dev/shm", None)):
-            base = f"/proc/self/fd/{fd}" if fd is not None else top
+        layers = Path(f"/proc/self/fd/{self._layer}")
+        tops = [(layer / "upper", "/" + layer.name.replace("!", "/")) for layer in layers.iterdir()]
+        for base, top in (*tops, (Path("/dev/shm"), "/dev/shm")):
             for folder, folders, files in os.walk(base):
-                place = top + folder[len(base) :]
+                place = top + folder[len(str(base)) :]
                 for name in (*files, *folders):
                     with suppress(OSError):
                         entry = os.lstat(f"{folder}/{name}")
                         kind = stat.S_IFMT(entry.st_mode)
                         same = (entry.st_mtime_ns, entry.st_size) if not stat.S_ISDIR(kind) else ()
                         found[f"{place}/{name}"] = (kind, entry.st_mode, entry.st_uid, *same)
+        found.update({str(each): () for each in Path("/").iterdir()})
         for kind in ("shm", "sem", "msg"):
             with suppress(OSError):
                 for line in Path(f"/proc/sysvipc/{kind}").read_text().splitlines()[1:]:
