@@ -93,7 +93,7 @@ def become(level: Level) -> None:
                 _libc().prctl(PR_CAPBSET_DROP, capability, 0, 0, 0)
         _keep_capabilities(DOCKERS_CAPABILITIES)
     if not level.is_root:
-        if os.getuid() != level.uid:
+        if os.getuid() == 0:
             os.setgroups([])
             os.setresgid(level.uid, level.uid, level.uid)
             os.setresuid(level.uid, level.uid, level.uid)
