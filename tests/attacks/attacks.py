@@ -33,6 +33,9 @@ class Attack:
         codes: how the grader may end.
         out: where the results go, in the submission; empty: elsewhere.
         outcome: how the run has to end, where that tells whether the attack works.
+        program: which of `submissions/`, if not that of the attack's name.
+        time: the clock that it is graded by.
+        beside: an empty module that lies beside it.
     """
 
     about: str
@@ -44,6 +47,9 @@ class Attack:
     codes: tuple[int, ...] = (0,)
     out: str = ""
     outcome: str = ""
+    program: str = ""
+    time: str = "virtual"
+    beside: str = ""
 
 
 FILES, PROCESSES, NETWORK = "files", "other processes", "network and terminal"
@@ -59,6 +65,9 @@ READ = (0, 2)
 ATTACKS = {
     "reads_home": Attack(FILES),
     "writes_home": Attack(FILES),
+    "reads_home_in_real_time": Attack(FILES, program="reads_home", time="real"),
+    # a module of one's own with the name of one that is loaded beforehand: starts from nothing
+    "reads_home_from_nothing": Attack(FILES, program="reads_home", beside="numpy.py"),
     "neighbours": Attack(FILES),
     "imports_a_neighbour": Attack(
         FILES, make=lambda target: handed_in.single("imports_a_neighbour", target, "")
@@ -86,6 +95,8 @@ ATTACKS = {
     "enters_namespaces": Attack(KERNEL),
     "asks_the_kernel": Attack(KERNEL),
     "has_privileges": Attack(KERNEL),
+    "has_privileges_in_real_time": Attack(KERNEL, program="has_privileges", time="real"),
+    "has_privileges_from_nothing": Attack(KERNEL, program="has_privileges", beside="numpy.py"),
     "plants_locks": Attack(LEFTOVERS),
     "replaces_the_folder_of_locks": Attack(LEFTOVERS),
     "keeps_locks": Attack(LEFTOVERS),
@@ -140,6 +151,14 @@ ATTACKS = {
 AT_LIMITS = {
     *("kills_all", "stops_all", "daemons_of_libc", "endless_output", "takes_memory"),
     *("replaces_the_recording", "plants_locks", "stops_itself", "prints_escapes"),
+}
+#: As root: what root could do more than others, and one of each kind.
+AS_ROOT = {
+    *("reads_home", "writes_home", "changes_the_grader", "opens_devices", "forges_results"),
+    *("writes_memory", "takes_descriptors", "replaces_the_recording", "kills_all", "stops_all"),
+    *("unmounts", "mounts", "enters_namespaces", "has_privileges", "plants_locks"),
+    *("has_privileges_in_real_time", "has_privileges_from_nothing", "reads_home_from_nothing"),
+    *("daemons_of_libc", "types_into_the_terminal", "many_processes", "reads_environment"),
 }
 
 

@@ -14,7 +14,7 @@ import pytest
 from tests.attacks import container, levels, observing
 
 #: So many attacks share a container.
-TOGETHER = 4
+TOGETHER = 6
 
 
 @dataclass(frozen=True)

@@ -168,7 +168,7 @@ def _enter(folder: Path, needed: Sequence[Path]) -> int:
 
 
 def _show(place: Path, root: Path, layers: Path, needed: Sequence[Path]) -> None:
-    """Have one of the folders of / as it is; one with other mounts in it may be refused to a user."""
+    """Have a folder of / as it is; one with other mounts in it may be refused to a user."""
     try:
         _overlay(place, root / place.name, layers / place.name)
     except OSError:

@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.attacks import bystander, handed_in, levels
-from tests.attacks.attacks import ATTACKS, MOVES
+from tests.attacks.attacks import ATTACKS, LEFTOVERS, MOVES
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
@@ -58,7 +58,9 @@ for _ in range(20):
 
 
 def observe(job: dict[str, Any], layer: int) -> list[dict[str, Any]]:
-    """Grade attacks one after the other, and an honest submission after each.
+    """Grade attacks one after the other, and an honest submission at the end.
+
+    What is about that which is left behind is followed by an honest one at once.
 
     Args:
         job: `level`, a key of `levels.LEVELS`, or "unconfined": then the attacks are run by Python
@@ -68,7 +70,8 @@ def observe(job: dict[str, Any], layer: int) -> list[dict[str, Any]]:
     level = levels.LEVELS.get(job["level"], levels.UNCONFINED)
     told = []
     for name in job["attacks"]:
-        told.append(_Trial(level, name, layer).run())
+        is_followed = name == job["attacks"][-1] or ATTACKS[name].about == LEFTOVERS
+        told.append(_Trial(level, name, layer).run(is_followed=is_followed))
     return told
 
 
@@ -99,8 +102,8 @@ class _Trial:
         self._secrets: dict[str, str] = {}
         self._harm: list[str] = []
 
-    def run(self) -> dict[str, Any]:
-        """Grade it, and an honest one after it."""
+    def run(self, *, is_followed: bool) -> dict[str, Any]:
+        """Grade it, and perhaps an honest one after it."""
         with ExitStack() as held:
             self._set_out(held)
             submission = self._hand_in()
@@ -111,20 +114,22 @@ class _Trial:
             )
             graded = self._grade(submission, out)
             self._look(before, out, graded)
-            if self._level == levels.UNCONFINED:
-                self._clear()
-                return {"attack": self._name, "harm": sorted(set(self._harm))}
-            honest = self._home.class_ / "honest.py"
-            honest.write_text(HONEST)
-            self._give_to_user(honest)
-            after = self._grade(honest, self._home.class_ / "graded" / "honest")
-            if (after["code"], after["score"]) != (0, 100):
-                self._harm.append(f"the next submission: {_short(after)}")
-            self._harm += [
-                f"later: {harm}" for harm in self._changed(before) if harm not in self._harm
-            ]
+            if is_followed and self._level != levels.UNCONFINED:
+                self._harm += self._grade_another(before)
             self._clear()
         return {"attack": self._name, "harm": sorted(set(self._harm)), **graded}
+
+    def _grade_another(self, before: dict[str, Any]) -> Iterator[str]:
+        """An honest submission; what it suffers from the one before."""
+        honest = self._home.class_ / "honest.py"
+        honest.write_text(HONEST)
+        self._give_to_user(honest)
+        graded = self._grade(honest, self._home.class_ / "graded" / "honest")
+        if (graded["code"], graded["score"]) != (0, 100):
+            yield f"the next submission: {_short(graded)}"
+        for harm in self._changed(before):
+            if harm not in self._harm:
+                yield f"later: {harm}"
 
     # -- what is there --------------------------------------------------------------------------
 
@@ -235,7 +240,10 @@ class _Trial:
             "TERMINAL": self._terminal,
         }
         text = "".join(f"{name} = {value!r}\n" for name, value in known.items())
-        return handed_in.folder(self._name, target, text)
+        submission = handed_in.folder(self._attack.program or self._name, target, text)
+        if self._attack.beside:
+            (submission / self._attack.beside).touch()
+        return submission
 
     # -- a grading ------------------------------------------------------------------------------
 
@@ -258,8 +266,10 @@ class _Trial:
     def _grade(self, submission: Path, out: Path) -> dict[str, Any]:
         """Run the real command line, as the user, on a terminal of its own."""
         streams = [os.memfd_create(name) for name in ("stdout", "stderr")]
-        exercise = "honest.yaml" if submission.name == "honest.py" else "exercise.yaml"
+        is_honest = submission.name == "honest.py"
+        exercise = "honest.yaml" if is_honest else "exercise.yaml"
         words = ["run", str(submission), "--exercise", exercise, "--out", str(out)]
+        words += [] if is_honest else ["--time", self._attack.time]
 
         command = [sys.executable, "-P", "-c", START, str(self._home.tree), *words]
         if self._level == levels.UNCONFINED:

@@ -12,7 +12,7 @@ import os
 import pytest
 
 from tests.attacks import container, levels
-from tests.attacks.attacks import AT_LIMITS, ATTACKS, LINK, READING, RUBRIC, SIMULATOR
+from tests.attacks.attacks import AS_ROOT, AT_LIMITS, ATTACKS, LINK, READING, RUBRIC, SIMULATOR
 from tests.attacks.conftest import Graded
 from tests.attacks.handed_in import SUBMISSIONS
 
@@ -31,6 +31,8 @@ def chosen() -> list[tuple[str, str]]:
     for level in levels.LEVELS:
         for name, attack in ATTACKS.items():
             is_told = attack.about not in EVERYWHERE_THE_SAME or level == ONE
+            if levels.LEVELS[level].is_root:
+                is_told = name in AS_ROOT
             if level == "limits-user":
                 is_told = name in AT_LIMITS
             if is_told or os.environ.get("TURTLESIM_ATTACKS") == "all":
@@ -98,5 +100,6 @@ def test_the_canaries_sing_where_nothing_confines_an_attack(unconfined, attack: 
 
 def test_every_submission_is_tried() -> None:
     there = {path.stem for path in SUBMISSIONS.glob("*.py")} - {"tools"}
-    assert there == {name for name in ATTACKS if (SUBMISSIONS / f"{name}.py").exists()}
+    tried = {attack.program or name for name, attack in ATTACKS.items()}
+    assert there <= tried, there - tried
     assert len(ATTACKS) >= 40
