@@ -147,10 +147,12 @@ ATTACKS = {
     "is_a_hostile_archive": Attack(READING, ALL, handed_in.is_a_hostile_archive, codes=READ),
 }
 
-#: With limits only: what achieves its end, of that user's, but the grader has to survive.
+#: With limits only: what may get what it is after, but leaves the grader and the next one alone.
+SURVIVED_AT_LIMITS = {"daemons", "daemons_of_libc"}
+#: ... and what is tried there at all: the rest is open, or the same at every level.
 AT_LIMITS = {
-    *("kills_all", "stops_all", "daemons_of_libc", "endless_output", "takes_memory"),
-    *("replaces_the_recording", "plants_locks", "stops_itself", "prints_escapes"),
+    *SURVIVED_AT_LIMITS,
+    *("outlives_main", "endless_output", "takes_memory", "stops_itself", "prints_escapes"),
 }
 #: As root: what root could do more than others, and one of each kind.
 AS_ROOT = {
@@ -166,4 +168,4 @@ def what_happens(name: str, level: str) -> str:
     """What becomes of an attack at a level of the grader's: `stopped`, `survived` or `open`."""
     if level in ATTACKS[name].stopped_by:
         return "stopped"
-    return "survived" if level != "limits" or name in AT_LIMITS else "open"
+    return "survived" if level != "limits" or name in SURVIVED_AT_LIMITS else "open"

@@ -302,7 +302,7 @@ class _Trial:
                     process.wait(0.05)
         left = self._left()
         graded: dict[str, Any] = {
-            "code": process.returncode,
+            "code": None if hung else process.returncode,
             "hung": hung,
             "left": left,
             "said": "".join(_text(fd) for fd in streams),
