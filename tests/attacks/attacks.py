@@ -14,8 +14,11 @@ from tests.attacks import handed_in
 ALL = ("namespaces", "landlock", "limits")
 SANDBOX = ("namespaces", "landlock")
 NAMESPACES = ("namespaces",)
-#: Points and limits of a short grading, in which moving is all that is asked for.
-MOVES = "points: {moves: 100}\nlimits: {first_motion_s: 3, rest_s: 0.5, total_s: 10}\n"
+#: Points and limits of a short grading of one run, in which moving is all that is asked for.
+MOVES = """points: {moves: 100}
+limits: {first_motion_s: 3, rest_s: 0.5, total_s: 10}
+varied_runs: {count: 0}
+"""
 
 
 @dataclass(frozen=True)
@@ -56,10 +59,11 @@ FILES, PROCESSES, NETWORK = "files", "other processes", "network and terminal"
 KERNEL, LIMITS, LINK = "the kernel", "limits", "the link and the clock"
 SIMULATOR, RUBRIC, READING = "the simulator", "the rubric", "reading and reporting"
 TOKENS, LEFTOVERS = "tokens", "what is left behind"
-SPIRAL = """points: {moves: 5, spiral: 30, edge_stop: 25, pen_per_quadrant: 20, picture: 20}
+_SPIRAL = """points: {moves: 5, spiral: 30, edge_stop: 25, pen_per_quadrant: 20, picture: 20}
 limits: {first_motion_s: 3, rest_s: 1.5, total_s: 40}
 """
-VARIED = SPIRAL + "varied_runs: {count: 1, seed: 2022, nearest_m: 1.0, farthest_m: 1.5}\n"
+SPIRAL = _SPIRAL + "varied_runs: {count: 0}\n"
+VARIED = _SPIRAL + "varied_runs: {count: 1, seed: 2022, nearest_m: 1.0, farthest_m: 1.5}\n"
 READ = (0, 2)
 
 ATTACKS = {

@@ -37,7 +37,7 @@ PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
 PATIENCE_S, LINGERS_S = 100.0, 5.0
 #: The memory that all processes of a grading may have at most, what its results may take [bytes],
 #: and how many processes there may be.
-MOST_MEMORY, MOST_RESULTS, MOST_PROCESSES = 1400 << 20, 32 << 20, 700
+MOST_MEMORY, MOST_RESULTS, MOST_PROCESSES = 1400 << 20, 32 << 20, 400
 START = (
     "import sys; sys.path.insert(0, sys.argv.pop(1)); sys.argv[0] = 'grader'; "
     "from grader.cli import main; sys.exit(main())"
