@@ -15,6 +15,8 @@ from tests.attacks import container, levels, observing
 
 #: So many attacks share a container.
 TOGETHER = 6
+#: So many containers at once: a grading waits now and then.
+AT_ONCE = 1 + (os.cpu_count() or 1)
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ def graded(request: pytest.FixtureRequest, no_container: str) -> Iterator[Graded
         if {"level", "attack"} <= words.keys():
             asked.setdefault(words["level"], []).append(words["attack"])
     groups: dict[tuple[str, str], Future[list[dict[str, Any]]]] = {}
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(AT_ONCE) as pool:
 
         def begin(level: str, attacks: list[str]) -> None:
             job = {"level": level, "attacks": attacks}
