@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from typing import Any
 
 _ESCAPE_SEQUENCES = re.compile(
@@ -13,9 +14,7 @@ _ESCAPE_SEQUENCES = re.compile(
 _LINE_BREAKS = re.compile(r"\r\n?|[\u2028\u2029]")
 #: Control characters (XML 1.0 has none of them), breaks of a line or paragraph, halves of
 #: characters, non-characters, and the marks that turn the direction of the text behind them.
-_CONTROLS = re.compile(
-    r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069]"
-)
+_CONTROLS = r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069]"
 _REPLACEMENT = "\ufffd"
 
 #: What the runners of GitHub and Azure obey in what a step prints, in any case of letters: words at
@@ -31,7 +30,12 @@ def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str
     Args:
         keep: those of them that may stay.
     """
-    return _CONTROLS.sub(lambda match: match[0] if match[0] in keep else sign, text)
+    return _controls_but(keep).sub(lambda _: sign, text)
+
+
+@cache
+def _controls_but(keep: str) -> re.Pattern[str]:
+    return re.compile(f"(?![{re.escape(keep)}]){_CONTROLS}") if keep else re.compile(_CONTROLS)
 
 
 def plain(text: str) -> str:
@@ -48,18 +52,23 @@ def for_terminal(text: str) -> str:
     return _COMMANDS_WRAPPED.sub(lambda match: " ".join(match[0]), plain(text))
 
 
-def plain_all(value: Any) -> Any:
-    """The same value, JSON or a dataclass, with each of its texts made plain."""
+def plain_all(value: Any, limit: int = 1_000_000) -> Any:
+    """The same value, JSON or a dataclass, with each of its texts made plain.
+
+    Args:
+        limit: what a text has above this many characters is not even looked at.
+    """
     if isinstance(value, str):
-        return plain(value)
+        return plain(clip(value, limit))
     if isinstance(value, dict):
-        return {plain(key): plain_all(item) for key, item in value.items()}
+        return {plain(clip(key, limit)): plain_all(item, limit) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return type(value)(plain_all(item) for item in value)
+        return type(value)(plain_all(item, limit) for item in value)
     if is_dataclass(value) and not isinstance(value, type):
-        return replace(
-            value, **{field.name: plain_all(getattr(value, field.name)) for field in fields(value)}
-        )
+        texts = {
+            field.name: plain_all(getattr(value, field.name), limit) for field in fields(value)
+        }
+        return replace(value, **texts)
     return value
 
 

@@ -22,6 +22,7 @@ from grader.scenes.scene import Scene
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
 _TEXT_LIMIT = 2000
+_LOOKED_AT = 10 * _TEXT_LIMIT  # of a text as it comes, with what is not shown of it
 _POINTS_LIMIT = 20
 _FLAGS_LIMIT = 50
 
@@ -66,10 +67,10 @@ class Report:
     """
 
     def __init__(self, result: Result, beside: Beside) -> None:
-        shown: Result = text.plain_all(result)
+        shown: Result = text.plain_all(result, _LOOKED_AT)
         self.beside = beside
-        self.exercise = text.one_line(shown.exercise) or "(no name)"
-        self.submission = text.one_line(shown.submission) or "(no name)"
+        self.exercise = text.clip(text.one_line(shown.exercise), _TEXT_LIMIT) or "(no name)"
+        self.submission = text.clip(text.one_line(shown.submission), _TEXT_LIMIT) or "(no name)"
         self.score = float(shown.score)
         self.max_score = float(shown.max_score)
         self.run = _few_flags(shown.run)
