@@ -145,11 +145,11 @@ def kill_when(monkeypatch: pytest.MonkeyPatch, has_met: bool, times: int) -> Non
         said = started.next
 
         def kill_then_hear(patience_s: float) -> Any:
-            message = said(patience_s)
-            if left[0] and (message is not None and message["say"] == "met") >= has_met:
+            message = said(patience_s) if has_met else None
+            if left[0] and (message is not None and message["say"] == "met") == has_met:
                 left[0] -= 1
                 os.kill(started.pid, signal.SIGKILL)
-            return message
+            return message if has_met else said(patience_s)
 
         monkeypatch.setattr(started, "next", kill_then_hear)
         return watch(started, pid)

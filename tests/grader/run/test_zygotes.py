@@ -17,7 +17,7 @@ from grader.errors import GraderFailure
 from grader.recording.recording import Recording
 from grader.run import virtual_time, zygotes
 from grader.run.plan import Plan
-from grader.run.processes import ZYGOTE, isolation
+from grader.run.processes import ZYGOTE, isolation, levels
 from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
 
@@ -27,7 +27,7 @@ PLAN = Plan(Limits(first_motion_s=0.5, rest_s=0.2, total_s=5))
 PORTRAIT = """
 import os, random, re, resource, signal, sys, tempfile, threading, time, uuid, warnings
 import rclpy
-home = os.path.dirname(os.environ["TMPDIR"])
+home = os.path.dirname(os.environ["TMPDIR"]).rstrip("/") or "nowhere"
 def shown(*things):
     text = " ".join(str(thing).replace(home, "HOME") for thing in things)
     print(re.sub("0x[0-9a-f]+|[0-9a-f]{32}|started [0-9]+", "X", text))
@@ -114,6 +114,7 @@ def test_a_forked_submission_finds_all_that_a_started_one_does(
         "ROS domain": {isolation._as_root, isolation._as_user},
     }
     monkeypatch.setattr(isolation, "_refused", refused[level])
+    monkeypatch.setattr(levels, "_found", {})
     monkeypatch.setattr(isolation.domain, "DOMAINS", (77,))
     before = forks()
     forked = graded(PORTRAIT, tmp_path)
@@ -202,8 +203,10 @@ def test_a_zygote_that_dies_costs_a_start_and_nothing_else(
 
 @pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
 def test_a_zygote_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
-    tmp_path: Path, fresh: None, side: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None, side: str
 ) -> None:
+    # what is confined better does not reach the pipe
+    monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
     pipe = tmp_path / "up"
     os.mkfifo(pipe)
     # in virtual time it wakes up when the simulator is there

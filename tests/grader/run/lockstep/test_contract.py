@@ -108,15 +108,18 @@ def changed_rclpy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[
 
 @pytest.mark.parametrize("side", ["simulator.virtual", "virtual_main.py"])
 def test_a_broken_contract_on_either_side_is_a_run_in_real_time_that_says_so(
-    changed_rclpy: Callable[[str, str], None], side: str
+    changed_rclpy: Callable[[str, str], None], side: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from grader.run import virtual_time
     from grader.run.plan import Plan
+    from grader.run.processes import levels
     from grader.scenes.scene import Limits
     from grader.submission.opening import open_submission
 
     submissions = Path(__file__).parents[3] / "submissions"
     changed_rclpy(side, "ClockType.STEADY_TIME")
+    # a submission that is confined does not see the folder with the change
+    monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
     with open_submission(submissions / "misbehaving/exits.py") as submission:
         recording = virtual_time.run(submission, Plan(Limits(1, 0.2, 5)))
     assert recording.run.time == "real"
