@@ -35,7 +35,7 @@ PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
 #: So long a grading may take before it counts as one that never ends, and what it leaves may take
 #: to go [s].
 PATIENCE_S, LINGERS_S = 100.0, 5.0
-#: The memory that all processes of a grading may have at most, what its results may take [bytes],
+#: The memory that a process of a grading may have at most, what its results may take [bytes],
 #: and how many processes there may be.
 MOST_MEMORY, MOST_RESULTS, MOST_PROCESSES = 1400 << 20, 32 << 20, 400
 START = (
@@ -293,7 +293,7 @@ class _Trial:
             while process.poll() is None:
                 others = self._others()
                 most = max(most, len(others))
-                memory = max(memory, sum(map(_memory, others)) if len(others) < 50 else 0)
+                memory = max(memory, *map(_memory, others), 0)
                 if time.monotonic() > deadline:
                     hung = True
                     process.kill()
