@@ -18,6 +18,7 @@ SIGNALS = {
 }
 _MEMORY = f"one process may ask for {size(LIMITS.data_bytes)} of memory"
 _TASKS = f"a run may have {LIMITS.tasks} processes and threads"
+_READ_ONLY = "a run may write into tempfile.gettempdir() and ~ only; its own folder is read-only"
 #: How the line begins with which a program ends that was refused something -> what the limit is.
 LAST_LINES = {
     "MemoryError": _MEMORY,
@@ -26,6 +27,9 @@ LAST_LINES = {
     "what():  std::bad_alloc": _MEMORY,
     "OSError: [Errno 12]": _MEMORY,
     "OSError: [Errno 24]": f"a process may have {LIMITS.open_files} open files",
+    "OSError: [Errno 30]": _READ_ONLY,
+    "PermissionError: [Errno 13]": _READ_ONLY,
+    "sqlite3.OperationalError: unable to open database file": _READ_ONLY,
     "OSError: [Errno 27]": f"a file may have {size(LIMITS.file_bytes)}",
     "OSError: [Errno 28]": "the folder for temporary files is full: there is little room in it",
     "RuntimeError: can't start new thread": _TASKS,

@@ -37,12 +37,17 @@ with suppress(ImportError):  # Windows, which has no virtual time
 LOOK_MS = 250
 CPU_LOOK_S = 1.0
 MOST_FLAGS = 20
+#: What is no longer than this is not looked at [s].
+SHORT_S = 0.02
+#: Another thread's second of processor time may have been so many in the queue, on a busy machine.
+MOST_QUEUING = 20.0
 #: More packets than a mailbox holds; who fills it while it is emptied has to wait.
 MOST_MAIL = 2_000
 #: The longest packet that is taken from a submission's process.
 LIMIT_BYTES = 8_000_000
 #: The kernel's letters for what a process does; see `usage`.
 WANTS_PROCESSOR, HAS_ENDED = "R", ("", "Z", "X")
+ELSEWHERE = "the submission waits for something outside of Python's and ROS's own waiting"
 NONSENSE = "its process sent what ours never sends"
 
 
@@ -99,7 +104,7 @@ class StudentLink:
         self._patience = patience
         self._look_at_s = time.monotonic() + CPU_LOOK_S
         self._stall_cpu_s = patience.start_cpu_s
-        self._asleep_s = 0.0
+        self._asleep_s = self._seen_cpu_s = 0.0
         self._cpu_before_s = time.process_time()
         self._progress = os.memfd_create("progress", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
         os.ftruncate(self._progress, mmap.PAGESIZE)
@@ -225,30 +230,40 @@ class StudentLink:
 
     def _wait(self, poll: select.poll) -> bool:
         """Wait until the link can be read, or written; False if it never will."""
+        began = time.monotonic()
         if poll.poll(LOOK_MS):
+            if time.monotonic() - began > SHORT_S:
+                self._count_sleep(usage.look(self._pid), began)
             return not self._is_slow()
         used_s = last_used_s = usage.look(self._pid).cpu_s
-        asleep_since = now = time.monotonic()
+        asleep_since = before = now = time.monotonic()
         patience = self._patience
         while not poll.poll(LOOK_MS):
             seen, now = usage.look(self._pid), time.monotonic()
+            self._count_sleep(seen, before)
+            before = now
             if seen.cpu_s - used_s > self._stall_cpu_s:
                 self.silence = "stalled"
                 return False
             if seen.cpu_s > last_used_s or seen.state == WANTS_PROCESSOR:
                 last_used_s, asleep_since = seen.cpu_s, now
-            if now - asleep_since > min(patience.asleep_s, patience.all_asleep_s - self._asleep_s):
+            is_too_long = now - asleep_since > patience.asleep_s
+            if is_too_long or self._asleep_s > patience.all_asleep_s:
                 if seen.is_stopped:
                     self.silence = "stopped"
                     return False
                 if seen.state in HAS_ENDED:  # a descendant holds the link
                     self.silence = "gone"
                     return False
-                raise Refused(
-                    "the submission waits for something outside of Python's and ROS's own waiting"
-                )
-        self._asleep_s += now - asleep_since
-        return True
+                raise Refused(ELSEWHERE)
+        return not self._is_slow()
+
+    def _count_sleep(self, seen: usage.Usage, since_s: float) -> None:
+        """Add up for how long it wanted no processor, however often it woke for a moment."""
+        used_s, self._seen_cpu_s = seen.cpu_s - self._seen_cpu_s, seen.cpu_s
+        if seen.state != WANTS_PROCESSOR:
+            waited_s = time.monotonic() - since_s
+            self._asleep_s += max(0.0, waited_s - MOST_QUEUING * used_s)
 
     def _is_slow(self) -> bool:
         """Whether the run has used up its processor time; looked at now and then."""
@@ -257,6 +272,8 @@ class StudentLink:
             self._look_at_s = now + CPU_LOOK_S
             if usage.look(self._pid).cpu_s > self._patience.run_cpu_s:
                 self.silence = "slow"
+            elif self._asleep_s > self._patience.all_asleep_s:
+                raise Refused(ELSEWHERE)
             elif time.process_time() - self._cpu_before_s > self._patience.simulator_cpu_s:
                 self.silence = "flooding"
         return bool(self.silence)

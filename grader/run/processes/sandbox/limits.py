@@ -32,7 +32,8 @@ class Limits(NamedTuple):
             tables of pages that it only reads, which nothing else limits. malloc reserves 64 MiB
             of these for each thread.
         tasks: processes and threads at once, of the user in this user namespace.
-        open_files: descriptors of one process.
+        open_files: descriptors of one process. Linux counts those that lie in sockets for each
+            user, and refuses more than who sends them may have open: far fewer than the grader's.
         file_bytes: the length of one file [bytes]; a write past it fails, with SIGXFSZ for who does
             not ignore that, as Python does.
         stack_bytes: of the first thread, and of each other that asks for no size [bytes].
@@ -47,7 +48,7 @@ class Limits(NamedTuple):
     data_bytes: int = 2 * GIB
     address_bytes: int = 16 * GIB
     tasks: int = 256
-    open_files: int = 1024
+    open_files: int = 256
     file_bytes: int = 64 * MIB
     stack_bytes: int = 8 * MIB
     most_stack_bytes: int = 64 * MIB

@@ -145,6 +145,19 @@ def test_a_process_that_somebody_has_stopped_is_not_waited_for(
     assert heard.silence == "stopped"
 
 
+NAPS = "import time\nwhile True:\n time.sleep(0.3)\n for _ in range(100_000): pass"
+
+
+def test_sleeping_is_added_up_however_often_it_is_interrupted(
+    ends: tuple[socket.socket, socket.socket],
+) -> None:
+    with subprocess.Popen([sys.executable, "-c", NAPS]) as process:
+        patience = Patience(start_cpu_s=1000.0, all_asleep_s=1.0)
+        with pytest.raises(Refused):
+            StudentLink(ends[0], process.pid, patience).receive()
+        process.kill()
+
+
 def test_sleeping_outside_of_virtual_time_is_refused(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
