@@ -60,7 +60,9 @@ def measure(
             submission = folder / "submission"
             submission.mkdir()
             begin = time.perf_counter()
-            place = levels.prepare(level, submission, folder, is_apart=bool(isolated.namespaces))
+            place = levels.prepare(
+                level, submission, submission, folder, is_apart=bool(isolated.namespaces)
+            )
             student = start_student(
                 *(COMMAND, {**env, **place.env}, submission, (), isolated.entry),
                 None if warm is None else Warm(warm, isolated.namespaces),

@@ -28,7 +28,9 @@ def main(wanted: str, folder: str, *words: str) -> None:
             return
         (stage / "tmp").mkdir()
         env = {"PATH": os.environ["PATH"], "TMPDIR": str(stage / "tmp"), "GRADER": str(os.getpid())}
-        place = levels.prepare(level, Path(folder), stage, is_apart=bool(isolated.namespaces))
+        place = levels.prepare(
+            level, Path(folder), Path(folder), stage, is_apart=bool(isolated.namespaces)
+        )
         command = [sys.executable, "-I", "-S", *words]
         student = start_student(
             *(command, {**env, **place.env}, Path(folder), (), isolated.entry, None, place.order)

@@ -18,7 +18,7 @@ SIGNALS = {
 }
 _MEMORY = f"one process may ask for {size(LIMITS.data_bytes)} of memory"
 _TASKS = f"a run may have {LIMITS.tasks} processes and threads"
-_READ_ONLY = "a run may write into tempfile.gettempdir() and ~ only; its own folder is read-only"
+_READ_ONLY = "a run may write into its own folder, tempfile.gettempdir() and ~, and nowhere else"
 #: How the line begins with which a program ends that was refused something -> what the limit is.
 LAST_LINES = {
     "MemoryError": _MEMORY,

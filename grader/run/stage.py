@@ -81,7 +81,8 @@ class Stage:
         warm: Warm | None = None,
     ) -> Watched:
         root, is_apart = submission.root, bool(self.namespaces)
-        place = levels.prepare(self.level, root, self.folder, is_apart=is_apart)
+        own = submission.copy.folder if submission.copy else root
+        place = levels.prepare(self.level, root, own, self.folder, is_apart=is_apart)
         env = {**self.env, **env, **place.env}
         return start_student(command, env, root, pass_fds, self.entry, warm, place.order)
 

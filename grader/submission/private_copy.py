@@ -1,8 +1,9 @@
 """A copy of what was handed in, for its runs alone: they see nothing that lies beside it.
 
 A submission's process that ran in the place where it was handed in could read its neighbours, and
-write into them and into its own source. What it gets instead is a copy that it may only read, and
-that goes with the grading. People are shown paths as they were handed in.
+write into them and into its own source. What it gets instead is a copy, made once for a grading and
+once more for each run (`PrivateCopy.again`), in which it may do as it likes: nobody else sees it.
+People are shown paths as they were handed in.
 
 Of a folder come all files but what a system or a program has left there, as out of a zip. Links
 that stay inside remain links; what is no file, no folder and no such link is left out.
@@ -14,10 +15,11 @@ import errno
 import importlib.util
 import os
 import re
+import shutil
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from sys import stdlib_module_names
 from typing import Final
@@ -75,6 +77,17 @@ class PrivateCopy:
         if path.is_relative_to(self.folder):
             return path
         return self.folder / path.relative_to(self.origin)
+
+    def again(self, place: Path) -> PrivateCopy:
+        """One more below an empty folder, for one run, which may write into it."""
+        is_all = self.prefix == str(self.folder)
+        folder = place / self.folder.name
+        shutil.copytree(self.folder, folder, symlinks=True)
+        for at, _, files in os.walk(folder):
+            for path in (Path(at), *(Path(at, name) for name in files)):
+                if not path.is_symlink():
+                    path.chmod(path.stat().st_mode | stat.S_IWUSR)
+        return replace(self, folder=folder, prefix=str(folder if is_all else place))
 
     def as_handed_in(self, text: str) -> str:
         """What a run has printed, with the paths that it would have printed in the first place."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from grader.submission.private_copy import PrivateCopy
@@ -59,6 +59,16 @@ class Submission:
     def remarks(self) -> tuple[str, ...]:
         """For the result: what of it was left out."""
         return self.copy.remarks if self.copy else ()
+
+    def again(self, place: Path) -> Submission:
+        """The same for one run, which may write into it: copied below an empty folder."""
+        if self.copy is None:
+            return self
+        copy, start = self.copy.again(place), self.start
+        if isinstance(start, Script):
+            start = replace(start, path=copy.folder / start.path.relative_to(self.copy.folder))
+        root = copy.folder / self.root.relative_to(self.copy.folder)
+        return replace(self, root=root, start=start, copy=copy)
 
     def as_handed_in(self, text: str) -> str:
         """What a run of it has printed, with paths as if it had run where it was handed in."""

@@ -106,11 +106,12 @@ class Place:
     env: Mapping[str, str]
 
 
-def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> Place:
+def prepare(level: Level, root: Path, own: Path, folder: Path, *, is_apart: bool) -> Place:
     """What confines a submission's process in a run.
 
     Args:
-        submission: its root, without symbolic links.
+        root: where it starts.
+        own: all of the submission, without symbolic links: what it may write into.
         folder: that of the run; `tmp` is in it.
         is_apart: whether the run has a network of its own.
     """
@@ -119,18 +120,23 @@ def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> 
     uid, user, written = random.choice(USERS), level.user, "/tmp"
     if level.level != NAMESPACES:
         written = str(folder / "tmp")
-    if user == OWN and not _is_readable(submission, anywhere=level.level == NAMESPACES):
+    if user == OWN and not _is_readable(own, anywhere=level.level == NAMESPACES):
         user = NAMESPACE if level.level == NAMESPACES else SAME
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
     if level.level == NAMESPACES:
-        order |= {"steps": view.steps(submission, uid), "folder": str(submission)}
+        owner = uid if user == OWN else -1
+        order |= {"steps": view.steps(own, uid, owner), "folder": str(root)}
     elif level.level == LANDLOCK:
         settings = [str(path) for path in folder.glob("*.xml")]
-        read, listed = view.readable(submission)
-        order |= {"read": [*read, *settings], "listed": listed, "write": [written, *DEVICES]}
+        read, listed = view.readable(own)
+        write = [written, str(own), *DEVICES]
+        order |= {"read": [*read, *settings], "listed": listed, "write": write}
         if user == OWN:
             _open_ways(folder / "tmp")
             os.chown(written, uid, uid)
+            for place, folders, files in os.walk(own):
+                for name in (".", *folders, *files):
+                    os.chown(Path(place, name), uid, uid, follow_symlinks=False)
     if level.level == LIMITS:
         return Place(order, {})
     env = {"TMPDIR": written, "HOME": written, "ROS_LOG_DIR": f"{written}/log"}
@@ -237,10 +243,11 @@ def _try(level: Level, isolated: Isolation) -> str:
     if level.level == NAMESPACES and not is_apart:
         return "namespaces of users and networks are refused"
     with scratch.make_folder() as folder:
+        tried = folder / "tried"
         (folder / "tmp").mkdir()
-        (folder / "tried").mkdir()
+        tried.mkdir()
         try:
-            place = prepare(level, folder / "tried", folder, is_apart=is_apart)
+            place = prepare(level, tried, tried, folder, is_apart=is_apart)
             return _start(place, folder, isolated.entry)
         except family.NotConfined as error:
             return error.why

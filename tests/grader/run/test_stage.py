@@ -211,7 +211,7 @@ def test_a_submission_runs_in_a_copy_and_tells_of_where_it_was_handed_in(
         f"{script} {tmp_path} {tmp_path} ['alice.py']",
         "No module named 'bob'",
         "installed",
-        "['0o555', '0o444'] False",
+        "['0o755', '0o644'] False",
         "Traceback (most recent call last):",
         f'  File "{script}", line 11, in <module>',
         '    raise ValueError("mine")',
@@ -222,6 +222,34 @@ def test_a_submission_runs_in_a_copy_and_tells_of_where_it_was_handed_in(
         "bob.py",
         "turtlesim.py",
     ]
+
+
+WRITES = """
+import os, sqlite3
+os.mkdir("logs")
+for path in ("logs/log.csv", __file__):
+    with open(path, "a") as file:
+        file.write("# more")
+sqlite3.connect("my.db").close()
+print(sorted(os.listdir()))
+"""
+
+
+@pytest.mark.parametrize("level", [None, "limits"])
+@pytest.mark.parametrize("clock", [virtual_time, real_time])
+def test_a_submission_writes_into_its_own_folder_and_no_other_run_sees_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, clock, level: str | None
+) -> None:
+    if level:
+        monkeypatch.setattr(levels, "best", lambda isolated: levels.Level(level))
+    script = tmp_path / "writes.py"
+    script.write_text(WRITES)
+    with open_submission(script) as submission:
+        for _ in range(2):
+            recording = clock.run(submission, Plan(Limits(0.2, 0.2, 1)))
+            assert recording.output == "['logs', 'my.db', 'writes.py']\n"
+    assert script.read_text() == WRITES
+    assert [path.name for path in tmp_path.iterdir()] == ["writes.py"]
 
 
 LEAVES = """

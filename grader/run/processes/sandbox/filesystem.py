@@ -10,14 +10,15 @@ list of a word, a path and perhaps something more.
 | `link` | a symbolic link to this place |
 | `bind` | the folder, file or device that is there outside, with all that is mounted in it |
 | `hide` | an empty folder in place of what a `bind` would show |
+| `copy` | a copy of the folder outside, that can be written to: room, and owner or -1 |
 | `scratch` | an empty folder that can be written to, of so many bytes and files |
 | `proc` | the processes of our namespace |
 
-All is read-only but `scratch`; nothing has devices but what lies in /dev; no program gets rights of
-its owner. It works without capabilities in the first user namespace.
+All is read-only but `copy` and `scratch`; nothing has devices but what lies in /dev; no program
+gets rights of its owner. It works without capabilities in the first user namespace.
 """
 
-# ruff: noqa: PTH102, PTH123, PTH211
+# ruff: noqa: PTH101, PTH102, PTH115, PTH123, PTH211
 # Importing pathlib would take longer than all the rest.
 
 from __future__ import annotations
@@ -74,12 +75,37 @@ def _do(kind: str, path: str, more: str = "") -> None:
         linux.mount("tmpfs", there, _QUIET, "size=64k,nr_inodes=256,mode=755")
     elif kind == "scratch":
         linux.mount("tmpfs", there, _QUIET, f"{more},mode=1777")
+    elif kind == "copy":
+        options, owner = more.split(" ")
+        linux.mount("tmpfs", there, _QUIET, f"{options},mode=755")
+        _copy(path, there, int(owner))
     elif kind == "proc":
         linux.mount("proc", there, _QUIET | linux.MS_NOEXEC)
 
 
+def _copy(source: str, target: str, owner: int) -> None:
+    """What is in a folder, into an empty one: files, folders, and links as they are."""
+    with os.scandir(source) as entries:
+        for entry in entries:
+            there = f"{target}/{entry.name}"
+            if entry.is_symlink():
+                os.symlink(os.readlink(entry.path), there)
+            elif entry.is_dir():
+                os.mkdir(there)
+                _copy(entry.path, there, owner)
+            else:
+                with open(entry.path, "rb") as read, open(there, "wb") as written:
+                    while chunk := read.read(1 << 20):
+                        written.write(chunk)
+                os.chmod(there, entry.stat().st_mode)
+            if owner >= 0:
+                os.chown(there, owner, owner, follow_symlinks=False)
+    if owner >= 0:
+        os.chown(target, owner, owner)
+
+
 def _limit(steps: Sequence[Sequence[str]]) -> None:
-    writable = [step[1] for step in steps if step[0] == "scratch"]
+    writable = [step[1] for step in steps if step[0] in ("copy", "scratch")]
     devices = [step[1] for step in steps if step[0] == "bind" and step[1].startswith("/dev/")]
     try:
         linux.change_mount("/", _LIMITED, below=True)

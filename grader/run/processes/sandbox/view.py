@@ -110,15 +110,21 @@ def places() -> Places:
     return Places(frozenset(outer), frozenset(hidden), frozenset(host), links)
 
 
-def steps(submission: Path, uid: int) -> list[Step]:
-    """For `.filesystem`: the root of a process that runs this submission as this user."""
+def steps(submission: Path, uid: int, owner: int = -1) -> list[Step]:
+    """For `.filesystem`: the root of a process that runs this submission as this user.
+
+    Args:
+        submission: all of it, which is copied into the new root, to be written to.
+        owner: whose the copy is to be; -1: the process's own user's.
+    """
     always = places()
     links = dict(always.links) | LINKS
     own = set(_follow(str(submission), links))
     mounts: dict[str, str] = dict.fromkeys(SCRATCH, "scratch")
     mounts["/proc"] = "proc"
     wanted = dict.fromkeys(always.hidden, "hide")
-    wanted |= dict.fromkeys((*always.shown, *always.host, *own), "bind")
+    wanted |= dict.fromkeys((*always.shown, *always.host), "bind")
+    wanted |= dict.fromkeys(own, "copy")
     wanted |= {f"/dev/{name}": "bind" for name in DEVICES if os.path.exists(f"/dev/{name}")}
     for path in sorted(wanted, key=_parts):
         kind = wanted[path]
@@ -131,7 +137,18 @@ def steps(submission: Path, uid: int) -> list[Step]:
         "/etc/passwd": f"root:x:0:0::/:/bin/false\n{NAME}:x:{uid}:{uid}::/tmp:/bin/sh\n",
         "/etc/group": f"root:x:0:\n{NAME}:x:{uid}:\n",
     }
-    return list(_in_order(mounts, links, files))
+    room = {path: f"{_room(path)} {owner}" for path in own} | SCRATCH
+    return list(_in_order(mounts, links, files, room))
+
+
+def _room(folder: str) -> str:
+    """What a copy of a folder takes, and as much as in the other places that can be written to."""
+    size = entries = 0
+    for at, folders, files in os.walk(folder):
+        entries += len(folders) + len(files)
+        # a file takes whole pages
+        size += sum(os.lstat(f"{at}/{name}").st_size + 4096 for name in files)
+    return f"size={64 + size // (1 << 20) + 1}m,nr_inodes={8192 + entries}"
 
 
 def readable(submission: Path) -> tuple[list[str], list[str]]:
@@ -237,7 +254,7 @@ def _within_scratch(path: str, mounts: dict[str, str]) -> Iterator[str]:
 
 
 def _in_order(
-    mounts: dict[str, str], links: dict[str, str], files: dict[str, str]
+    mounts: dict[str, str], links: dict[str, str], files: dict[str, str], room: dict[str, str]
 ) -> Iterator[Step]:
     """Every step after those that make its place."""
     made: set[str] = set()
@@ -259,7 +276,7 @@ def _in_order(
             if _covering(path, mounts) != "bind":
                 is_file = mounts[path] == "bind" and not os.path.isdir(path)
                 yield ["file", path, ""] if is_file else ["folder", path]
-            yield [mounts[path], path, SCRATCH.get(path, "")]
+            yield [mounts[path], path, room.get(path, "")]
 
 
 def _above(path: str) -> list[str]:

@@ -234,7 +234,9 @@ def tried(run: Any, user: str, level: str) -> Tried:
 
 def test_it_reads_python_and_what_was_handed_in_and_writes_one_folder(tried: Tried) -> None:
     tried.assert_done("read own", "read python", "read usr", "read host", "tmp", "null", "udp")
-    assert tried.found["list own"] == ["file.txt", "looks.py", "tries.py"]
+    assert {"file.txt", "looks.py", "tries.py"} <= set(tried.found["list own"])
+    if tried.level == "namespaces":  # elsewhere a run is given one that it may write into
+        tried.assert_done("write own", "write own folder")
     assert tried.found["tmp is empty"] is (tried.level == "landlock")
 
 
@@ -246,7 +248,7 @@ def test_it_reads_nothing_else(tried: Tried) -> None:
 
 
 def test_it_writes_nothing_else(tried: Tried) -> None:
-    places = ("own", "own folder", "neighbour", "home", "usr", "python", "host", "kernel", "judge")
+    places = ("neighbour", "home", "usr", "python", "host", "kernel", "judge")
     tried.assert_refused(*(f"write {place}" for place in places))
 
 
