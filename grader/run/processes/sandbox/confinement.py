@@ -50,6 +50,8 @@ def confine(order: dict[str, Any]) -> None:
     os.close(proc)
     privileges.forgo_more()
     if user == OWN:
+        for output in (1, 2):  # so that /dev/stdout and /dev/stderr can be opened
+            os.fchown(output, uid, uid)
         privileges.become(uid)
     privileges.drop()
     # a process that has changed its user is closed to itself as well, and has forgotten its parent
