@@ -176,8 +176,12 @@ def _fork(
             link.send(json.dumps({"refused": why}).encode())
         return None, None
     pidfd, (theirs, ours) = os.pidfd_open(pid), os.pipe()
-    with suppress(OSError):  # nobody listens any more; then it is ended with the grader
+    try:
         socket.send_fds(link, [json.dumps({"pid": pid}).encode()], [pidfd, theirs])
+    except OSError as error:  # nobody listens any more, or too many descriptors are on their way
+        os.kill(pid, signal.SIGKILL)
+        with suppress(OSError):
+            link.send(json.dumps({"lost": repr(error)}).encode())
     os.close(theirs)
     return None, (pidfd, pid, ours)
 

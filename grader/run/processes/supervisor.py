@@ -129,14 +129,20 @@ class Supervisor:
         if self._init:
             with suppress(ProcessLookupError):
                 os.kill(self._init, signal.SIGKILL)
-        me = os.getpid()
-        while family := _descendants(me):
-            for pid in family:
+        # A look misses who is born, or changes parents, in the middle of it. But whose parent has
+        # gone becomes our child: none are left only when we have no child any more.
+        while True:
+            for pid in _descendants(os.getpid()):
                 with suppress(ProcessLookupError):
+                    # its group at once: who forks and ends all the time is never there to be killed
+                    if (group := os.getpgid(pid)) != os.getpgrp():
+                        os.killpg(group, signal.SIGKILL)
                     os.kill(pid, signal.SIGKILL)
-            with suppress(ChildProcessError):
+            try:
                 while os.waitpid(-1, os.WNOHANG)[0]:
                     pass
+            except ChildProcessError:
+                return
 
     def _be_init(self) -> NoReturn:
         """Adopt and forget orphans, to the end."""

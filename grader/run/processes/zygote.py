@@ -223,6 +223,8 @@ class Zygote:
         except ZygoteLost as lost:
             raise GraderFailure(f"what a process was to be forked from has died: {lost}") from None
         answer = json.loads(data)
+        if "lost" in answer:  # it has begun
+            raise GraderFailure(f"a forked process was lost: {answer['lost']}")
         if "refused" in answer:
             raise ZygoteLost(str(answer["refused"]))
         pidfd, ending = got

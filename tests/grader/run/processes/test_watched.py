@@ -11,9 +11,11 @@ from pathlib import Path
 import psutil
 import pytest
 
-from grader import scratch
-from grader.run.processes import family
+from grader import scratch, system
+from grader.run.processes import family, linux
 from grader.run.processes.family import Student
+from grader.run.processes.supervisor import Supervisor
+from tests.children import in_child
 
 ROOT = Path(__file__).parents[4]
 #: Stands before a command that is not to make namespaces.
@@ -175,3 +177,22 @@ def graded(
         if sleeper(seconds):
             break
     return grader, psutil.Process(int(pid)), Path(folder), seconds
+
+
+def _walkers_are_ended() -> None:
+    linux.control(linux.PR_SET_CHILD_SUBREAPER, 1)
+    linux.signal_at_parents_death(signal.SIGKILL)
+    for _ in range(10):
+        if not os.fork():
+            os.setsid()
+            while True:
+                if os.fork():
+                    os._exit(0)
+    Supervisor(os.getppid(), -1, None)._end_all()
+    with pytest.raises(ChildProcessError):  # who is left would be our child
+        os.waitpid(-1, os.WNOHANG)
+
+
+@pytest.mark.skipif(not system.has_supervision(), reason="nobody can adopt orphans here")
+def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
+    in_child(_walkers_are_ended)
