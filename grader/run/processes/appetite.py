@@ -32,10 +32,12 @@ class Usage(NamedTuple):
     Attributes:
         memory_bytes: the pages of each, with those of files and those that several share.
         tasks: its processes and threads.
+        files: their open descriptors; 0 before Linux 6.2, which does not tell.
     """
 
     memory_bytes: int
     tasks: int
+    files: int
 
 
 class Appetite:
@@ -76,6 +78,12 @@ class Appetite:
             )
         if found.tasks > limits.tasks + NEAR:
             return True
+        if found.files > limits.family_files:
+            self.remark = (
+                f"the node and what it started had {found.files} open files and sockets at once,"
+                f" and were ended: a run may have {limits.family_files}"
+            )
+            return True
         if found.memory_bytes > limits.family_bytes and self._looks_closely():
             self.remark = (
                 f"the node and what it started used more than {size(limits.family_bytes)} of"
@@ -108,9 +116,10 @@ class Family:
 
     def look(self) -> Usage:
         """What they use now, without the ancestor, by what is told quickly."""
-        members = self._members().values()
-        memory = sum(member.memory_bytes for member in members)
-        return Usage(memory, sum(member.tasks for member in members))
+        members = self._members()
+        memory = sum(member.memory_bytes for member in members.values())
+        tasks = sum(member.tasks for member in members.values())
+        return Usage(memory, tasks, sum(map(_open_files, members)))
 
     def own_memory_bytes(self) -> int:
         """Their memory that is no file's; pages that several share count once [bytes]."""
@@ -142,6 +151,14 @@ def _see(pid: int) -> _Process | None:
         return _Process(int(fields[1]), int(fields[17]), int(fields[21]) * PAGE_BYTES)
     except (OSError, IndexError):
         return None
+
+
+def _open_files(pid: int) -> int:
+    """How many descriptors a process has open; 0 where that is not told."""
+    try:
+        return os.stat(f"/proc/{pid}/fd").st_size  # noqa: PTH116
+    except OSError:
+        return 0
 
 
 def _own_memory(pid: int, seen: _Process) -> int:

@@ -27,6 +27,8 @@ class Limits(NamedTuple):
         cpu_s: processor time of one process [s]; the kernel then ends it with SIGXCPU. Far more
             than a run in virtual time is given (`Patience.run_cpu_s`), or one in real time uses.
         family_bytes: memory that all its processes really use at once [bytes].
+        family_files: descriptors of all its processes together. What lies in a socket, some hundred
+            KiB at most, counts as nobody's memory.
         data_bytes: private memory that one process may ask for, used or not [bytes].
         address_bytes: all addresses of one process [bytes]: what it shares counts here, and the
             tables of pages that it only reads, which nothing else limits. malloc reserves 64 MiB
@@ -45,6 +47,7 @@ class Limits(NamedTuple):
 
     cpu_s: int = 600
     family_bytes: int = 1 * GIB
+    family_files: int = 4096
     data_bytes: int = 2 * GIB
     address_bytes: int = 16 * GIB
     tasks: int = 256

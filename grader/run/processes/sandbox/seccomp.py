@@ -143,6 +143,7 @@ CLONE: Final[Numbers] = (56, 220)
 IOCTL: Final[Numbers] = (16, 29)
 SOCKET: Final[Numbers] = (41, 198)
 SOCKETPAIR: Final[Numbers] = (53, 199)
+SETSOCKOPT: Final[Numbers] = (54, 208)
 PRLIMIT64: Final[Numbers] = (302, 261)
 SCHED_SETSCHEDULER: Final[Numbers] = (144, 119)
 #: Their first argument is a process, and 0 the caller.
@@ -164,6 +165,7 @@ NEW_NAMESPACES: Final = 0x7E020000
 TIOCSTI, TIOCLINUX, TIOCSETD = 0x5412, 0x541C, 0x5423
 AF_UNIX, AF_INET, AF_INET6, AF_NETLINK = 1, 2, 10, 16
 SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET, SOCK_KIND = 1, 2, 5, 0xF
+SOL_SOCKET, SO_SNDBUF, SO_RCVBUF = 1, 7, 8
 IPPROTO_TCP, IPPROTO_UDP, NETLINK_ROUTE = 6, 17, 0
 
 #: os.uname().machine -> place in `Numbers`, and AUDIT_ARCH_* for the filter.
@@ -252,6 +254,9 @@ def _by_arguments(place: int, *, is_apart: bool) -> list[Instruction]:
     no_family = _refuse(errno.EAFNOSUPPORT)
     spaces = [_load(0), (JUMP_SET, 0, 1, NEW_NAMESPACES), refused, allowed]
     terminal = [_load(1), *_if(refused, TIOCSTI, TIOCLINUX, TIOCSETD), allowed]
+    # What lies in sockets counts as nobody's memory. Asked for more room, they say yes.
+    room = [_load(1), *_unless(SOL_SOCKET, allowed), _load(2)]
+    room += [*_if(_refuse(0), SO_SNDBUF, SO_RCVBUF), allowed]
     # Limits and priorities of others of the same user: it could have the simulator starve.
     own = [_load(0), *_if(allowed, 0), refused]
     own_second = [_load(1), *_if(allowed, 0), refused]
@@ -281,6 +286,7 @@ def _by_arguments(place: int, *, is_apart: bool) -> list[Instruction]:
     return [
         *_call(CLONE[place], spaces),
         *_call(IOCTL[place], terminal),
+        *_call(SETSOCKOPT[place], room),
         *_call(PRLIMIT64[place], own),
         *_call(SCHED_SETSCHEDULER[place], ordinary),
         *_each(OF_A_PROCESS, place, own),

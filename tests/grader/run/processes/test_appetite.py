@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
@@ -16,6 +17,7 @@ from grader.run.processes.appetite import Appetite, Family
 from grader.run.processes.sandbox.limits import MIB, Limits
 
 pytestmark = pytest.mark.skipif(not system.has_supervision(), reason="only Linux tells")
+TELLS_FILES = system.has_supervision() and bool(Path("/proc/self/fd").stat().st_size)
 #: Only a failing test waits so long [s].
 DEADLINE_S = 30.0
 #: A child with 100 MiB and a thread, and two of its own that share these.
@@ -59,7 +61,7 @@ def test_an_ancestor_does_not_count() -> None:
 
 
 def test_a_process_that_does_not_exist_has_no_family() -> None:
-    assert Family(1 << 30).look() == (0, 0)
+    assert Family(1 << 30).look() == (0, 0, 0)
 
 
 @pytest.mark.parametrize(
@@ -67,6 +69,11 @@ def test_a_process_that_does_not_exist_has_no_family() -> None:
     [
         (Limits(family_bytes=50 * MIB), "used more than 50 MiB of memory"),
         (Limits(tasks=-10), "-10 processes and threads"),
+        pytest.param(
+            Limits(family_files=8),
+            "open files and sockets at once",
+            marks=pytest.mark.skipif(not TELLS_FILES, reason="this Linux does not tell"),
+        ),
     ],
 )
 def test_too_much_ends_them(limits: Limits, said: str) -> None:

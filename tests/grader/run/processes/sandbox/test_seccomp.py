@@ -79,7 +79,8 @@ def every_number(machine: str) -> dict[str, int]:
     place = seccomp.MACHINES[machine][0]
     groups = [*seccomp.REFUSED.values(), seccomp.UNKNOWN, seccomp.OF_A_PROCESS]
     groups.append(seccomp.OF_FILES)
-    names = "clone ioctl socket socketpair prlimit64 sched_setscheduler setpriority ioprio_set"
+    names = "clone ioctl socket socketpair setsockopt prlimit64 sched_setscheduler"
+    names += " setpriority ioprio_set"
     single = {name: getattr(seccomp, name.upper()) for name in [*names.split(), "seccomp"]}
     found = {name: numbers[place] for group in [*groups, single] for name, numbers in group.items()}
     return {name: number for name, number in found.items() if number is not None}
@@ -238,6 +239,13 @@ def test_the_kernel_refuses_every_listed_call() -> None:
     assert in_child(_call_each, numbers) == dict.fromkeys(numbers, EPERM)
 
 
+def _has_more_room() -> bool:
+    with socket.socketpair()[0] as one:
+        before = one.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF)
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, before // 4)
+        return one.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF) != before
+
+
 def _at_work(apart: bool) -> dict[str, Any]:
     parent = os.getppid()
     seccomp.install(is_apart=apart)
@@ -263,6 +271,7 @@ def _at_work(apart: bool) -> dict[str, Any]:
         "packet": error_of(socket.socket, AF_PACKET, socket.SOCK_DGRAM),
         "pair": error_of(socket.socketpair),
         "limits of another": error_of(resource.prlimit, parent, resource.RLIMIT_CORE, (0, 0)),
+        "room in a socket": _has_more_room(),
         "own limits": error_of(resource.prlimit, 0, resource.RLIMIT_CORE, (0, 0)),
         "no new rights": status["NoNewPrivs"],
         "once more": error_of(seccomp.install),
@@ -283,6 +292,7 @@ def test_a_process_goes_on_without_what_is_refused(apart: bool) -> None:
         "packet": EAFNOSUPPORT,
         "pair": 0,
         "limits of another": EPERM,
+        "room in a socket": False,
         "own limits": 0,
         "no new rights": "1",
         "once more": 0,
