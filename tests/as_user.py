@@ -2,8 +2,8 @@
 
     python as_user.py [--root] COMMAND...
 
-With `--root` it remains root, and the rest is the same. Where Python lies in a folder of root's
-alone, the program is shown Python there and nothing else of that folder.
+With `--root` it remains root, and the rest is the same. Where Python or these tests lie in a folder
+of root's alone, the program is shown them there and nothing else of that folder.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import stat
 import sys
 from pathlib import Path
 
+ROOT = Path(__file__).parents[1]
 USER = 65534
 CLONE_NEWNS, MS_BIND, MS_REC, MS_PRIVATE = 0x20000, 0x1000, 0x4000, 0x40000
 
@@ -29,23 +30,31 @@ def mount(source: str, target: Path, kind: str, flags: int, data: str = "") -> N
     call("mount", *words)
 
 
-def uncover(folder: Path) -> None:
-    """Let others reach a folder, whatever it lies in."""
-    private = [way for way in folder.parents if not way.stat().st_mode & stat.S_IXOTH]
-    if private:
-        opened = os.open(folder, os.O_PATH)
-        mount("tmpfs", private[-1], "tmpfs", 0, "mode=755")
-        folder.mkdir(parents=True)
-        mount(f"/proc/self/fd/{opened}", folder, "", MS_BIND | MS_REC)
-        os.close(opened)
+def uncover(folders: list[Path]) -> None:
+    """Let others reach folders, whatever they lie in."""
+    opened = {folder: os.open(folder, os.O_PATH) for folder in folders}
+    closed = {folder: private[-1] for folder in folders if (private := hidden_by(folder))}
+    for outermost in set(closed.values()):
+        mount("tmpfs", outermost, "tmpfs", 0, "mode=755")
+    for folder in sorted(closed):  # what is in another one comes after it, and is there already
+        if not folder.exists():
+            folder.mkdir(parents=True)
+            mount(f"/proc/self/fd/{opened[folder]}", folder, "", MS_BIND | MS_REC)
+    for descriptor in opened.values():
+        os.close(descriptor)
+
+
+def hidden_by(folder: Path) -> list[Path]:
+    """The folders on the way that others cannot pass, the outermost last."""
+    return [way for way in folder.parents if not way.stat().st_mode & stat.S_IXOTH]
 
 
 def show_python() -> None:
-    """Let other users get at this Python, in the current process's view."""
+    """Let other users get at this Python and at these tests, in the current process's view."""
     call("unshare", CLONE_NEWNS)
     mount("", Path("/"), "", MS_REC | MS_PRIVATE)
-    for prefix in {sys.prefix, sys.base_prefix}:
-        uncover(Path(prefix).resolve())
+    needed = (ROOT, Path(sys.prefix), Path(sys.base_prefix))
+    uncover([folder.resolve() for folder in dict.fromkeys(needed)])
 
 
 def become_user() -> None:
