@@ -56,6 +56,8 @@ class TurtlesimNode(RclcppNode):
     """
 
     def __init__(self, arguments: list[str] | None = None) -> None:
+        # first, since a node that comes no further is destroyed as well
+        self._endpoints: dict[str, TurtleEndpoints] = {}
         super().__init__("turtlesim", cli_args=arguments)
         for parameter in PARAMETERS:
             low, high = parameter.low, parameter.high
@@ -69,7 +71,6 @@ class TurtlesimNode(RclcppNode):
         )
         self.arena = Arena((self._on_notice,), sprite=sprite)
         self._window = window.Window(self, self.arena)
-        self._endpoints: dict[str, TurtleEndpoints] = {}
         self._logs_positions = self.get_logger().is_enabled_for(LoggingSeverity.DEBUG)
         self._last_ns = 0
         self._set_back_ns = 0
