@@ -27,6 +27,11 @@ from pathlib import Path
 PROC = Path("/proc")
 
 
+def is_ros_sourced() -> bool:
+    """Whether ROS comes from the user's shell rather than from PyPI."""
+    return "ROS_DISTRO" in os.environ
+
+
 def has_proc() -> bool:
     """Whether processes and their descriptors are shown as files, as Linux does."""
     return (PROC / "self" / "stat").exists()

@@ -11,6 +11,8 @@ import site
 from collections.abc import Mapping
 from pathlib import Path
 
+from grader import system
+
 #: Where programs, libraries and packages are found.
 PLACES = (
     *("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FALLBACK_LIBRARY_PATH"),
@@ -35,7 +37,7 @@ KEPT = frozenset((*PLACES, *MANNERS, *ROS, *(WINDOWS if os.name == "nt" else ())
 def lasting_environment() -> dict[str, str]:
     """What is the same in all runs, and all that Python and libraries look at where they start."""
     env = {name: value for name, value in os.environ.items() if name in KEPT}
-    if is_ros_sourced() and "PYTHONPATH" in os.environ:
+    if system.is_ros_sourced() and "PYTHONPATH" in os.environ:
         env["PYTHONPATH"] = os.environ["PYTHONPATH"]  # ROS's own packages are there
     if site.ENABLE_USER_SITE:
         # Python looks for packages below HOME, which is another in a run
@@ -73,11 +75,6 @@ def environment(folder: Path, isolated: Mapping[str, str]) -> dict[str, str]:
 def student_environment(env: Mapping[str, str]) -> dict[str, str]:
     """In virtual time a submission's sets have the same order every time."""
     return {**env, "PYTHONHASHSEED": "0"}
-
-
-def is_ros_sourced() -> bool:
-    """Whether ROS comes from the user's shell rather than from PyPI."""
-    return "ROS_DISTRO" in os.environ
 
 
 def simulator_environment(env: Mapping[str, str]) -> dict[str, str]:

@@ -41,7 +41,7 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
     scene = load_scene(plan.scene)
     with stage.open_stage() as place, start_simulator(MODULE, place, plan) as simulator:
         simulator.expect("ready")
-        submission = submission.again(place.folder / "submission")
+        submission = place.own(submission)
         student = place.student(command(submission, scene.introduction), submission)
 
         def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:

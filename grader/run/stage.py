@@ -15,6 +15,7 @@ from grader.run import zygotes
 from grader.run.environment import environment, student_environment
 from grader.run.processes import isolation, levels
 from grader.run.processes.family import start_student
+from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
 from grader.submission.opening import EntryPoint, Submission
@@ -55,6 +56,12 @@ class Stage:
     entry: tuple[str, ...]
     namespaces: Mapping[str, int]
     level: levels.Level
+
+    def own(self, submission: Submission) -> Submission:
+        """The submission as this run has it for itself; at `namespaces`, its process copies it."""
+        if self.level.level == NAMESPACES:
+            return submission
+        return submission.again(self.folder / "submission")
 
     def student(
         self,

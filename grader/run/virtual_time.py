@@ -76,7 +76,7 @@ def _try(
         ours,
         theirs,
     ):
-        submission = submission.again(place.folder / "submission")
+        submission = place.own(submission)
         words = command(submission, scene.introduction, ours.fileno(), core_id)
         student = place.virtual_student(words, submission, pass_fds=(ours.fileno(),))
         ours.close()

@@ -105,7 +105,7 @@ def files_below(top: Path) -> list[Path]:
             everything = entries_of(folder, MAX_ENTRIES)
             seen += len(everything)
             if seen > MAX_ENTRIES:
-                raise _too_many(top)
+                raise too_many(top)
             entries = [entry for entry in everything if not is_junk(entry.name)]
             files += [entry for entry in entries if entry.is_file()]
             below += [entry for entry in entries if _is_searched(entry)]
@@ -113,7 +113,8 @@ def files_below(top: Path) -> list[Path]:
     return files
 
 
-def _too_many(top: Path) -> SubmissionError:
+def too_many(top: Path) -> SubmissionError:
+    """The refusal of a folder with more than MAX_ENTRIES files and folders."""
     return SubmissionError(
         f"{shown(top.name)} holds more than {MAX_ENTRIES:,} files and folders, too many for a "
         f"submission. {HAND_IN}"
@@ -152,7 +153,7 @@ def copy(top: Path, into: Path) -> None:
         for entry in entries_of(source, MAX_ENTRIES):
             seen += 1
             if seen > MAX_ENTRIES:
-                raise _too_many(top)
+                raise too_many(top)
             if is_junk(entry.name):
                 continue
             if entry.is_symlink():

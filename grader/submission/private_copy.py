@@ -26,12 +26,12 @@ from typing import Final
 
 from grader.errors import SubmissionError
 from grader.submission.folder import (
-    HAND_IN,
     MAX_BYTES,
     MAX_ENTRIES,
     is_generated,
     is_junk,
     listed,
+    too_many,
 )
 from grader.text import without_controls
 
@@ -240,10 +240,7 @@ class _Copying:
                 for entry in entries:
                     self.entries += 1
                     if self.entries > MAX_ENTRIES:
-                        raise SubmissionError(
-                            f"{self.top.name} holds more than {MAX_ENTRIES:,} files and folders, "
-                            f"too many for a submission. {HAND_IN}"
-                        )
+                        raise too_many(self.top)
                     with self._reading(Path(entry.path)):
                         self._copy(entry, target / entry.name, level + 1)
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 import importlib.util
 import os
 import random
-import site
 import stat
 import sys
 import threading
@@ -140,8 +139,6 @@ def prepare(level: Level, root: Path, own: Path, folder: Path, *, is_apart: bool
     if level.level == LIMITS:
         return Place(order, {})
     env = {"TMPDIR": written, "HOME": written, "ROS_LOG_DIR": f"{written}/log"}
-    if site.ENABLE_USER_SITE:
-        env["PYTHONUSERBASE"] = site.getuserbase()  # which Python would look for at home
     return Place(order, env)
 
 

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import errno
 import os
+import stat
 from collections.abc import Sequence
 
 from grader.run.processes import linux
@@ -97,7 +98,7 @@ def _copy(source: str, target: str, owner: int) -> None:
                 with open(entry.path, "rb") as read, open(there, "wb") as written:
                     while chunk := read.read(1 << 20):
                         written.write(chunk)
-                os.chmod(there, entry.stat().st_mode)
+                os.chmod(there, entry.stat().st_mode | stat.S_IWUSR)
             if owner >= 0:
                 os.chown(there, owner, owner, follow_symlinks=False)
     if owner >= 0:

@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from grader import system
+
 #: Where our packages are, if they are not installed.
 ROOT = Path(__file__).resolve().parents[4]
 #: Packages of ours, which show how we judge, or a solution.
@@ -171,7 +173,7 @@ def import_path() -> list[str]:
         *([site.getusersitepackages()] if site.ENABLE_USER_SITE else []),
     ]
     found += packages
-    if _is_ros_sourced():
+    if system.is_ros_sourced():
         found += _listed("PYTHONPATH")
     for folder in packages:
         found += _added(folder)
@@ -194,13 +196,9 @@ def _shown() -> Iterator[str]:
     yield from (f"{prefix}/{name}" for prefix in sorted(prefixes) for name in PREFIX)
     yield sys.executable
     yield from import_path()
-    if _is_ros_sourced():
+    if system.is_ros_sourced():
         for name in ("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH"):
             yield from (path for path in _listed(name) if path not in prefixes)
-
-
-def _is_ros_sourced() -> bool:
-    return "ROS_DISTRO" in os.environ
 
 
 def _listed(variable: str) -> list[str]:
