@@ -77,7 +77,7 @@ def _try(
         theirs,
     ):
         submission = place.own(submission)
-        words = command(submission, scene.introduction, ours.fileno(), core_id)
+        words = command(submission, scene.introduction, ours.fileno())
         student = place.virtual_student(words, submission, pass_fds=(ours.fileno(),))
         ours.close()
 
@@ -123,12 +123,10 @@ def _try(
     return record(plan, trace, topics, ending(how, exit_code, tuple(flags))), ""
 
 
-def command(
-    submission: Submission, introduction: Introduction, link_fd: int, core_id: int
-) -> list[str]:
+def command(submission: Submission, introduction: Introduction, link_fd: int) -> list[str]:
     """How the submission's process is started."""
     nodes = json.dumps(introduction.nodes)
-    words = [str(link_fd), str(core_id), nodes, *stage.target(submission)]
+    words = [str(link_fd), nodes, *stage.target(submission)]
     return [*zygotes.command(zygotes.STUDENT), *words]
 
 

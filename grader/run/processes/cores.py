@@ -70,11 +70,11 @@ def reserve_core(run: int) -> Iterator[int]:
         yield core
 
 
-def pin(core: int) -> None:
-    """Keep all threads of this process on a core; those to come follow. -1: on any."""
-    if core < 0 or _setaffinity is None:
+def pin(core: int, *pids: int) -> None:
+    """Keep all threads of processes on a core; those to come follow."""
+    if _setaffinity is None:
         return
-    with suppress(OSError):  # not allowed, or no /proc
-        for thread in Path("/proc/self/task").iterdir():
+    with suppress(OSError):  # not allowed, gone, or no /proc
+        for thread in (each for pid in pids for each in Path(f"/proc/{pid}/task").iterdir()):
             with suppress(OSError):  # ended meanwhile
                 _setaffinity(int(thread.name), {core})

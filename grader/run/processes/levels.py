@@ -264,7 +264,7 @@ def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> str:
     process = family.start_student(words, env, folder / "tried", (), entry, None, place.order)
     try:
         ended = process.wait(PATIENCE_S)
-        lines = process.output().strip().splitlines()
-        return "" if ended == 0 else lines[-1] if lines else f"a trial ended with {ended}"
     finally:
         process.end(gently=False)
+    lines = process.output().strip().splitlines()  # whole only after the end
+    return "" if ended == 0 else lines[-1] if lines else f"a trial ended with {ended}"

@@ -3,7 +3,7 @@
     python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PID CORE PATIENCE
 
 The first three as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
-process PID, CORE the processor core to share with it (-1: any), PATIENCE a
+process PID, CORE the processor core that both are to share, PATIENCE a
 `grader.run.simulator.link.Patience` as JSON.
 
 What the submission has sent comes with its request for time, what is answered and published goes
@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import socket
 import time
 from collections.abc import Callable
@@ -49,12 +50,19 @@ class Lockstep:
     """Ticks a scene as its student's side asks, to the end of the run."""
 
     def __init__(
-        self, link: StudentLink, plan: Plan, shared_core: int, on_met: Callable[[], None]
+        self,
+        link: StudentLink,
+        plan: Plan,
+        share_core: Callable[[], None],
+        on_met: Callable[[], None],
     ) -> None:
-        """`on_met` is called when the submission's process has said its first word."""
+        """Both are called once: `on_met` at the first word of the submission's process.
+
+        `share_core` is called when that first asks for time.
+        """
         self._link = link
         self._on_met = on_met
-        self._core = shared_core
+        self._share_core = share_core
         self.now_ns = 0
         self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
         waitsets.install(_NoWaiting(self._clocks))
@@ -79,7 +87,7 @@ class Lockstep:
         self._link.introduce(self._registry.take_table())
         request = self._next_request()
         self._mark("connected")
-        cores.pin(self._core)
+        self._share_core()
         while request and not self._reason:
             self._link.has_started()
             self._catch_up(request.reached)
@@ -219,12 +227,17 @@ def main(argv: list[str]) -> int:
     precautions.take()
     control = socket.socket(fileno=int(argv[0]))
     theirs = socket.socket(fileno=int(argv[3]))
-    link = StudentLink(theirs, int(argv[4]), Patience(**json.loads(argv[6])))
+    student, core = int(argv[4]), int(argv[5])
+    link = StudentLink(theirs, student, Patience(**json.loads(argv[6])))
 
     def say(what: str, **more: Any) -> None:
         control.sendall(json.dumps({"say": what, **more}).encode() + b"\n")
 
-    lockstep = Lockstep(link, Plan.from_json(argv[2]), int(argv[5]), lambda: say("met"))
+    def share_core() -> None:
+        # for both, from here: a submission's process may not say where threads run
+        cores.pin(core, os.getpid(), student)
+
+    lockstep = Lockstep(link, Plan.from_json(argv[2]), share_core, lambda: say("met"))
     gc.freeze()
     gc.set_threshold(GARBAGE)
     try:

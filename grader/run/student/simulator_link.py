@@ -26,7 +26,6 @@ from grader.run.lockstep.protocol import (
 )
 from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer
 from grader.run.lockstep.times import EPOCH_NS, NEVER
-from grader.run.processes import cores
 from grader.run.student.channel import SimulatorChannel
 from grader.run.student.remotes import Remotes
 from grader.run.student.scheduler import Scheduler
@@ -61,9 +60,7 @@ class SimulatorLink(EndpointRegistry):
         self.remotes = Remotes()
         self._scheduler = scheduler
         self._channel = SimulatorChannel(refuse)
-        #: the processor core to share with the simulator from the first tick on; -1: any
-        self._core = -1
-        self._is_connected = self._has_started = False
+        self._is_connected = False
         #: since the simulator was told last
         self._has_mailed = False
         #: the readers for responses, by the numbers that requests carry
@@ -79,10 +76,9 @@ class SimulatorLink(EndpointRegistry):
         self._waited_for = (0, "")
         self._waits_until_s = 0.0
 
-    def take_up(self, connection: socket.socket, core: int) -> None:
-        """Take up the link, before anything else; `core` is to be shared from the first tick on."""
+    def take_up(self, connection: socket.socket) -> None:
+        """Take up the link, before anything else."""
         self._channel.take_up(connection)
-        self._core = core
 
     # Time -------------------------------------------------------------------------------------
 
@@ -93,9 +89,6 @@ class SimulatorLink(EndpointRegistry):
             scheduler.set_now(max(deadline_ns, scheduler.now_ns))
             return
         self.connect()
-        if not self._has_started:
-            self._has_started = True
-            cores.pin(self._core)
         if deadline_ns == NEVER:
             self.on_standstill()
         target = min(deadline_ns // TICK_NS, FOREVER)

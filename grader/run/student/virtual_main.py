@@ -1,13 +1,13 @@
 """The submission's process in virtual time: replace what tells time, run what was handed in.
 
-    python virtual_main.py FD CORE NODES ROOT module:function
-    python virtual_main.py FD CORE NODES ROOT path/to/script.py [function]
+    python virtual_main.py FD NODES ROOT module:function
+    python virtual_main.py FD NODES ROOT path/to/script.py [function]
     python virtual_main.py --zygote SOCKET GRADER_PID MESSAGES
 
-FD is the link to the simulator, CORE the processor core to share with it (-1: any), NODES a JSON
-list of the names and namespaces of the simulator's nodes. Started by path, like
-`grader.run.student.main`, whose rules for what a submission may import are the same. Everything of
-ours is imported before the submission is, and then forgotten by the import system.
+FD is the link to the simulator, NODES a JSON list of the names and namespaces of the simulator's
+nodes. Started by path, like `grader.run.student.main`, whose rules for what a submission may import
+are the same. Everything of ours is imported before the submission is, and then forgotten by the
+import system.
 
 As a zygote it does the same up to where the link comes in, imports what nearly every submission
 needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with the
@@ -57,7 +57,7 @@ def main() -> None:
             sys.exit(fault)  # the run says so, when it has started from nothing
         words = become_one_of_many(scheduler, state, words[2:])
         student_main.die_with_parent()
-    _, fd, core, nodes, root, target, *more = words
+    _, fd, nodes, root, target, *more = words
     connection = socket.socket(fileno=int(fd))
 
     def give_up(kind: Kind, what: str) -> None:
@@ -77,7 +77,7 @@ def main() -> None:
 
         known = [(name, namespace) for name, namespace in json.loads(nodes)]
         link = inside_rclpy.install(scheduler, known, refuse)
-        link.take_up(connection, int(core))
+        link.take_up(connection)
     except refusal.Unsupported as lack:
         give_up(Kind.FAILED, f"virtual time does not work here: {lack}")
     except Exception as error:

@@ -1,5 +1,6 @@
 """Whole runs in virtual time: every style of waiting, every service, and those who misbehave."""
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -200,6 +201,14 @@ def test_what_virtual_time_cannot_follow_runs_in_real_time(
 def test_who_stops_his_process_does_not_stop_the_grader(recorded: Recorded) -> None:
     run = recorded("misbehaving/stops_itself").run
     assert (run.time, run.outcome, run.flags) == ("virtual", "stalled", (virtual_time.STOPPED,))
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="a process cannot choose its core")
+@pytest.mark.records("misbehaving/shows_its_cores")
+def test_all_threads_of_a_run_share_one_core(recorded: Recorded) -> None:
+    recording = recorded("misbehaving/shows_its_cores")
+    assert (recording.run.time, recording.run.exit_code) == ("virtual", 0)
+    assert re.fullmatch(r"(\d+\n)(\1)+", recording.output)
 
 
 def test_who_lies_to_the_simulator_spoils_his_own_run(recorded: Recorded) -> None:
