@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
+from grader.recording.conduct import Conduct
 from grader.scenes import load_scene
 from grader.scenes.scene import Start, Trace
 from grader.scenes.view import Pixels
@@ -70,6 +71,7 @@ class Recording:
         output: what the submission printed (start and end of it, if it was much).
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
+        conduct: what its process has told of itself; for a diagnosis, not for verdicts.
     """
 
     trace: Trace
@@ -78,6 +80,7 @@ class Recording:
     output: str = ""
     start: Start | None = None
     scene: str = "turtlesim"
+    conduct: Conduct = field(default_factory=Conduct)
 
     @cached_property
     def png(self) -> Mapping[str, bytes]:

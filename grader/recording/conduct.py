@@ -1,0 +1,261 @@
+"""What a submission's process has told of itself: evidence about the submission, and nothing else.
+
+Who writes such a program may have it tell anything. A diagnosis looks at it; no verdict, no
+outcome and no point ever does.
+
+Times are those of the clock that the run lived by [s], from the start of the submission's process.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Literal, Self, get_args
+
+#: So many of a kind are kept; what comes later is not.
+MOST = 100
+#: So many characters of a text.
+LONGEST = 300
+
+EndKind = Literal["subscription", "publisher", "client", "action_client"]
+StopKind = Literal["callback", "call", "loop"]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A line of the submission's own files.
+
+    Attributes:
+        file: relative to what was handed in.
+        function: that the line is in; '' for none.
+        text: the line as it stands there, without the blanks round it.
+    """
+
+    file: str
+    line: int
+    function: str = ""
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class End:
+    """One end of a topic, service or action that the submission has made.
+
+    Attributes:
+        name: with its namespace, after remapping.
+        type: as 'geometry_msgs/msg/Twist'.
+        is_met: whether anybody else had the other end of it, at the end of the run.
+        used: how many messages it has sent, received, or requests sent.
+        place: where it was made.
+    """
+
+    kind: EndKind
+    name: str
+    type: str
+    is_met: bool
+    used: int
+    place: Place | None = None
+
+
+@dataclass(frozen=True)
+class Wait:
+    """A wait for a service, an action server or a message that lasted.
+
+    Attributes:
+        name, type: of what was waited for.
+        since_s, lasted_s: None: until the end.
+    """
+
+    name: str
+    type: str
+    since_s: float
+    lasted_s: float | None
+    place: Place | None = None
+
+
+@dataclass(frozen=True)
+class Slow:
+    """A callback that let time pass: the node could do nothing else meanwhile.
+
+    Attributes:
+        place: the line in it that took longest.
+        longest_s, times: how long at most, and how often it let more than a tick pass.
+    """
+
+    place: Place
+    longest_s: float
+    times: int
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Where the program was when it went no further.
+
+    Attributes:
+        kind: `callback` - it waits in a callback for what only another could bring; `call` - it
+            waits in a call while nobody spins; `loop` - it computes without end.
+        call: the last function of a library that it was in, as 'Client.call'; '' for none.
+    """
+
+    kind: StopKind
+    time_s: float
+    call: str = ""
+    place: Place | None = None
+
+
+@dataclass(frozen=True)
+class Raised:
+    """The exception that ended the program, or a signal that it has brought upon itself.
+
+    Attributes:
+        type: as 'ZeroDivisionError'; 'SIGABRT' for a signal.
+        place: the last line of the submission's own; None where there is none.
+    """
+
+    type: str
+    text: str
+    time_s: float
+    place: Place | None = None
+
+
+@dataclass(frozen=True)
+class Conduct:
+    """All of it.
+
+    Attributes:
+        is_told: whether anything was told at all; False for controllers in other languages.
+        ends: in the order in which they were made.
+        spun_s: when an executor was first spun; None for never.
+        waits: services and the like that were waited for longer than a second, or in vain.
+        slow: callbacks that let time pass.
+        stop: where it got stuck.
+        raised: what ended it.
+        returned_s: when its program came to its end by itself, without an error.
+    """
+
+    is_told: bool = False
+    ends: tuple[End, ...] = ()
+    spun_s: float | None = None
+    waits: tuple[Wait, ...] = ()
+    slow: tuple[Slow, ...] = ()
+    stop: Stop | None = None
+    raised: Raised | None = None
+    returned_s: float | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """As `from_json` takes it."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: Any) -> Self:
+        """What somebody has told, whoever that is.
+
+        Raises:
+            ValueError: it has another form, or is longer than it may be.
+        """
+        data = _object(data, cls)
+        return cls(
+            _is(data["is_told"], bool),
+            tuple(_end(each) for each in _list(data["ends"])),
+            _perhaps_time(data["spun_s"]),
+            tuple(_wait(each) for each in _list(data["waits"])),
+            tuple(_slow(each) for each in _list(data["slow"])),
+            None if data["stop"] is None else _stop(data["stop"]),
+            None if data["raised"] is None else _raised(data["raised"]),
+            _perhaps_time(data["returned_s"]),
+        )
+
+
+def _end(data: Any) -> End:
+    data = _object(data, End)
+    return End(
+        _one_of(data["kind"], EndKind),
+        _text(data["name"]),
+        _text(data["type"]),
+        _is(data["is_met"], bool),
+        _count(data["used"]),
+        _perhaps_place(data["place"]),
+    )
+
+
+def _wait(data: Any) -> Wait:
+    data = _object(data, Wait)
+    lasted_s, place = _perhaps_time(data["lasted_s"]), _perhaps_place(data["place"])
+    return Wait(_text(data["name"]), _text(data["type"]), _time(data["since_s"]), lasted_s, place)
+
+
+def _slow(data: Any) -> Slow:
+    data = _object(data, Slow)
+    return Slow(_place(data["place"]), _time(data["longest_s"]), _count(data["times"]))
+
+
+def _stop(data: Any) -> Stop:
+    data = _object(data, Stop)
+    kind, place = _one_of(data["kind"], StopKind), _perhaps_place(data["place"])
+    return Stop(kind, _time(data["time_s"]), _text(data["call"]), place)
+
+
+def _raised(data: Any) -> Raised:
+    data = _object(data, Raised)
+    place = _perhaps_place(data["place"])
+    return Raised(_text(data["type"]), _text(data["text"]), _time(data["time_s"]), place)
+
+
+def _perhaps_place(data: Any) -> Place | None:
+    return None if data is None else _place(data)
+
+
+def _place(data: Any) -> Place:
+    data = _object(data, Place)
+    line, function = _count(data["line"]), _text(data["function"])
+    return Place(_text(data["file"]), line, function, _text(data["text"]))
+
+
+def _object(data: Any, kind: type[Any]) -> Mapping[str, Any]:
+    wanted = {field.name for field in fields(kind)}
+    if not isinstance(data, dict) or data.keys() != wanted:
+        raise ValueError(f"expected an object of {', '.join(sorted(wanted))}, found {data!r:.80}")
+    return data
+
+
+def _list(data: Any) -> list[Any]:
+    if not isinstance(data, list) or len(data) > MOST:
+        raise ValueError(f"expected a list of {MOST} at most, found {data!r:.80}")
+    return data
+
+
+def _text(data: Any) -> str:
+    text: str = _is(data, str)
+    if len(text) > LONGEST:
+        raise ValueError(f"expected {LONGEST} characters at most, found {len(text)}")
+    return text
+
+
+def _one_of(data: Any, kinds: Any) -> Any:
+    if data not in get_args(kinds):
+        raise ValueError(f"expected one of {', '.join(get_args(kinds))}, found {data!r:.80}")
+    return data
+
+
+def _count(data: Any) -> int:
+    number: int = _is(data, int)
+    if not 0 <= number < 2**53:
+        raise ValueError(f"expected a count, found {number!r:.80}")
+    return number
+
+
+def _perhaps_time(data: Any) -> float | None:
+    return None if data is None else _time(data)
+
+
+def _time(data: Any) -> float:
+    if type(data) not in (int, float) or not 0 <= data < math.inf:
+        raise ValueError(f"expected seconds, found {data!r:.80}")
+    return float(data)
+
+
+def _is(data: Any, kind: type[Any]) -> Any:
+    if type(data) is not kind:
+        raise ValueError(f"expected {kind.__name__}, found {data!r:.80}")
+    return data
