@@ -30,6 +30,8 @@ WAITS_FOR_EVER = "every thread of the node waits for something that will not com
 STUCK = "the node waits for something that can no longer happen; its output says where"
 STOPPED = "the node's process was stopped (SIGSTOP), and nobody let it go on"
 FLOODING = "the node sent so much that the simulator used more than {:.0f} s of processor time"
+#: So long a process that has hung up, or was killed, may take to end on a busy machine [s].
+END_S = 20.0
 PATIENCE = Patience()
 #: What runs as the simulator's process.
 MODULE = zygotes.MODULE
@@ -105,7 +107,9 @@ def _try(
                         message = _watch(simulator, student.pid)
                     finally:
                         is_driven = simulator.is_driven
-                    exit_code = student.wait(2.0) if message.get("silence") == "gone" else None
+                    if message["say"] == "done" and student.ends_for_excess():
+                        message["silence"] = "gone"  # for what it has filled since the last look
+                    exit_code = student.wait(END_S) if message.get("silence") == "gone" else None
             finally:
                 student.end(gently=False)
             if student.was_lost:

@@ -50,10 +50,11 @@ class Appetite:
     def __init__(self, ancestor: int, end: Callable[[], None], limits: Limits = LIMITS) -> None:
         """Begin; `end` is called, in a thread of ours, when they are to be ended."""
         self.remark = ""
-        self._family, self._limits = Family(ancestor), limits
+        self._family, self._limits, self._end = Family(ancestor), limits, end
+        self._has_ended = False
         self._next_close_look, self._available = 0.0, 0
         self._is_over = threading.Event()
-        self._thread = threading.Thread(target=self._watch, args=(end,), daemon=True)
+        self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
@@ -61,11 +62,23 @@ class Appetite:
         self._is_over.set()
         self._thread.join()
 
-    def _watch(self, end: Callable[[], None]) -> None:
+    def look_last(self) -> bool:
+        """Look once more, and no more: whether they are ended, now or before."""
+        self.stop()
+        self._next_close_look = 0.0
+        if not self._has_ended and self._look():
+            self._end_all()
+        return self._has_ended
+
+    def _watch(self) -> None:
         while not self._is_over.wait(EVERY_S):
             if self._look():
-                end()
+                self._end_all()
                 return
+
+    def _end_all(self) -> None:
+        self._has_ended = True
+        self._end()
 
     def _look(self) -> bool:
         """Whether it is too much."""

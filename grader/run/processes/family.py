@@ -115,6 +115,10 @@ class Student(Watched):
                 os.close(theirs)
         self._appetite = Appetite(self._process.pid, self.kill)
 
+    def ends_for_excess(self) -> bool:
+        """A last look: whether it is ended for taking too much, now or before."""
+        return self._appetite is not None and self._appetite.look_last()
+
     @property
     def excess(self) -> str:
         """Of what it and its descendants took too much, for the result; '' if of nothing."""

@@ -160,6 +160,10 @@ class Watched:
         """Whether it ended because a process of ours did, which is no doing of its own."""
         return self._process.was_lost
 
+    def ends_for_excess(self) -> bool:
+        """A last look: whether it is ended for taking too much, now or before."""
+        return False
+
     @property
     def excess(self) -> str:
         """Of what it took too much, for the result; '' if of nothing, or if nobody has looked."""

@@ -83,3 +83,22 @@ def test_too_much_ends_them(limits: Limits, said: str) -> None:
         assert ended.wait(DEADLINE_S)
         appetite.stop()
     assert said in appetite.remark
+
+
+def test_the_last_look_finds_what_came_after_the_one_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("grader.run.processes.appetite.EVERY_S", DEADLINE_S)
+    ended = threading.Event()
+    with family():
+        appetite = Appetite(os.getpid(), ended.set, Limits(family_bytes=50 * MIB))
+        assert appetite.look_last()
+    assert ended.is_set()
+    assert "used more than 50 MiB of memory" in appetite.remark
+
+
+def test_the_last_look_lets_be_who_takes_little() -> None:
+    ended = threading.Event()
+    with family():
+        assert not Appetite(os.getpid(), ended.set).look_last()
+    assert not ended.is_set()
