@@ -63,8 +63,9 @@ class Introduction:
 
     Attributes:
         nodes: the names and namespaces of the scene's nodes.
-        topics, services: endings of the names that a submission drives the scene by. In real time
-            its publishers and clients of these wait until they are connected.
+        topics, services: names that a submission drives the scene by, and that are there from the
+            start. In real time its publishers and clients of these wait until they are connected;
+            those of names that end like them, for a while.
     """
 
     nodes: tuple[tuple[str, str], ...]

@@ -3,8 +3,8 @@
     python main.py AWAITED ROOT module:function
     python main.py AWAITED ROOT path/to/script.py [function]
 
-AWAITED is a JSON list of two lists: endings of the names of topics and of services that have to be
-connected when the submission gets them; see `Introduced`.
+AWAITED is a JSON list of two lists: topics and services that have to be connected when the
+submission gets them; see `Introduced`.
 
 Started by path, not with -m, and it imports nothing of the grader, so that the submission finds
 the interpreter as it would at a student's desk. ROOT comes first on the import path; our packages
@@ -53,14 +53,17 @@ class Introduced:
     """An import hook: what drives the scene is connected when the submission gets it, in real time.
 
     ROS drops what is published before the other side is found, which takes some tenths of a
-    second: the same submission would do something else each time. So publishers and clients of
-    these names wait until they are connected, all together for `patience_s` at most: one
-    with a wrong name never will be.
+    second, and seconds on a busy machine: the same submission would do something else each time.
+    So publishers and clients of these names wait until they are connected. What only ends like one
+    of them may be a wrong name, or a turtle's that is yet to come: these wait for `patience_s` at
+    most, all together.
     """
 
     def __init__(self, topics: list[str], services: list[str]) -> None:
         self.patience_s = 4.0
-        self._topics, self._services = tuple(topics), services
+        #: of the very names: they are there, and will be found, unless their types are wrong
+        self.sure_patience_s = 10.0
+        self._topics, self._services = _with_endings(topics), _with_endings(services)
 
     def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
         """Load `rclpy.node` as usual, then put the waiting in."""
@@ -83,27 +86,46 @@ class Introduced:
         @functools.wraps(create_publisher)
         def connected_publisher(self_: Any, *args: Any, **kwargs: Any) -> Any:
             publisher = create_publisher(self_, *args, **kwargs)
-            if publisher.topic_name.endswith(self._topics):
-                self._wait(lambda: publisher.get_subscription_count() > 0)
+            is_met = lambda: publisher.get_subscription_count() > 0  # noqa: E731
+            self._await(publisher.topic_name, self._topics, is_met)
             return publisher
 
         @functools.wraps(create_client)
         def connected_client(self_: Any, *args: Any, **kwargs: Any) -> Any:
             client = create_client(self_, *args, **kwargs)
-            if client.srv_name.rpartition("/")[2] in self._services:
-                self._wait(client.service_is_ready)
+            name = self_.resolve_service_name(client.srv_name)
+            self._await(name, self._services, client.service_is_ready)
             return client
 
         node.create_publisher, node.create_client = connected_publisher, connected_client
 
-    def _wait(self, is_connected: Callable[[], bool]) -> None:
+    def _await(
+        self, name: str, known: tuple[set[str], set[str]], is_connected: Callable[[], bool]
+    ) -> None:
+        names, endings = known
+        if name in names:
+            self.sure_patience_s -= _wait(is_connected, self.sure_patience_s)
+        elif _ending(name) in endings:
+            self.patience_s -= _wait(is_connected, self.patience_s)
+
+
+def _with_endings(names: list[str]) -> tuple[set[str], set[str]]:
+    return set(names), set(map(_ending, names))
+
+
+def _ending(name: str) -> str:
+    return name.rpartition("/")[2]
+
+
+def _wait(is_connected: Callable[[], bool], patience_s: float) -> float:
+    """Wait for a connection; how long that took [s]."""
+    began = time.monotonic()
+    is_new = not is_connected()
+    while is_new and time.monotonic() < began + patience_s:
         is_new = not is_connected()
-        while self.patience_s > 0 and is_new:
-            is_new = not is_connected()
-            before = time.monotonic()
-            # ROS tells of a service a moment before a request would reach it, so not too short
-            time.sleep(0.02)
-            self.patience_s -= time.monotonic() - before
+        # ROS tells of a service a moment before a request would reach it, so not too short
+        time.sleep(0.02)
+    return time.monotonic() - began
 
 
 def run(root: str, target: str, function: str | None) -> object:

@@ -16,11 +16,13 @@ from grader.scenes.scene import (
     Trace,
 )
 from grader.scenes.turtlesim import interfaces, remarks, starts, trace, view
-from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.scenes.view import Pictures, View
 from turtlesim_py.world import sprites
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import to_json
+
+_TURTLE = f"/{FIRST_TURTLE}"
 
 
 class Turtlesim:
@@ -34,10 +36,10 @@ class Turtlesim:
     tick_ns: Final = TICK_NS
     introduction: Final = Introduction(
         nodes=(("turtlesim", "/"),),
-        topics=("/cmd_vel",),
+        topics=(f"{_TURTLE}/cmd_vel",),
         services=(
-            *("clear", "kill", "reset", "set_pen", "spawn"),
-            *("teleport_absolute", "teleport_relative"),
+            *("/clear", "/kill", "/reset", "/spawn", f"{_TURTLE}/set_pen"),
+            *(f"{_TURTLE}/teleport_absolute", f"{_TURTLE}/teleport_relative"),
         ),
     )
     thing: Final = "turtle"
