@@ -99,6 +99,7 @@ class Student(Watched):
         self._told = b""
         self._is_silent = False
         self._appetite: Appetite | None = None
+        self._excess = ""
         if confinement and confinement.get("user") == OWN:
             self._users = (confinement["uid"],)
         with tempfile.TemporaryFile() as order:
@@ -122,7 +123,7 @@ class Student(Watched):
     @property
     def excess(self) -> str:
         """Of what it and its descendants took too much, for the result; '' if of nothing."""
-        return self._appetite.remark if self._appetite else ""
+        return self._appetite.remark if self._appetite else self._excess
 
     @property
     def pid(self) -> int:
@@ -179,6 +180,8 @@ class Student(Watched):
                 self._await_end(patience_s)
         if self._appetite:
             self._appetite.stop()
+            # it knows us: as long as we know it, our descriptors wait for Python's garbage search
+            self._excess, self._appetite = self._appetite.remark, None
         self.kill()
         if super().wait(patience_s) != 0:  # somebody has stopped or killed the supervisor
             self._process.kill()

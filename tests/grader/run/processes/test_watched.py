@@ -1,5 +1,6 @@
 """Nothing that a submission starts outlives its run."""
 
+import gc
 import os
 import signal
 import subprocess
@@ -196,3 +197,16 @@ def _walkers_are_ended() -> None:
 @pytest.mark.skipif(not system.has_supervision(), reason="nobody can adopt orphans here")
 def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
     in_child(_walkers_are_ended)
+
+
+@pytest.mark.skipif(not system.has_proc(), reason="descriptors are not told")
+def test_what_it_held_is_given_back_at_its_end() -> None:
+    python("pass").end()
+    before = set(os.listdir("/proc/self/fd"))  # noqa: PTH208
+    gc.disable()  # what knows itself would be found only by a search for garbage
+    try:
+        python("pass").end()
+        left = set(os.listdir("/proc/self/fd")) - before  # noqa: PTH208
+    finally:
+        gc.enable()
+    assert not left
