@@ -196,7 +196,7 @@ class Killer:
         self.seen = below(self._pid)
         pids = [self._pid]
         if self._victim != "grader":
-            zygotes = [p.pid for p in self.seen if p.parent == self._pid and _is_ours(p)]
+            zygotes = [p.pid for p in self.seen if p.parent == self._pid and _is_zygote(p)]
             simulators = [p.pid for p in self.seen if p.pid not in zygotes and _is_simulator(p)]
             pids = zygotes if self._victim == "zygote" else simulators
         if pids:
@@ -207,8 +207,9 @@ class Killer:
                 self.hit = ""
 
 
-def _is_ours(process: Process) -> bool:
-    return "virtual_main" in process.words
+def _is_zygote(process: Process) -> bool:
+    # and no submission's supervisor: a run whose supervisor somebody kills was killed
+    return "virtual_main" in process.words and " --zygote " in process.words
 
 
 def _is_simulator(process: Process) -> bool:
