@@ -14,7 +14,7 @@ from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
 from grader.reports.beside import Beside, StillInMemory
-from grader.reports.wording import where, word
+from grader.reports.wording import all_passed, where, word
 from grader.result.result import Result, RunSummary
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
@@ -143,7 +143,7 @@ class Report:
         first = self.first_to_mend
         if first is not None:
             return text.one_line(first.rationale) or f"{first.check}: {word(first)}"
-        return f"Nothing to mend: all {len(self.verdicts)} checks passed."
+        return f"Nothing to mend: {all_passed(len(self.verdicts))}"
 
     @cached_property
     def recordings(self) -> dict[int, Recording]:

@@ -20,6 +20,11 @@ def score_text(verdict: Verdict) -> str:
     return f"{text.points(verdict.score)} / {text.points(verdict.max_score)}"
 
 
+def all_passed(checks: int) -> str:
+    """That nothing is to be mended: 'all 7 checks passed.'."""
+    return "the only check passed." if checks == 1 else f"all {checks} checks passed."
+
+
 def where(evidence: Evidence) -> str:
     """Time and place: 'at 12.34 s, at (5.54, 7.20)'."""
     run = f"varied run {evidence.run}, " if evidence.run else ""

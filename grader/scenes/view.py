@@ -33,11 +33,21 @@ class Curve:
 
 @dataclass(frozen=True)
 class Call:
-    """Something that the submission asked for; `color` ("#rrggbb") where it names one."""
+    """Something that the submission asked for.
+
+    Attributes:
+        name: its kind.
+        tick: when.
+        color: "#rrggbb", where it names one.
+        text: what exactly, colours in words too; '' where the name says all.
+        where: the part of the picture in which it happened, in words; '' where it has no place.
+    """
 
     name: str
     tick: int
     color: str = ""
+    text: str = ""
+    where: str = ""
 
 
 @dataclass(frozen=True)
@@ -89,6 +99,7 @@ class View:
         background: the picture's colour, "#rrggbb".
         rest: where the first track stood still at the end, if it had moved before.
         curves, calls: over time.
+        drawn: what the picture shows at the end, in words, part by part.
     """
 
     tracks: tuple[Track, ...]
@@ -97,6 +108,7 @@ class View:
     rest: Rest | None
     curves: tuple[Curve, ...]
     calls: tuple[Call, ...]
+    drawn: tuple[str, ...] = ()
 
 
 class Plane(NamedTuple):

@@ -20,6 +20,7 @@ import numpy as np
 from markupsafe import Markup
 
 from grader import text
+from grader.exercise.verdict import Evidence
 from grader.recording.recording import Recording
 from grader.reports import wording
 from grader.reports.error_report import ErrorReport
@@ -35,6 +36,8 @@ from grader.scenes.view import Floats
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
+#: On paper, of what a node printed, so many lines and characters: the last tell how it ended.
+_PAPER_LINES, _PAPER_LIMIT = 25, 4000
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,7 @@ class RunView:
         pins: the evidence in it.
         film, plots: None without a recording.
         output: what the node printed.
+        on_paper: whether it is printed: there is a fault in it, or in no run at all.
     """
 
     number: int
@@ -59,6 +63,12 @@ class RunView:
     film: Film | None
     plots: Plots | None
     output: str
+    on_paper: bool
+
+    @property
+    def output_end(self) -> str:
+        """The last lines of what the node printed."""
+        return "\n".join(self.output.splitlines()[-_PAPER_LINES:])[-_PAPER_LIMIT:]
 
     @property
     def can_be_seen(self) -> bool:
@@ -69,7 +79,10 @@ class RunView:
 def render(report: Report) -> str:
     """The page."""
     plane = report.scene.plane
-    runs = [_view(report, number) for number in range(len(report.varied_runs) + 1)]
+    numbers = range(len(report.varied_runs) + 1)
+    on_paper = _faulty_runs(report).intersection(numbers) or {0}
+    runs = [_view(report, number, number in on_paper) for number in numbers]
+    first_fault = _first_fault(report)
     return (
         _environment()
         .get_template("page.html")
@@ -78,6 +91,9 @@ def render(report: Report) -> str:
             runs=runs,
             films={run.number: _film_data(run.film) for run in runs if run.film is not None},
             pinned={pin.point.number for run in runs for pin in run.pins},
+            opens_at=first_fault if first_fault and first_fault.run in numbers else None,
+            titles={verdict.check: verdict.title or verdict.check for verdict in report.verdicts},
+            places={verdict.check: index for index, verdict in enumerate(report.verdicts)},
             outcomes=_outcomes(report.scene.thing),
             box={"width": WIDTH, "height": HEIGHT, "size": plane.size_px, "meter": plane.metre_px},
             to_px=plane.to_px,
@@ -85,6 +101,22 @@ def render(report: Report) -> str:
             radius=RADIUS_PX,
         )
     )
+
+
+def _first_fault(report: Report) -> Evidence | None:
+    """The moment that shows the first thing to mend; None where nothing shows it."""
+    first = report.first_to_mend
+    return first.evidence[0] if first is not None and first.evidence else None
+
+
+def _faulty_runs(report: Report) -> set[int]:
+    """The runs in which something is to be mended; what no evidence shows is of the nominal run."""
+    return {
+        run
+        for verdict in report.verdicts
+        if verdict.status == "failed"
+        for run in ({item.run for item in verdict.evidence} or {0})
+    }
 
 
 def _outcomes(thing: str) -> dict[str, str]:
@@ -117,6 +149,8 @@ def _environment() -> jinja2.Environment:
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     environment.filters["points"] = text.points
     environment.globals.update(
+        all_passed=wording.all_passed,
+        counted=text.count,
         place=text.place,
         word=wording.word,
         score_text=wording.score_text,
@@ -150,7 +184,7 @@ def draw(recording: Recording) -> Drawing:
     return drawing
 
 
-def _view(report: Report, number: int) -> RunView:
+def _view(report: Report, number: int, on_paper: bool) -> RunView:
     recording = report.recordings.get(number)
     drawing = Drawing() if recording is None else draw(recording)
     output = report.output if number == 0 else text.plain(recording.output if recording else "")
@@ -163,6 +197,7 @@ def _view(report: Report, number: int) -> RunView:
         drawing.film,
         drawing.plots,
         text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
+        on_paper,
     )
 
 

@@ -18,6 +18,8 @@ _COLUMNS = 400
 #: Marks of one service closer than this share of the time axis are drawn as one.
 _MARKS = 400
 _SERVICES = 8
+#: More calls of one service than this are not listed in words.
+_ROWS = 50
 
 
 @dataclass(frozen=True)
@@ -55,12 +57,46 @@ class Mark:
 
 
 @dataclass(frozen=True)
+class Row:
+    """A call in words.
+
+    Attributes:
+        time_s: when [s].
+        color: "#rrggbb", where it names one.
+        text, where: as in a scene's view; '' where there is nothing to say.
+    """
+
+    time_s: float
+    color: str
+    text: str
+    where: str
+
+
+@dataclass(frozen=True)
 class Calls:
-    """The calls of one service."""
+    """The calls of one service.
+
+    Attributes:
+        name: the service's.
+        count: how many there were.
+        marks: all of them, as far as they can be told apart.
+        rows: the first of them, in words.
+    """
 
     name: str
     count: int
     marks: tuple[Mark, ...]
+    rows: tuple[Row, ...]
+
+    @property
+    def has_text(self) -> bool:
+        """Whether a row says what was asked for."""
+        return any(row.text for row in self.rows)
+
+    @property
+    def has_place(self) -> bool:
+        """Whether a row says where it happened."""
+        return any(row.where for row in self.rows)
 
 
 @dataclass(frozen=True)
@@ -88,7 +124,7 @@ def plots(view: View, ticks: int, tick_s: float) -> Plots | None:
         for value in _nice(0, duration_s, 6)
         if value <= duration_s
     )
-    return Plots(duration_s, time_ticks, curves, _calls(view.calls, ticks))
+    return Plots(duration_s, time_ticks, curves, _calls(view.calls, ticks, tick_s))
 
 
 def _plot(curve: Curve, x: Floats) -> Plot:
@@ -124,12 +160,20 @@ def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     return x[rows], y[rows]
 
 
-def _calls(made: Sequence[Call], ticks: int) -> tuple[Calls, ...]:
-    by_service: dict[str, list[Mark]] = defaultdict(list)
+def _calls(made: Sequence[Call], ticks: int, tick_s: float) -> tuple[Calls, ...]:
+    by_service: dict[str, list[Call]] = defaultdict(list)
     for call in made:
-        by_service[call.name].append(Mark(100 * call.tick / ticks, call.color))
+        by_service[call.name].append(call)
     listed = sorted(by_service.items(), key=lambda item: -len(item[1]))[:_SERVICES]
-    return tuple(Calls(name, len(marks), _sparse(marks)) for name, marks in listed)
+    return tuple(
+        Calls(
+            name,
+            len(calls),
+            _sparse([Mark(100 * call.tick / ticks, call.color) for call in calls]),
+            tuple(Row(c.tick * tick_s, c.color, c.text, c.where) for c in calls[:_ROWS]),
+        )
+        for name, calls in listed
+    )
 
 
 def _sparse(marks: list[Mark]) -> tuple[Mark, ...]:

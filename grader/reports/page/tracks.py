@@ -66,6 +66,7 @@ class Film:
         cleared: samples at which everything drawn before vanished.
         background: the picture's colour.
         rest: where the first track stood still at the end, if it had moved before.
+        drawn: what the picture shows at the end, in words.
     """
 
     times: Floats
@@ -73,6 +74,7 @@ class Film:
     cleared: tuple[int, ...]
     background: str
     rest: Rest | None
+    drawn: tuple[str, ...]
 
 
 def film(view: View, run_ticks: int, tick_s: float) -> Film:
@@ -88,6 +90,7 @@ def film(view: View, run_ticks: int, tick_s: float) -> Film:
         tuple(sorted({int(np.searchsorted(ticks, tick)) for tick in view.cleared})),
         view.background,
         view.rest,
+        view.drawn,
     )
 
 

@@ -1,10 +1,14 @@
-"""A recorded run for a page: ways in pixels with the pens that drew them, and curves over time."""
+"""A recorded run for a page: ways in pixels with the pens that drew them, and curves over time.
+
+What of it stands in words is made by `words.py`.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
+from grader.scenes.turtlesim import words
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.scenes.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
 from turtlesim_py.world.canvas import SIZE_PX, Pen
@@ -20,14 +24,16 @@ def view(trace: TurtleTrace) -> View:
     names = list(trace.trajectories)
     first = FIRST_TURTLE if FIRST_TURTLE in names else next(iter(names), None)
     names.sort(key=lambda name: (name != first, name))
+    background = _background(trace)
     cleared = [event.tick for event in trace.events if isinstance(event, Clear | Reset)]
     return View(
         tracks=tuple(_track(trace, name) for name in names),
         cleared=tuple(cleared),
-        background=_background(trace),
+        background=background,
         rest=None if first is None else _rest(trace.trajectories[first]),
         curves=() if first is None else _curves(trace, first),
-        calls=tuple(_call(event) for event in trace.events if not isinstance(event, CmdVel)),
+        calls=tuple(_call(event, trace) for event in trace.events if not isinstance(event, CmdVel)),
+        drawn=words.drawn(trace.canvas, background),
     )
 
 
@@ -82,9 +88,17 @@ def _rate(trace: TurtleTrace, name: str) -> Floats:
     return rate
 
 
-def _call(event: Event) -> Call:
+def _call(event: Event, trace: TurtleTrace) -> Call:
     color = _hex(event.r, event.g, event.b) if isinstance(event, SetPen) else ""
-    return Call(event.op, event.tick, color)
+    way = trace.trajectories.get(getattr(event, "turtle", ""))
+    where = "" if way is None else _where(way, event.tick)
+    return Call(event.op, event.tick, color, words.asked_for(event), where)
+
+
+def _where(way: Trajectory, tick: int) -> str:
+    """In which part of the window it was in a tick, or the last time before it."""
+    row = int(np.searchsorted(way.ticks, tick, side="right")) - 1
+    return words.quarter(float(way.x[row]), float(way.y[row])) if row >= 0 else ""
 
 
 def _background(trace: TurtleTrace) -> str:

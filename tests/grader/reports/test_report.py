@@ -96,7 +96,7 @@ def test_a_report_made_in_memory_reads_no_file(tmp_path, recording):
     (tmp_path / "recording").write_text("no recording")
     page = render("html", [Report.of(result, tmp_path, Recordings(recording))])
     assert page.count("data:image/png;base64,") == 1
-    assert 'class="plots run"' in page
+    assert 'class="plots run on-paper"' in page
 
 
 def test_a_missing_recording_is_no_error_and_the_reason_is_known(tmp_path, recording):

@@ -147,8 +147,6 @@
   for (const tab of all("[data-show]")) {
     tab.addEventListener("click", () => show(tab.dataset.show));
   }
-  show("0");
-
   for (const element of all("[data-point]")) {
     const twins = all(`[data-point="${element.dataset.point}"]`);
     const light = (on) => twins.forEach((twin) => twin.classList.toggle("lit", on));
@@ -157,11 +155,32 @@
     element.addEventListener("focusin", () => light(true));
     element.addEventListener("focusout", () => light(false));
   }
-  for (const link of all("a[data-time]")) {
-    link.addEventListener("click", () => {
-      show(link.dataset.run);
-      const player = players[link.dataset.run];
-      if (player) { player.pause(); player.seek(+link.dataset.time); }
-    });
+
+  /** Show the moment `time` [s] of a run. */
+  function goTo(run, time) {
+    show(run);
+    const player = players[run];
+    if (player) { player.pause(); player.seek(+time); }
   }
+  for (const link of all("a[data-time]")) {
+    link.addEventListener("click", () => goTo(link.dataset.run, link.dataset.time));
+  }
+
+  // The page opens at the moment that its address names, else at the first fault.
+  const { opensRun = "0", opensTime } = document.querySelector("main").dataset;
+  const named = location.hash && document.getElementById(location.hash.slice(1));
+  const moment = named && (named.matches("[data-time]") ? named : named.querySelector("[data-time]"));
+  if (moment) goTo(moment.dataset.run, moment.dataset.time);
+  else if (opensTime) goTo(opensRun, opensTime);
+  else show("0");
+
+  // On paper the picture is described in words: nobody can open anything there.
+  const closed = all(".words");
+  window.addEventListener("beforeprint", () => closed.forEach((part) => {
+    part.dataset.open = part.open;
+    part.open = true;
+  }));
+  window.addEventListener("afterprint", () => closed.forEach((part) => {
+    part.open = part.dataset.open === "true";
+  }));
 })();

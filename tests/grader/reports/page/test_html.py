@@ -74,8 +74,114 @@ def test_each_verdict_is_a_card_with_word_and_sign(page):
         "card not_judged",
     ]
     said = " ".join("".join(readers.balanced(page).text).split())
-    for words in ("✓ passed", "✗ failed", "– not judged", "partial credit", "Waits for stops."):
+    for words in (
+        "✓ passed",
+        "✗ failed",
+        "– not judged",
+        "partial credit",
+        "Waits for Title of stops.",
+    ):
         assert words in said
+
+
+def test_headings_are_titles_and_identifiers_stand_beside_them(page):
+    assert re.findall("<h3>(.*?)</h3>", page) == [
+        "Title of starts",
+        "Title of stops",
+        "Title of rests",
+    ]
+    assert re.findall('<code class="identifier">(.*?)</code>', page) == ["starts", "stops", "rests"]
+
+
+def test_a_check_without_a_title_is_called_by_its_name():
+    content = html.render(samples.report(verdict("a", title="")))
+    assert "<h3>a</h3>" in content
+    assert 'class="identifier"' not in content
+
+
+def test_it_opens_at_the_first_fault(page):
+    (opened,) = elements(page, "main")
+    assert opened == {"data-opens-run": "1", "data-opens-time": "50.000"}
+
+
+@pytest.mark.parametrize(
+    "judged",
+    [
+        verdict("a", evidence=[evidence(run=0)]),
+        verdict("a", "failed", 0),
+        verdict("a", "failed", 0, evidence=[evidence(run=7)]),  # a run that nothing is known of
+    ],
+)
+def test_where_no_moment_shows_a_fault_it_opens_as_it_is(judged):
+    assert elements(html.render(samples.report(judged)), "main") == [{}]
+
+
+def on_paper(content):
+    runs = [a for a in elements(content, "div") if (a.get("class") or "").split()[:1] == ["run"]]
+    return [a["data-run"] for a in runs if a["class"] == "run on-paper"]
+
+
+def faults(*runs):
+    return [verdict("a", "failed", 0, evidence=[evidence(run=run) for run in runs])]
+
+
+@pytest.mark.parametrize(
+    ("judged", "printed"),
+    [
+        (faults(1), ["1"]),
+        (faults(0, 2), ["0", "2"]),
+        (faults(), ["0"]),  # a fault of the whole run
+        (faults(7), ["0"]),
+        ([*faults(1), verdict("b", evidence=[evidence(run=2)])], ["1"]),
+        ([verdict("a", evidence=[evidence(run=1)])], ["0"]),
+    ],
+)
+def test_on_paper_are_the_runs_with_a_fault_or_the_nominal_one(judged, printed):
+    varied = [samples.run(), samples.run()]
+    assert on_paper(html.render(samples.report(*judged, varied_runs=varied))) == printed
+
+
+def test_on_paper_each_pin_has_its_text_beside_the_picture(page):
+    lists = re.findall(r'<ul class="evidence paper">(.*?)</ul>', page, re.DOTALL)
+    assert ["Title of stops: varied run 1, at 50.00 s" in text for text in lists] == [False, True]
+
+
+def test_on_paper_is_the_end_of_what_the_node_printed(tmp_path, good):
+    lines = "".join(f"line {number}\n" for number in range(100))
+    content = html.render(Report.read(samples.graded(tmp_path, good, output=lines)))
+    (paper,) = re.findall(r'<div class="paper">(.*?)</div>', content, re.DOTALL)
+    assert "the last of 100 lines" in paper
+    assert "line 99" in paper
+    assert "line 74\n" not in paper
+
+
+def test_what_is_counted_is_in_the_plural_unless_it_is_one(page):
+    tabs = re.findall(r"<button[^>]* data-show[^>]*>(.*?)</button>", page)
+    assert tabs == ["Nominal run<small>, 1 pin</small>", "Varied run 1<small>, 1 pin</small>"]
+    assert "2 lines" in page
+    assert "The only check passed." in html.render(samples.report(verdict("a")))
+    assert not re.search(r"\b1 (pins|calls|times|lines|checks|ticks|points of)\b", page)
+
+
+def test_calls_are_a_table_too(page):
+    assert re.search(r"set_pen</code>: \d+ calls as a table", page)
+    table = page[page.index("<table>") : page.index("</table>")]
+    assert re.findall(r'<th scope="col">(.*?)</th>', table) == [
+        "Time",
+        "Asked for",
+        "Where the turtle was",
+    ]
+    first = " ".join(re.sub("<.*?>", " ", table.split("<tr>")[2]).split())
+    assert first == "0.03 s white (255, 255, 255), 3 px top right (quadrant I)"
+
+
+def test_the_picture_s_text_says_what_is_drawn_where_in_which_colour(page):
+    label = elements(page, "image")[0]["aria-label"]
+    assert re.match(
+        r"The window at the end\. top right \(quadrant I\): mostly white \(255, 255, 255\), "
+        r"[\d,]+ pixels; top left \(quadrant II\): mostly red",
+        label,
+    )
 
 
 def test_evidence_and_picture_point_to_each_other(page):

@@ -76,6 +76,16 @@ def test_a_flood_of_calls_is_counted_in_full_and_drawn_sparsely():
     (calls,) = plots_of(recording).calls
     assert calls.count == 3000
     assert len(calls.marks) <= 401
+    assert len(calls.rows) == 50
+    assert calls.rows[1].time_s == pytest.approx(2 * TICK_S)
+
+
+def test_calls_are_listed_in_words_too(shown):
+    (calls,) = shown.calls
+    assert calls.has_text
+    assert calls.has_place
+    assert calls.rows[1].text.startswith("red (255, 0, 0)")
+    assert calls.rows[1].where == "top left (quadrant II)"
 
 
 def test_values_without_end_do_not_break_a_plot():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -176,6 +177,34 @@ def test_every_input_but_driving_is_a_call_and_a_pen_s_has_its_colour(spiral):
     assert (cleared.name, cleared.tick, cleared.color) == ("clear", 3, "")
 
 
+def test_a_call_says_what_it_asked_for_and_where_the_turtle_was(spiral):
+    first, second, third, *_ = view(spiral).calls
+    assert (first.text, first.where) == ("white (255, 255, 255), 3 px", "top right (quadrant I)")
+    assert (second.text, second.where) == ("red (255, 0, 0), 3 px", "top left (quadrant II)")
+    assert (third.text, third.where) == ("green (0, 255, 0), 3 px", "bottom left (quadrant III)")
+
+
+def test_a_call_for_a_turtle_that_never_was_has_no_place():
+    def controller(tick, pose, arena):
+        if tick == 1:
+            arena.clear()
+
+    (cleared,) = view(traced(controller, ticks=2)).calls
+    assert (cleared.text, cleared.where) == ("", "")
+
+
+def test_the_picture_is_told_in_words(spiral):
+    said = view(spiral).drawn
+    assert [part.split(" (")[0] for part in said] == [
+        "top right",
+        "top left",
+        "bottom left",
+        "bottom right",
+    ]
+    for part, color in zip(said, ("white", "red", "green", "blue"), strict=True):
+        assert re.search(rf": mostly {color} \([\d, ]+\), \d,\d+ pixels$", part)
+
+
 # The background -------------------------------------------------------------------------------
 
 
@@ -201,3 +230,4 @@ def test_an_empty_trace_has_an_empty_view(spiral):
     shown = view(replace(spiral, ticks=0, events=(), trajectories={}))
     assert (shown.tracks, shown.cleared, shown.rest) == ((), (), None)
     assert (shown.curves, shown.calls) == ((), ())
+    assert len(shown.drawn) == 4

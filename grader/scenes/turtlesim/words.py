@@ -1,0 +1,138 @@
+"""A run in words, for those who do not see its colours: what a call asked for, what is drawn where.
+
+A place is a quarter of the window, with the number that the quadrant has in mathematics. A colour
+is named after its hue, roughly, and its numbers always follow.
+"""
+
+from __future__ import annotations
+
+import colorsys
+import math
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from grader import text
+from grader.scenes.turtlesim.trace import FIRST_TURTLE
+from turtlesim_py.world.events import (
+    Event,
+    Kill,
+    RotateAbsolute,
+    SetParameter,
+    SetPen,
+    Spawn,
+    TeleportAbsolute,
+    TeleportRelative,
+)
+from turtlesim_py.world.turtle import SIZE_M
+
+Pixels = npt.NDArray[np.uint8]
+
+QUADRANTS = {
+    1: "top right (quadrant I)",
+    2: "top left (quadrant II)",
+    3: "bottom left (quadrant III)",
+    4: "bottom right (quadrant IV)",
+}
+#: Up to which hue [degrees] a colour is called so.
+_HUES = ((15, "red"), (45, "orange"), (70, "yellow"), (165, "green"), (200, "cyan"))
+_MORE_HUES = ((260, "blue"), (290, "purple"), (345, "pink"), (360, "red"))
+#: A text that a submission has chosen is not shown beyond this.
+_NAME_LIMIT = 80
+
+
+@lru_cache(1024)
+def color(r: int, g: int, b: int) -> str:
+    """A colour, each part 0-255: 'red (255, 0, 0)'."""
+    return f"{_named(r, g, b)} ({r}, {g}, {b})"
+
+
+def _named(r: int, g: int, b: int) -> str:
+    hue, saturation, value = colorsys.rgb_to_hsv(r / 255, g / 255, b / 255)
+    if value < 0.2:
+        return "black"
+    if saturation < 0.12:
+        return "white" if value > 0.9 else "grey"
+    name = next(name for most, name in (*_HUES, *_MORE_HUES) if 360 * hue <= most)
+    if value < 0.6:
+        return f"dark {name}"
+    return f"light {name}" if saturation < 0.5 else name
+
+
+def quarter(x: float, y: float) -> str:
+    """The quarter of the window that a place [m] lies in; '' for one that is not a number."""
+    if not (math.isfinite(x) and math.isfinite(y)):
+        return ""
+    right, top = x >= SIZE_M / 2, y >= SIZE_M / 2
+    return QUADRANTS[(1 if right else 2) if top else (4 if right else 3)]
+
+
+def asked_for(event: Event) -> str:
+    """What an input asked for; '' where its name says all."""
+    turtle = getattr(event, "turtle", FIRST_TURTLE)
+    said = _asked_for(event)
+    return said if turtle == FIRST_TURTLE else f"{_own(turtle)}: {said}"
+
+
+def _asked_for(event: Event) -> str:
+    match event:
+        case SetPen():
+            return "the pen off" if event.off else _pen(event)
+        case TeleportAbsolute():
+            return f"to {text.place(event.x, event.y)}, heading {_degrees(event.theta)}"
+        case TeleportRelative():
+            return f"a turn by {_degrees(event.angular)}, then {event.linear:g} m ahead"
+        case RotateAbsolute():
+            return f"to heading {_degrees(event.theta)}"
+        case Spawn():
+            return f"{_own(event.name) or 'a name of its choice'}, {text.place(event.x, event.y)}"
+        case Kill():
+            return _own(event.name)
+        case SetParameter():
+            return f"{_own(event.name)} = {_own(str(event.value))}"
+    return ""
+
+
+def _pen(event: SetPen) -> str:
+    return f"{color(event.r, event.g, event.b)}, {event.width} px"
+
+
+def _degrees(theta: float) -> str:
+    return f"{math.degrees(theta):.0f}°"
+
+
+def _own(name: str) -> str:
+    return text.clip(text.one_line(text.plain(name)), _NAME_LIMIT)
+
+
+def drawn(canvas: Pixels, background: str) -> tuple[str, ...]:
+    """What shows of the ink in each quarter of a canvas (height, width, 4), quadrant by quadrant.
+
+    Args:
+        background: the window's colour, "#rrggbb"; ink of this colour does not show.
+    """
+    height, width = canvas.shape[0] // 2, canvas.shape[1] // 2
+    top, bottom, left, right = slice(height), slice(height, None), slice(width), slice(width, None)
+    parts = {1: (top, right), 2: (top, left), 3: (bottom, left), 4: (bottom, right)}
+    return tuple(
+        f"{QUADRANTS[quadrant]}: {_ink(canvas[rows, columns], background)}"
+        for quadrant, (rows, columns) in parts.items()
+    )
+
+
+def _ink(part: Pixels, background: str) -> str:
+    ink = part[part[..., 3] > 0][:, :3]
+    packed = ink.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)
+    packed = packed[packed != int(background[1:], 16)]
+    if not len(packed):
+        return "nothing drawn"
+    colors, counts = np.unique(packed, return_counts=True)
+    most = int(np.argmax(counts))
+    name = color(*int(colors[most]).to_bytes(3, "big"))
+    said = f"{name}, {text.count(len(packed), 'pixel')}"
+    if len(colors) == 1:
+        return f"all {said}"
+    if 2 * counts[most] > len(packed):
+        return f"mostly {said}"
+    return f"{text.count(len(packed), 'pixel')} of {len(colors):,} colours, most often {name}"
