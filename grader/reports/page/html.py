@@ -147,7 +147,7 @@ def _environment() -> jinja2.Environment:
     )
     script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    environment.filters["points"] = text.points
+    environment.filters.update(points=text.points, clip=text.clip)
     environment.globals.update(
         all_passed=wording.all_passed,
         counted=text.count,

@@ -174,6 +174,9 @@
   else if (opensTime) goTo(opensRun, opensTime);
   else show("0");
 
+  // How it ended stands last.
+  for (const output of all("details[open] pre")) output.scrollTop = output.scrollHeight;
+
   // On paper the picture is described in words: nobody can open anything there.
   const closed = all(".words");
   window.addEventListener("beforeprint", () => closed.forEach((part) => {

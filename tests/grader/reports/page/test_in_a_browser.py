@@ -1,0 +1,75 @@
+"""The page as a browser shows and prints it; where there is no browser, nothing of this is asked.
+
+Chromium's own switches do: what the script makes of the document, and what comes on paper.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from grader.reports import Report
+from grader.reports.page import html
+from tests.grader.driving import Spiral, drive
+from tests.grader.reports import samples
+from tests.grader.reports.samples import evidence, verdict
+
+BROWSER = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
+)
+PDF_TO_TEXT = shutil.which("pdftotext") or ""
+
+pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """The fault is in the middle of varied run 1; nothing is wrong in the two others."""
+    good = drive(Spiral())
+    verdicts = [
+        verdict("starts", evidence=[evidence("it starts", 0.16)]),
+        verdict("stops", "failed", 0, evidence=[evidence("too far", 30.0, run=1)]),
+    ]
+    folder = tmp_path_factory.mktemp("graded")
+    read = Report.read(samples.graded(folder, good, *verdicts, varied=(good, good), output="one"))
+    path = folder / "page.html"
+    path.write_text(html.render(read))
+    return path
+
+
+def browse(page, *switches: str) -> str:
+    usual = ("--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={page.parent}/user")
+    command = [BROWSER, *usual, *switches, page.as_uri()]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+@pytest.fixture(scope="module")
+def shown(page):
+    return browse(page, "--dump-dom")
+
+
+def test_it_opens_at_the_run_and_the_moment_of_the_first_fault(shown):
+    tabs = dict(re.findall(r'data-show="(\d)" aria-pressed="(\w+)"', shown))
+    assert tabs == {"0": "false", "1": "true", "2": "false"}
+    hidden = re.findall(r'<div class="run[^"]*" data-run="(\d)"( hidden="")?>', shown)
+    assert hidden == [("0", ' hidden=""'), ("1", ""), ("2", ' hidden=""')]
+    assert "30.0 s" in re.findall(r"<output>(.*?)</output>", shown)
+
+
+@pytest.mark.skipif(not PDF_TO_TEXT, reason="no pdftotext here")
+def test_on_paper_is_the_run_with_the_fault_and_no_control(page, tmp_path):
+    pdf = tmp_path / "page.pdf"
+    browse(page, f"--print-to-pdf={pdf}", "--no-pdf-header-footer")
+    listed = [PDF_TO_TEXT, str(pdf), "-"]
+    said = subprocess.run(listed, capture_output=True, text=True, check=True).stdout
+    said = " ".join(said.split())
+    assert "First thing to mend: Title of stops" in said
+    assert "Where the turtle went Varied run 1: from (4.00, 7.00)" in said
+    assert "Title of stops: varied run 1, at 30.00 s" in said
+    assert "top left (quadrant II): mostly red" in said
+    for control in ("Speed 1×", "5×", "Play", "Show the whole path", "Varied run 1, 1 pin"):
+        assert control not in said
+    assert said.count("at rest from") == 1  # below one picture
