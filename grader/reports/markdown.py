@@ -8,7 +8,7 @@ from grader import text
 from grader.exercise.verdict import Verdict
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.reports.wording import score_text, word
+from grader.reports.wording import score_text, title_of, word
 
 _SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
 #: What can begin something in Markdown, anywhere or at the start of a line. A backslash before it
@@ -54,20 +54,24 @@ def _first(report: Report) -> str:
 
 
 def _table(report: Report) -> str:
-    rows = ["| verdict | check | points | asked for |", "| --- | --- | ---: | --- |"]
+    rows = ["| verdict | asked for | points | check |", "| --- | --- | ---: | --- |"]
     for verdict in report.verdicts:
-        asked = _quote(verdict.title)
+        name = _quote(verdict.check)
         if waited_for := report.waited_for(verdict):
-            asked += f" (waits for {_quote(', '.join(waited_for))})"
+            name += f" (waits for {_quote(', '.join(waited_for))})"
         points = score_text(verdict) + (" (partial credit)" if verdict.is_partial else "")
         sign = f"{_SIGNS[verdict.status]} {word(verdict)}"
-        rows.append(f"| {sign} | {_quote(verdict.check)} | {points} | {asked} |")
+        rows.append(f"| {sign} | {_quote(title_of(verdict))} | {points} | {name} |")
     rows.append(f"| | **total** | **{report.score_text.replace(' of ', ' / ')}** | |")
     return "\n".join(rows)
 
 
 def _seen(report: Report, verdict: Verdict) -> str:
-    lines = [f"### {_quote(verdict.check)}: {score_text(verdict)}", "", _quote(verdict.rationale)]
+    lines = [
+        f"### {_quote(title_of(verdict))}: {score_text(verdict)}",
+        "",
+        _quote(verdict.rationale),
+    ]
     if verdict.evidence:
         lines += ["", *(f"- {_quote(str(point))}" for point in report.points_of(verdict))]
     if verdict.help:

@@ -14,7 +14,7 @@ from rich.text import Text
 from grader.exercise.verdict import Verdict
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.reports.wording import score_text, word
+from grader.reports.wording import score_text, title_of, word
 from grader.text import for_terminal
 
 _MARKS = {
@@ -90,34 +90,41 @@ def _text(value: str, style: str = "") -> Text:
 
 
 def _table(report: Report, width: int) -> Table:
-    """What a check asks for stands beside its name, or below where the terminal is narrow."""
+    """A check's name and notes stand beside its title, or behind it where there is no room."""
     rows = [_row(report, verdict) for verdict in report.verdicts]
     widest = [max(cell.cell_len for cell in column) for column in zip(*rows, strict=True)]
     beside = sum(widest) + 2 * len(widest) <= width
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True, justify="right")
-    for said, points, name, asked in rows:
-        cells: list[RenderableType] = [name, asked] if beside else [Group(name, asked)]
+    for said, points, title, notes in rows:
+        behind = Text.assemble(title, " (", notes, ")") if notes else title
+        cells = [title, notes] if beside else [behind]
         table.add_row(said, points, *cells)
     return table
 
 
 def _row(report: Report, verdict: Verdict) -> tuple[Text, Text, Text, Text]:
     sign, color = _MARKS[verdict.status]
-    asked = _text(verdict.title, "dim")
+    notes = [_text(verdict.check, "dim")] if verdict.title else []
     if waited_for := report.waited_for(verdict):
-        asked = _text(f"waits for {', '.join(waited_for)}", "yellow")
+        notes.append(_text(f"waits for {', '.join(waited_for)}", "yellow"))
     elif verdict.is_partial:
-        asked.append(" (partial credit)", "yellow")
+        notes.append(_text("partial credit", "yellow"))
     said = Text(f" {sign} {word(verdict)}", color)
-    return said, _text(score_text(verdict)), _text(verdict.check, "bold"), asked
+    return (
+        said,
+        _text(score_text(verdict)),
+        _text(title_of(verdict), "bold"),
+        Text(", ").join(notes),
+    )
 
 
 def _explanation(report: Report, verdict: Verdict) -> Group:
-    head = _text(f"{verdict.check}, {score_text(verdict)}: ", "red")
-    head.append_text(_text(" ".join(verdict.rationale.split()), "not bold default"))
+    sign, color = _MARKS[verdict.status]
+    head = _text(f"{sign} {title_of(verdict)}: {score_text(verdict)}", f"bold {color}")
     lines: list[RenderableType] = [Text(), head]
+    lines.append(Padding(_text(" ".join(verdict.rationale.split())), (0, 0, 0, 2)))
     lines += [_indented("•", str(point)) for point in report.points_of(verdict)]
     if verdict.help:
         lines.append(_indented("→", " ".join(verdict.help.split()), "italic"))
@@ -127,4 +134,4 @@ def _explanation(report: Report, verdict: Verdict) -> Group:
 def _indented(sign: str, value: str, style: str = "") -> Padding:
     grid = Table.grid(padding=(0, 1))
     grid.add_row(sign, _text(value, style))
-    return Padding(grid, (0, 0, 0, 4))
+    return Padding(grid, (0, 0, 0, 2))

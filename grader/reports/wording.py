@@ -15,6 +15,11 @@ def word(verdict: Verdict) -> str:
     return WORDS[verdict.status]
 
 
+def title_of(verdict: Verdict) -> str:
+    """What its check asks for; its name where that has no title."""
+    return verdict.title or verdict.check
+
+
 def score_text(verdict: Verdict) -> str:
     """The points: '12.5 / 30'."""
     return f"{text.points(verdict.score)} / {text.points(verdict.max_score)}"

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import jinja2
@@ -20,7 +20,6 @@ import numpy as np
 from markupsafe import Markup
 
 from grader import text
-from grader.exercise.verdict import Evidence
 from grader.recording.recording import Recording
 from grader.reports import wording
 from grader.reports.error_report import ErrorReport
@@ -76,6 +75,13 @@ class RunView:
         return bool(self.picture or self.film or self.pins)
 
 
+class Moment(NamedTuple):
+    """A run, and a time in it [simulated s]."""
+
+    run: int
+    time_s: float
+
+
 def render(report: Report) -> str:
     """The page."""
     plane = report.scene.plane
@@ -92,7 +98,7 @@ def render(report: Report) -> str:
             films={run.number: _film_data(run.film) for run in runs if run.film is not None},
             pinned={pin.point.number for run in runs for pin in run.pins},
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
-            titles={verdict.check: verdict.title or verdict.check for verdict in report.verdicts},
+            titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
             places={verdict.check: index for index, verdict in enumerate(report.verdicts)},
             outcomes=_outcomes(report.scene.thing),
             box={"width": WIDTH, "height": HEIGHT, "size": plane.size_px, "meter": plane.metre_px},
@@ -103,10 +109,12 @@ def render(report: Report) -> str:
     )
 
 
-def _first_fault(report: Report) -> Evidence | None:
+def _first_fault(report: Report) -> Moment | None:
     """The moment that shows the first thing to mend; None where nothing shows it."""
     first = report.first_to_mend
-    return first.evidence[0] if first is not None and first.evidence else None
+    if first is None or not first.evidence:
+        return None
+    return Moment(first.evidence[0].run, first.evidence[0].time_s)
 
 
 def _faulty_runs(report: Report) -> set[int]:

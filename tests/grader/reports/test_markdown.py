@@ -30,7 +30,7 @@ def cells(text):
 
 def test_a_title_with_every_sign_of_markdown_comes_out_as_it_went_in():
     table = cells(markdown.render(samples.report(verdict("x", title=SPECIAL))))
-    assert table[3].replace("\u2060", "") == SPECIAL
+    assert table[1].replace("\u2060", "") == SPECIAL
 
 
 @pytest.mark.parametrize(
@@ -54,9 +54,9 @@ def test_an_address_becomes_no_link_and_nobody_is_notified():
 def test_the_table_has_a_row_for_each_verdict_and_the_total():
     table = cells(markdown.render(samples.report()))
     assert len(table) == 4 * 5
-    assert table[5:7] == ["draws", "8.33 / 10 (partial credit)"]
+    assert table[5:7] == ["Title of draws", "8.33 / 10 (partial credit)"]
     assert table[12] == "⏸️ not judged"
-    assert table[15].endswith("(waits for stops)")
+    assert table[15] == "rests (waits for stops)"
     assert table[18] == "18.33 / 40"
 
 

@@ -25,7 +25,7 @@ def test_the_first_line_is_the_first_thing_to_mend_uncut():
 
 def test_with_nothing_to_mend_the_first_line_says_so():
     text = shown(samples.result(verdict("a")))
-    assert text.startswith("Nothing to mend: all 1 checks passed.\n")
+    assert text.startswith("Nothing to mend: the only check passed.\n")
 
 
 @pytest.mark.parametrize("width", [80, 120])
@@ -40,6 +40,18 @@ def test_names_and_points_are_whole_at_80_columns():
     assert "10 / 10" in text
 
 
+def test_at_80_columns_a_usual_check_is_one_line():
+    title = "Stops near an edge, wherever it starts"
+    lines = shown(samples.result(verdict("edge_stop", "failed", 0, title=title))).splitlines()
+    assert lines[3].rstrip() == f" ✗ failed  0 / 10  {title}  edge_stop"
+
+
+def test_a_check_without_a_title_is_called_by_its_name():
+    text = shown(samples.result(verdict("a", "failed", 0, title="")))
+    assert " ✗ failed  0 / 10  a" in text
+    assert "✗ a: 0 / 10" in text
+
+
 def test_partial_credit_and_what_a_check_waits_for_are_shown():
     text = shown(samples.result())
     assert "8.33 / 10" in text
@@ -50,7 +62,7 @@ def test_partial_credit_and_what_a_check_waits_for_are_shown():
 
 def test_a_check_that_waits_for_none_says_why_it_is_not_judged():
     text = shown(samples.result(verdict("a", "not_judged", 0, rationale="The run was spoiled.")))
-    assert "a, 0 / 10: The run was spoiled." in text
+    assert "– Title of a: 0 / 10\n  The run was spoiled." in text
 
 
 def test_markup_is_shown_and_not_obeyed():
