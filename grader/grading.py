@@ -16,10 +16,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
+from grader import content, versions
 from grader.errors import GraderFailure, UsageError
 from grader.exercise import DEFAULT, check, early
 from grader.exercise.loading import Exercise, load_exercise
 from grader.recording import folder as recording_folder
+from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
 from grader.run import real_time, virtual_time
@@ -153,7 +155,8 @@ def run_all(
         SubmissionError: there is no ROS in which it could run.
         GraderFailure: a run could not be made, twice.
     """
-    with start(submission, plan(submission, exercise, seed), run, progress) as runs:
+    plans, origin = plan(submission, exercise, seed), provenance(submission, exercise, seed)
+    with start(submission, plans, run, progress, origin) as runs:
         return gather(runs)
 
 
@@ -178,9 +181,32 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
     return [replace(nominal, flags=(*submission.remarks, *missing)), *varied]
 
 
+def provenance(submission: Submission, exercise: Exercise, seed: int | None = None) -> Provenance:
+    """What is known of runs before they begin, for whoever asks later where they come from."""
+    used = exercise.varied.seed if seed is None else seed
+    copy = submission.copy
+    return Provenance(
+        date=now(),
+        grader=versions.grader(),
+        python=versions.python(),
+        rclpy=versions.rclpy(),
+        ros_distro=versions.ros_distro(),
+        submission=submission.name,
+        submission_sha256="" if copy is None else content.of_folder(copy.folder),
+        exercise=exercise.name,
+        exercise_sha256=exercise.sha256,
+        seed=used if exercise.varied.count else None,
+        conditions=exercise.conditions,
+    )
+
+
 @contextmanager
 def start(
-    submission: Submission, plans: Sequence[Plan], run: Runner, progress: Progress | None = None
+    submission: Submission,
+    plans: Sequence[Plan],
+    run: Runner,
+    progress: Progress | None = None,
+    origin: Provenance | None = None,
 ) -> Iterator[Iterator[Finished]]:
     """Start runs, as many at once as there are cores; yields each as soon as it is over.
 
@@ -190,6 +216,7 @@ def start(
     Args:
         plans: from `plan`.
         progress: called with the simulated seconds of the nominal run.
+        origin: from `provenance`; comes into the nominal recording.
 
     Raises:
         GraderFailure: a run could not be made, twice; while iterating.
@@ -212,7 +239,10 @@ def start(
     pool = ThreadPoolExecutor(max_workers=at_once)
     try:
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
-        yield ((numbers[future], future.result()) for future in as_completed(numbers))
+        over = ((numbers[future], future.result()) for future in as_completed(numbers))
+        yield (
+            (n, recording if n else replace(recording, provenance=origin)) for n, recording in over
+        )
     finally:
         pool.shutdown(cancel_futures=True)
 

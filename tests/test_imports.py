@@ -27,7 +27,7 @@ def below(package: str, *names: str) -> set[str]:
 GROUND = below(
     "grader",
     *("errors", "text", "files", "locks", "scratch", "removal", "system"),
-    *("requirements", "strict_json", "limited"),
+    *("requirements", "strict_json", "limited", "versions", "content"),
 )
 STATIONS = below(
     "grader",

@@ -69,6 +69,7 @@ def _run_and_judge(
     messages = Console(stderr=True, highlight=False)
     messages.print(Text(for_terminal(f"Found: {submission.found}")), soft_wrap=True)
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
+    origin = grading.provenance(submission, exercise, args.seed)
     _prepare(out, args.json, error_file.inputs(args), held)
     messages.print(f"Running it beside a simulator, in {args.time} time ...")
 
@@ -81,7 +82,7 @@ def _run_and_judge(
     with folder.saving(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
         with (
             progress.shown(messages, "running") as show,
-            grading.start(submission, plans, runner, show) as runs,
+            grading.start(submission, plans, runner, show, origin) as runs,
         ):
             if cores.share() > len(plans):
                 for module in LATER:

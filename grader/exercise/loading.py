@@ -9,12 +9,13 @@ import math
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from grader import content
 from grader.errors import ExerciseError
 from grader.exercise import DEFAULT, places
 from grader.exercise.check import Checks
@@ -62,6 +63,8 @@ class Exercise:
         scene: the name of what runs beside the submission.
         folder: where its files are.
         starter: the folder that `grader new` copies; None where there is none.
+        sha256: of all that it judges by: the values of exercise.yaml, as they are in force, and
+            the Python files beside it.
     """
 
     name: str
@@ -74,6 +77,13 @@ class Exercise:
     scene: str = "turtlesim"
     folder: Path = Path()
     starter: Path | None = None
+    sha256: str = ""
+
+    @property
+    def conditions(self) -> dict[str, float]:
+        """What only a run can follow: a recording that was made with other values keeps them."""
+        parts = {"limits": asdict(self.limits), "varied_runs": asdict(self.varied)}
+        return {f"{part}.{key}": v for part, values in parts.items() for key, v in values.items()}
 
     @property
     def max_score(self) -> float:
@@ -261,7 +271,17 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         scene=scene,
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
+        sha256=_sha256(data, place.folder),
     )
+
+
+def _sha256(data: Mapping[str, Any], folder: Path) -> str:
+    """The hash of an exercise: comments do not count, and a copy without edits has the same."""
+    values = repr(data).encode("utf-8", "surrogatepass")  # of what YAML can hold; in its order
+    packages = (folder, *(file.parent for file in folder.glob("*/__init__.py")))
+    files = [path for package in packages for path in package.glob("*.py") if path.is_file()]
+    code = {path.relative_to(folder).as_posix(): content.of_file(path) for path in files}
+    return content.of_files({**code, DESCRIPTION: content.of_bytes(values)})
 
 
 def _check_varied(varied: VariedRuns, farthest_m: float) -> None:

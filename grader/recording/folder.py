@@ -5,7 +5,7 @@
 | metadata.yaml, recording.mcap | the bag: see `grader.recording.bag` | yes |
 | run.json | how the run went, where it started, what the submission published on | yes |
 | output.txt | what the submission printed | yes |
-| circumstances.json | what differs between equal runs: `CIRCUMSTANCES` | if it is there |
+| circumstances.json | what differs between equal runs: duration, provenance | if it is there |
 | path.png, window.png | the bag's pictures, for people | no |
 | scenario.json | the inputs, for `python -m turtlesim_py.scenario` | no |
 
@@ -34,6 +34,7 @@ from typing import TYPE_CHECKING, Any
 from grader import limited, strict_json
 from grader.errors import RecordingError
 from grader.limited import Limits
+from grader.recording.provenance import Provenance
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
 from grader.requirements import require
 from grader.scenes import load_scene
@@ -53,6 +54,8 @@ FIRST_SCENE = "turtlesim"
 FILES = (BAG, RUN, OUTPUT, CIRCUMSTANCES_FILE, SCENARIO, PATH_PICTURE, WINDOW_PICTURE, METADATA)
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
+#: Stands beside them.
+PROVENANCE = "provenance"
 #: What is read back, and its most bytes. A minute's usual run is 0.2 MB.
 SIZES = {
     BAG: 2**28,
@@ -230,6 +233,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     mcap = _bag().write(recording.trace, scene, folder)
     run = asdict(recording.run)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
+    if recording.provenance is not None:
+        circumstances[PROVENANCE] = recording.provenance.to_json()
     if not recording.run.interfaces:
         del run["interfaces"]
     facts = {
@@ -309,6 +314,7 @@ def _facts(folder: Path) -> dict[str, Any]:
     circumstances = _read_json(path) if path.exists() else {}
     if isinstance(facts.get("run"), dict):
         facts["run"].update((k, v) for k, v in circumstances.items() if k in CIRCUMSTANCES)
+    facts[PROVENANCE] = circumstances.get(PROVENANCE)
     from jsonschema.exceptions import best_match  # here: what is only written is not validated
 
     error = best_match(_validator().iter_errors(facts))
@@ -341,6 +347,7 @@ def _load(folder: Path, facts: dict[str, Any]) -> Recording:
         output=output,
         start=Start(**facts["start"]) if facts["start"] else None,
         scene=scene.name,
+        provenance=Provenance.from_json(facts[PROVENANCE]) if facts[PROVENANCE] else None,
     )
 
 

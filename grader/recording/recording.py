@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Literal
 
 from grader.recording.conduct import Conduct
+from grader.recording.provenance import Provenance
 from grader.scenes import load_scene
 from grader.scenes.scene import Start, Trace
 from grader.scenes.view import Pixels
@@ -72,6 +73,7 @@ class Recording:
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
         conduct: what its process has told of itself; for a diagnosis, not for verdicts.
+        provenance: when and with what it was made; the nominal run's tells it of all.
     """
 
     trace: Trace
@@ -81,6 +83,7 @@ class Recording:
     start: Start | None = None
     scene: str = "turtlesim"
     conduct: Conduct = field(default_factory=Conduct)
+    provenance: Provenance | None = field(default=None, compare=False)
 
     @cached_property
     def png(self) -> Mapping[str, bytes]:

@@ -13,6 +13,7 @@ from grader import text
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
+from grader.reports import origin
 from grader.reports.beside import Beside, StillInMemory
 from grader.reports.wording import all_passed, where, word
 from grader.result.result import Result, RunSummary
@@ -63,6 +64,7 @@ class Report:
         exercise, submission, score, max_score, run, varied_runs: those of the result.
         verdicts: those of the result, in its order, as they are shown: no text is longer than
             anybody reads, and no two checks have the same name.
+        origin: sentences about where the result comes from; none where it does not tell.
         beside: as above.
     """
 
@@ -75,6 +77,7 @@ class Report:
         self.max_score = float(shown.max_score)
         self.run = _few_flags(shown.run)
         self.varied_runs = tuple(map(_few_flags, shown.varied_runs))
+        self.origin = origin.sentences(shown.provenance) if shown.provenance else []
         names = _distinct([text.one_line(verdict.check) for verdict in shown.verdicts])
         self.verdicts = tuple(map(_shown, shown.verdicts, names))
         self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))

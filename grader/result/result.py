@@ -17,6 +17,7 @@ from grader.exercise.sentences import remarks
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recording, Recordings, Run
 from grader.result import json_file
+from grader.result.provenance import Origin
 from grader.scenes.scene import Start
 
 #: What the schemas of all versions begin with.
@@ -77,6 +78,7 @@ class Result:
         run: the nominal run.
         varied_runs: those that start elsewhere.
         artifacts: what lies beside the result file: name -> relative path.
+        provenance: where it comes from; equal results need not come from the same.
     """
 
     exercise: str
@@ -87,9 +89,11 @@ class Result:
     run: RunSummary
     varied_runs: tuple[RunSummary, ...] = ()
     artifacts: Mapping[str, str] = field(default_factory=dict)
+    provenance: Origin | None = field(default=None, compare=False)
 
     def to_json(self) -> dict[str, Any]:
         """The result as its file holds it."""
+        origin = {} if self.provenance is None else {"provenance": self.provenance.to_json()}
         return {
             "schema": SCHEMA,
             "exercise": self.exercise,
@@ -100,6 +104,7 @@ class Result:
             "run": self.run.to_json(),
             "varied_runs": [run.to_json() for run in self.varied_runs],
             "artifacts": dict(self.artifacts),
+            **origin,
         }
 
     @classmethod
@@ -119,6 +124,7 @@ class Result:
             RunSummary.from_json(data["run"]),
             tuple(RunSummary.from_json(run) for run in data.get("varied_runs", ())),
             data["artifacts"],
+            provenance=Origin.from_json(data["provenance"]) if "provenance" in data else None,
         )
 
     @classmethod
@@ -185,4 +191,5 @@ def build(
         RunSummary.of(recordings.nominal),
         tuple(RunSummary.of(recording) for recording in recordings.varied),
         dict(artifacts),
+        provenance=Origin.of(recordings, exercise),
     )

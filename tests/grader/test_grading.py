@@ -16,6 +16,7 @@ import pytest
 import yaml
 
 import grader
+from grader import content
 from grader.errors import ExerciseError, GraderFailure, UsageError
 from grader.run import zygotes
 
@@ -112,6 +113,12 @@ def test_recordings_can_be_had_kept_and_judged_again(short, drives, tmp_path):
     grader.save_recordings(recordings, tmp_path / "kept")
     again = grader.judge(grader.load_recordings(tmp_path / "kept"), grader.load_exercise(short))
     assert again.verdicts == result.verdicts
+    recorded = again.provenance.recorded
+    assert recorded == result.provenance.recorded == recordings.nominal.provenance
+    assert recorded.submission_sha256 == content.of_files({"drives.py": content.of_file(drives)})
+    assert (recorded.submission, recorded.seed) == ("drives.py", None)
+    assert recorded.exercise_sha256 == again.provenance.judged.exercise_sha256
+    assert recorded.conditions["limits.total_s"] == 5
 
 
 def test_a_submission_that_is_open_already_can_be_given(short, drives):

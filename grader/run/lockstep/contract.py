@@ -18,12 +18,10 @@ from __future__ import annotations
 import importlib
 import re
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from grader import system
+from grader import system, versions
 
 #: Stands for rclpy's extension module, whatever it is called.
 CPP = "_rclpy"
@@ -52,7 +50,7 @@ def broken(*groups: Iterable[Assumption]) -> str:
             except Exception as error:
                 fault = f"{assumption.name}: {error!r}"
             if fault:
-                return f"virtual time does not fit rclpy {version()}: {fault}"
+                return f"virtual time does not fit rclpy {versions.rclpy()}: {fault}"
     return ""
 
 
@@ -60,22 +58,6 @@ def lacking() -> str:
     """What of the system virtual time needs and does not have, in one line; '' where it has all."""
     lacks = system.lacks_for_lockstep()
     return f"virtual time needs {' and '.join(lacks)}, which this system lacks" if lacks else ""
-
-
-def version() -> str:
-    """The version of the installed rclpy, or "?"."""
-    from importlib import metadata  # costs 15 ms, and is not needed where all is well
-
-    with suppress(metadata.PackageNotFoundError):
-        return metadata.version("ros-rclpy")  # from PyPI; its package.xml may say less
-    try:
-        # prefix/lib/pythonX.Y/site-packages/rclpy/__init__.py
-        prefix = Path(str(importlib.import_module("rclpy").__file__)).parents[4]
-        text = (prefix / "share" / "rclpy" / "package.xml").read_text(encoding="utf-8")
-    except (OSError, IndexError):
-        return "?"
-    found = re.search(r"<version>([\w.+-]+)</version>", text)
-    return found[1] if found else "?"
 
 
 def _module(name: str) -> Any:

@@ -7,6 +7,7 @@ import yaml
 
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise, names
+from tests.grader.testing import exercises
 
 NAME = "turtlesim_challenge"
 
@@ -28,6 +29,16 @@ def test_an_edited_copy_changes_what_it_names_and_nothing_else(tmp_path):
     assert (copy.limits.rest_s, copy.limits.total_s) == (1, original.limits.total_s)
     assert copy.points == {"moves": 3}
     assert copy.tolerances == original.tolerances
+
+
+def test_the_hash_of_an_exercise_tells_what_it_judges_by(tmp_path):
+    original = load_exercise(NAME)
+    assert load_exercise(edited(tmp_path)).sha256 == original.sha256
+    assert load_exercise(edited(tmp_path, tolerances={"edge_m": 1})).sha256 != original.sha256
+    place = tmp_path / "ahead"
+    one = load_exercise(exercises.write(place))
+    (place / "checks.py").write_text((place / "checks.py").read_text() + "\n# changed\n")
+    assert load_exercise(place).sha256 != one.sha256
 
 
 def test_the_same_seed_gives_the_same_starts():

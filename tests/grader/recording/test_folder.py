@@ -17,6 +17,7 @@ from grader import cli
 from grader.errors import RecordingError
 from grader.recording import bag
 from grader.recording import folder as storage
+from grader.recording.provenance import Provenance
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import Log
 from tests.grader.driving import Spiral, drive
@@ -79,6 +80,37 @@ def test_what_differs_between_equal_runs_stands_apart(recorded, folder, tmp_path
     ours, theirs = contents(folder), contents(tmp_path / "other")
     assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
     assert storage.load(tmp_path / "other").run == other.run
+
+
+PROVENANCE = Provenance(
+    date="2026-11-21T23:52:52Z",
+    grader="0.1.0",
+    python="3.12.3",
+    rclpy="7.1.6",
+    ros_distro="jazzy",
+    submission="alice.zip",
+    submission_sha256="a" * 64,
+    exercise="square",
+    exercise_sha256="b" * 64,
+    seed=7,
+    conditions={"limits.total_s": 90.0},
+)
+
+
+def test_where_it_comes_from_is_a_circumstance_and_comes_back(recorded, folder, tmp_path):
+    storage.save(replace(recorded, provenance=PROVENANCE), tmp_path / "other")
+    ours, theirs = contents(folder), contents(tmp_path / "other")
+    assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
+    assert storage.load(tmp_path / "other").provenance == PROVENANCE
+    assert storage.load(folder).provenance is None
+
+
+@pytest.mark.parametrize(
+    "change", [{"date": "today"}, {"grader": 1}, {"more": ""}, {"exercise_sha256": "x"}]
+)
+def test_a_damaged_origin_is_refused(recorded, folder, change):
+    (folder / CIRCUMSTANCES).write_text(json.dumps({"provenance": PROVENANCE.to_json() | change}))
+    assert "provenance" in refused(folder)
 
 
 def test_a_recording_can_do_without_its_circumstances(recorded, folder):

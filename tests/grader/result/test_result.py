@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
 from hypothesis import given, settings
@@ -10,7 +10,9 @@ from grader import reports
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Evidence, Verdict
+from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings, Run, Start
+from grader.result.provenance import Judged, Origin
 from grader.result.result import Result, RunSummary, build
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
@@ -70,9 +72,26 @@ def test_the_interfaces_are_there_where_they_are_known(tmp_path):
         assert ("interfaces" in result.to_json()["run"]) == bool(number)
 
 
+RECORDED = Provenance("2026-11-21T23:52:52Z", "0.1.0", "3.12.3", "7.1.6", seed=7)
+JUDGED = Judged("2026-11-22T10:00:00Z", "0.2.0", "b" * 64)
+
+
+@pytest.mark.parametrize("recorded", [RECORDED, None])
+def test_where_it_comes_from_is_told_and_makes_no_other_result_of_it(tmp_path, recorded):
+    result = Result.from_json(samples.result())
+    told = replace(result, provenance=Origin(JUDGED, recorded))
+    told.write(tmp_path / "result.json")
+    assert Result.read(tmp_path / "result.json").provenance == told.provenance
+    assert told == result
+    assert result.provenance is None
+
+
 @pytest.mark.parametrize(
     "change",
     [
+        {"provenance": {}},
+        {"provenance": {"judged": {**asdict(JUDGED), "date": "today"}}},
+        {"provenance": {"judged": asdict(JUDGED), "recorded": {"grader": "0.1.0"}}},
         {"more": 1},
         {"score": "100"},
         {"score": -1},
@@ -146,3 +165,4 @@ def test_a_result_adds_up_its_verdicts_and_remarks_on_its_runs():
     assert isinstance(result.run, Run)
     assert result.varied_runs[0].start == Start(1.0, 2.0, 0.5)
     assert "start" not in result.run.to_json()
+    assert result.provenance.judged.exercise_sha256 == exercise.sha256

@@ -262,6 +262,19 @@ def test_a_turtle_that_is_not_a_number_is_left_out(tmp_path, good):
     assert not re.search(r'="[^"]*\b(nan|NaN)\b', content)
 
 
+def test_the_foot_tells_where_the_result_comes_from():
+    judged = {"date": "2026-11-22T10:00:00Z", "grader": "0.2.0", "exercise_sha256": "b" * 64}
+    recorded = {"date": "2026-11-21T23:52:52Z", "grader": "0.1.0", "python": "3.12.3"}
+    recorded |= {"rclpy": "7.1.6", "ros_distro": "<b>", "submission_sha256": "a" * 64, "seed": 7}
+    page = html.render(samples.report(provenance={"judged": judged, "recorded": recorded}))
+    foot = page.partition("<footer>")[2].partition("</footer>")[0]
+    for words in ("2026-11-21 at 23:52 UTC", "Python 3.12.3", "rclpy 7.1.6", "&lt;b&gt;"):
+        assert words in foot
+    for words in ("2026-11-22 at 10:00 UTC by grader 0.2.0", "a" * 12, "b" * 12, "Seed 7"):
+        assert words in foot
+    assert "<footer>" not in html.render(samples.report())
+
+
 def test_an_empty_recording_makes_a_page(tmp_path):
     path = samples.graded(tmp_path, drive(lambda *_: None, ticks=1))
     readers.html(html.render(Report.read(path)))

@@ -12,6 +12,7 @@ import rclpy.executors
 import rclpy.task
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
+from grader import versions
 from grader.run.lockstep import contract
 
 GROUPS = (contract.ENTITIES, contract.PROGRAM)
@@ -56,7 +57,7 @@ def test_one_line_says_what_does_not_hold(
     else:
         monkeypatch.setattr(owner, name, value)
     found = contract.broken(*GROUPS)
-    assert found == f"virtual time does not fit rclpy {contract.version()}: {line}"
+    assert found == f"virtual time does not fit rclpy {versions.rclpy()}: {line}"
 
 
 def test_what_constructors_get_beyond_the_known_is_no_breach(
@@ -124,6 +125,6 @@ def test_a_broken_contract_on_either_side_is_a_run_in_real_time_that_says_so(
         recording = virtual_time.run(submission, Plan(Limits(1, 0.2, 5)))
     assert recording.run.time == "real"
     assert recording.run.flags == (
-        f"graded in real time, because virtual time does not fit rclpy {contract.version()}: "
+        f"graded in real time, because virtual time does not fit rclpy {versions.rclpy()}: "
         "ClockType has no STEADY_TIME",
     )

@@ -1,0 +1,60 @@
+"""Where a result comes from: how its runs were made, and by what they were judged."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Self
+
+from grader import versions
+from grader.exercise.loading import Exercise
+from grader.recording.provenance import Provenance, now
+from grader.recording.recording import Recordings
+
+
+@dataclass(frozen=True)
+class Judged:
+    """When and by what the recordings were judged; the same day as the runs, or later.
+
+    Attributes:
+        date: as `grader.recording.provenance.now` writes it.
+        grader: its version.
+        exercise_sha256: see `grader.exercise.loading.Exercise`.
+    """
+
+    date: str
+    grader: str
+    exercise_sha256: str
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Both of it.
+
+    Attributes:
+        recorded: None where the recordings do not tell.
+    """
+
+    judged: Judged
+    recorded: Provenance | None = None
+
+    @classmethod
+    def of(cls, recordings: Recordings, exercise: Exercise) -> Self:
+        """Of recordings that are being judged."""
+        judged = Judged(now(), versions.grader(), exercise.sha256)
+        return cls(judged, recordings.nominal.provenance)
+
+    def to_json(self) -> dict[str, Any]:
+        """As the result file holds it."""
+        found: dict[str, Any] = {"judged": asdict(self.judged)}
+        if self.recorded is not None:
+            found["recorded"] = self.recorded.to_json()
+        return found
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """What a result file holds; it follows the schema."""
+        recorded = data.get("recorded")
+        return cls(
+            Judged(**data["judged"]), None if recorded is None else Provenance.from_json(recorded)
+        )
