@@ -4,51 +4,151 @@ from __future__ import annotations
 
 import argparse
 import os
-from dataclasses import replace
+import sys
+from dataclasses import dataclass, replace
 from pathlib import Path
-
-from rich.console import Console
 
 from grader import files, grading
 from grader.cli import error_file
 from grader.cli.run import points
+from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.exercise.loading import load_exercise
+from grader.exercise.loading import Exercise, load_exercise, names
 from grader.recording.folder import WINDOW_PICTURE, load_all
-from grader.reports import Report, terminal
-from grader.result.result import FAMILY
+from grader.recording.recording import Recordings
+from grader.reports import Report
+from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
+from grader.text import for_terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.add_argument("recording", type=Path, help="the folder `recording` of a graded run")
+    parser.add_argument(
+        "recording",
+        type=Path,
+        help="the folder of a result, whose page is then made anew; or the folder `recording` in "
+        "it; or a recording anywhere else",
+    )
     parser.add_argument(
         "--exercise",
-        default=DEFAULT,
         metavar="NAME|FOLDER|FILE",
-        help="an installed one, the folder of another, or an edited exercise.yaml",
+        help="an installed one, the folder of another, or an edited exercise.yaml; default: the "
+        "one that it was made for",
     )
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here")
+    parser.add_argument(
+        "--json", type=Path, metavar="FILE", help="write the result here, and nothing else"
+    )
     parser.add_argument(
         "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"
     )
 
 
+@dataclass(frozen=True)
+class Place:
+    """Where a recording lies.
+
+    Attributes:
+        recording: its folder.
+        older: the result that it lies beside; None where there is none.
+    """
+
+    recording: Path
+    older: Result | None
+
+    @property
+    def folder(self) -> Path:
+        """That of the older result."""
+        return self.recording.parent
+
+    @property
+    def name(self) -> str:
+        """What the folder is called that somebody would look for it by."""
+        at = Path(os.path.abspath(self.recording))  # noqa: PTH100  a link keeps its own name
+        return at.parent.name if at.name == ARTIFACTS["recording"] else at.name
+
+
 def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
+    asked, args.exercise = args.exercise, args.exercise or DEFAULT
     if args.json:
         files.check_writable(args.json)
         files.check_replaceable(args.json, FAMILY, error_file.inputs(args))
-    exercise = load_exercise(args.exercise)
-    folder: Path = args.recording
-    if (folder / "recording").is_dir():  # the folder of the result, which holds the recording
-        folder /= "recording"
-    recordings = load_all(folder)
-    result = grading.judge(recordings, exercise, submission=args.recording.name)
-    if args.json:
-        beside = os.path.relpath(folder, args.json.parent)
+    place = _place(args.recording)
+    recordings = load_all(place.recording)
+    exercise = _exercise(asked, place, recordings)
+    origin = recordings.nominal.provenance
+    name = (origin and origin.submission) or (place.older and place.older.submission) or place.name
+    result = grading.judge(recordings, exercise, submission=name)
+    from grader.cli import showing  # here: what takes long to import
+
+    if args.json and not _is_same(args.json, place):
+        beside = os.path.relpath(place.recording, args.json.parent)
         artifacts = {"recording": beside, "canvas": f"{beside}/{WINDOW_PICTURE}"}
         result = replace(result, artifacts=artifacts)
         result.write(args.json)
-    terminal.show(Report.of(result, folder, recordings), Console())
+        showing.show(Report.of(result, place.recording, recordings), None)
+    elif place.older is None:
+        showing.show(Report.of(result, place.recording, recordings), None)
+    else:
+        result = replace(result, artifacts=place.older.artifacts)
+        report = Report.of(result, place.folder, recordings)
+        showing.show(report, _rewrite(place, result, report))
     return int(args.fail_under is not None and result.score < args.fail_under)
+
+
+def _place(given: Path) -> Place:
+    """What is meant: the folder of a recording, that of its result, or a file in one of them."""
+    folder = given if given.is_dir() else given.parent
+    if (folder / ARTIFACTS["recording"]).is_dir():
+        folder /= ARTIFACTS["recording"]
+    elif not given.exists():
+        return Place(given, None)
+    beside = folder.parent / RESULT
+    try:
+        older = Result.read(beside) if beside.is_file() else None
+    except UsageError:  # somebody else's, or too damaged to be one
+        older = None
+    if older is not None and older.artifacts.get("recording") != folder.name:
+        older = None
+    return Place(folder, older)
+
+
+def _exercise(asked: str | None, place: Place, recordings: Recordings) -> Exercise:
+    """The one that is asked for, else the one that the recording was made for.
+
+    Raises:
+        UsageError: that one is not installed.
+    """
+    if asked is not None:
+        return load_exercise(asked)
+    origin = recordings.nominal.provenance
+    name = (origin and origin.exercise) or (place.older and place.older.exercise) or DEFAULT
+    if name not in names():
+        raise UsageError(
+            f"the recording was made for the exercise {name!r}, which is not installed here; give "
+            "its folder: --exercise FOLDER"
+        )
+    return load_exercise(name)
+
+
+def _is_same(file: Path, place: Place) -> bool:
+    """Whether a file is the result that the recording lies beside."""
+    beside = place.folder / RESULT
+    return place.older is not None and file.exists() and file.samefile(beside)
+
+
+def _rewrite(place: Place, result: Result, report: Report) -> Path | None:
+    """Replace the older result and its page; the page, or None where they cannot be written."""
+    from grader.reports import render
+
+    page = place.folder / PAGE
+    try:
+        for file in (place.folder / RESULT, page):
+            files.check_can_put(file)
+        with files.sole_writer(place.folder):
+            result.put(place.folder / RESULT)
+            files.put(page, render("html", [report]).encode("utf-8"))
+    except UsageError as error:
+        print(f"Left as they were: {RESULT}, {PAGE}: {for_terminal(str(error))}", file=sys.stderr)
+        return None
+    return page

@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
-import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
@@ -26,14 +25,13 @@ from grader.exercise.loading import Exercise, load_exercise
 from grader.grading import Finished
 from grader.recording import folder
 from grader.recording.recording import Recording, Recordings
-from grader.result.result import ARTIFACTS, FAMILY, Result
+from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
 from grader.run.processes import cores
 from grader.submission.opening import Submission, open_submission
 from grader.text import for_terminal
 
 #: What is not needed before a run is over.
 LATER = ("grader.recording.bag", "grader.reports.page.html", "grader.reports.terminal")
-RESULT, PAGE = "result.json", "report.html"
 
 
 def grade_and_go_on(args: argparse.Namespace) -> None:
@@ -115,9 +113,10 @@ def _show_nominal(known: Result, nominal: Recording, out: Path, console: Console
 
 def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> int:
     """Write the result and what lies beside it, show it; the exit code."""
-    from grader.reports import Report, render, terminal
+    from grader.cli import showing
+    from grader.reports import Report, render
 
-    nominal, console = recordings.nominal, Patient()
+    nominal = recordings.nominal
     files.put(out / ARTIFACTS["canvas"], nominal.png["window"])
     files.put(out / ARTIFACTS["output"], nominal.output.encode("utf-8", "replace"))
     result.put(out / RESULT)
@@ -126,23 +125,8 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     report = Report.of(result, out, recordings)
     page = out / PAGE
     files.put(page, render("html", [report]).encode("utf-8"))
-    try:
-        terminal.show(report, console)
-        where = Text(for_terminal(f"The page with picture and plots: {page}"))
-        console.print(where, highlight=False, soft_wrap=True)
-    except BrokenPipeError:  # rich before 13.8 leaves it to us
-        console.on_broken_pipe()
+    showing.show(report, page)
     return int(args.fail_under is not None and result.score < args.fail_under)
-
-
-class Patient(Console):
-    """A console that goes on where its reader has seen enough, as `| head -1` does."""
-
-    def on_broken_pipe(self) -> None:
-        """Print nothing more: the exit code tells of the score, not of who reads."""
-        self.quiet = True
-        with Path(os.devnull).open("wb") as nowhere:
-            os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
 def _default_out(submission: Path) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import PurePath
 
 from grader.recording.recording import Recording
@@ -54,3 +55,18 @@ def remarks(recording: Recording) -> list[str]:
         recording.trace, published, recording.run.interfaces
     )
     return found
+
+
+def not_followed(recording: Recording, conditions: Mapping[str, float]) -> list[str]:
+    """What of an exercise's conditions a recording that was made before cannot follow.
+
+    Args:
+        conditions: see `grader.exercise.loading.Exercise`.
+    """
+    then = {} if recording.provenance is None else recording.provenance.conditions
+    return [
+        f"The recording was made with {key} {then[key]:g}; the exercise now says {value:g}. "
+        "Run the submission again for that."
+        for key, value in conditions.items()
+        if key in then and then[key] != value
+    ]

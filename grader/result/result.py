@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Self
 
 from grader import files
 from grader.exercise.loading import Exercise
-from grader.exercise.sentences import remarks
+from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recording, Recordings, Run
 from grader.result import json_file
@@ -25,6 +25,8 @@ FAMILY = "turtlesim-grader/result/"
 SCHEMA = f"{FAMILY}v1"
 #: What `grader run` puts beside a result file: name -> path relative to it.
 ARTIFACTS = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
+#: Our names of the result file, and of the page beside it.
+RESULT, PAGE = "result.json", "report.html"
 #: A total is rounded to hundredths, its parts need not be [points].
 ROUNDING = 0.01 + 1e-9
 
@@ -188,8 +190,14 @@ def build(
         round(sum(verdict.score for verdict in verdicts), 2),
         round(sum(verdict.max_score for verdict in verdicts), 2),
         tuple(verdicts),
-        RunSummary.of(recordings.nominal),
+        _nominal(recordings.nominal, exercise),
         tuple(RunSummary.of(recording) for recording in recordings.varied),
         dict(artifacts),
         provenance=Origin.of(recordings, exercise),
     )
+
+
+def _nominal(recording: Recording, exercise: Exercise) -> RunSummary:
+    """The nominal run, with what of the exercise came too late for it."""
+    run = RunSummary.of(recording)
+    return replace(run, flags=(*run.flags, *not_followed(recording, exercise.conditions)))

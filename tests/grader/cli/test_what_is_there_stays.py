@@ -9,6 +9,7 @@ import pytest
 from grader.cli import main
 from grader.recording import folder as storage
 from grader.recording.recording import Recordings
+from grader.result.result import Result
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 
@@ -71,7 +72,7 @@ def test_an_empty_file_and_one_of_ours_are_replaced(here):
     assert main(["check", "recording", "--json", "empty.json", "--error-json", "error.json"]) == 0
     assert not (here / "error.json").exists()
     assert main(["check", "recording", "--json", "rr.json"]) == 0
-    assert (here / "rr.json").read_bytes() == (here / "empty.json").read_bytes()
+    assert Result.read(here / "rr.json") == Result.read(here / "empty.json")
     assert main(["report", "rr.json", "--format", "csv", "--out", "notes.txt"]) == 0
 
 

@@ -1,0 +1,118 @@
+"""`grader check`: what was recorded is judged again, and keeps its name; its page is made anew."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+
+import pytest
+import yaml
+
+from grader import grading
+from grader.cli import main
+from tests.grader.driving import Spiral, drive
+from tests.grader.testing import exercises
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    return drive(Spiral(), ticks=300)
+
+
+@pytest.fixture
+def graded(tmp_path, monkeypatch, drawn):
+    """The folder of a result, as `grader run` leaves it; we are in the folder above."""
+    monkeypatch.setitem(
+        grading.RUNNERS, "virtual", lambda _, plan, __=None: replace(drawn, start=plan.start)
+    )
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "alice.py").write_text("import turtlesim.msg")
+    assert main(["run", "alice.py"]) == 0
+    return tmp_path / "graded" / "alice.py"
+
+
+def edited(tmp_path, **changes):
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({"exercise": "turtlesim_challenge", **changes}))
+    return str(path)
+
+
+def result(folder):
+    return json.loads((folder / "result.json").read_text())
+
+
+@pytest.mark.parametrize("part", [".", "recording", "result.json"])
+def test_the_result_is_judged_by_the_new_exercise_and_so_is_its_page(
+    graded, tmp_path, capsys, part
+):
+    before = result(graded)
+    (graded / "report.html").write_text("of yesterday")
+    asked = ["--exercise", edited(tmp_path, points={"moves": 7})]
+    assert main(["check", str(graded / part), *asked]) == 0
+    after = result(graded)
+    assert (after["submission"], after["score"], after["max_score"]) == ("alice.py", 7, 7)
+    assert after["artifacts"] == before["artifacts"]
+    assert after["provenance"]["recorded"] == before["provenance"]["recorded"]
+    page = (graded / "report.html").read_text()
+    assert "alice.py: 7 of 7" in page
+    assert f"The page with picture and plots: {graded / 'report.html'}" in capsys.readouterr().out
+
+
+def test_into_a_file_of_its_own_goes_the_result_and_nothing_else_changes(graded, tmp_path):
+    before = {path: path.read_bytes() for path in graded.rglob("*") if path.is_file()}
+    assert main(["check", str(graded), "--json", str(tmp_path / "again.json")]) == 0
+    again = json.loads((tmp_path / "again.json").read_text())
+    assert again["verdicts"] == result(graded)["verdicts"]
+    assert again["artifacts"]["recording"] == "graded/alice.py/recording"
+    assert before == {path: path.read_bytes() for path in graded.rglob("*") if path.is_file()}
+
+
+def test_into_the_result_s_own_file_is_the_same_as_without_saying_so(graded):
+    (graded / "report.html").unlink()
+    assert main(["check", str(graded), "--json", str(graded / "result.json")]) == 0
+    assert "alice.py" in (graded / "report.html").read_text()
+
+
+def test_a_recording_anywhere_else_knows_its_name_and_nothing_is_written(graded, tmp_path, capsys):
+    elsewhere = tmp_path / "elsewhere" / "recording"
+    shutil.copytree(graded / "recording", elsewhere)
+    capsys.readouterr()
+    assert main(["check", str(elsewhere)]) == 0
+    assert "alice.py: turtlesim_challenge" in capsys.readouterr().out
+    (elsewhere / "circumstances.json").unlink()  # as an older grader has left it
+    assert main(["check", str(elsewhere)]) == 0
+    assert "elsewhere: turtlesim_challenge" in capsys.readouterr().out
+    assert [path.name for path in elsewhere.parent.iterdir()] == ["recording"]
+
+
+def test_a_file_of_this_name_that_is_no_result_stays(graded):
+    (graded / "result.json").write_text('{"mine": 1}')
+    assert main(["check", str(graded)]) == 0
+    assert (graded / "result.json").read_text() == '{"mine": 1}'
+
+
+def test_what_only_a_run_can_follow_is_told(graded, tmp_path, capsys):
+    changes = {"limits": {"total_s": 240}, "varied_runs": {"count": 3}}
+    assert main(["check", str(graded), "--exercise", edited(tmp_path, **changes)]) == 0
+    told = capsys.readouterr().out
+    for key, then, now in (("limits.total_s", 180, 240), ("varied_runs.count", 2, 3)):
+        line = (
+            f"The recording was made with {key} {then}; the exercise now says {now}. "
+            "Run the submission again for that."
+        )
+        assert line in " ".join(told.split())
+        assert line in result(graded)["run"]["flags"]
+    assert main(["check", str(graded)]) == 0
+    assert "was made with" not in capsys.readouterr().out
+
+
+def test_the_exercise_is_the_one_that_it_was_made_for(graded, tmp_path, capsys):
+    assert main(["run", "alice.py", "--exercise", "square"]) == 0
+    assert main(["check", str(graded)]) == 0
+    assert result(graded)["exercise"] == "square"
+    folder = exercises.write(tmp_path / "ahead")
+    assert main(["run", "alice.py", "--exercise", str(folder)]) == 0
+    assert main(["check", str(graded)]) == 2
+    assert "not installed here; give its folder" in capsys.readouterr().err
+    assert main(["check", str(graded), "--exercise", str(folder)]) == 0
