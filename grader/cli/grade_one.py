@@ -20,7 +20,6 @@ from rich.text import Text
 
 from grader import files, grading
 from grader.cli import error_file, progress
-from grader.errors import GraderError
 from grader.exercise.loading import Exercise, load_exercise
 from grader.grading import Finished
 from grader.recording import folder
@@ -34,22 +33,16 @@ from grader.text import for_terminal
 LATER = ("grader.recording.bag", "grader.reports.page.html", "grader.reports.terminal")
 
 
-def grade_and_go_on(args: argparse.Namespace) -> None:
-    """Grade for somebody who waits; what cannot be used now may be usable after the next save."""
-    messages = Console(stderr=True, highlight=False)
-    error_file.prepare(args)
-    try:
-        grade(args)
-    except GraderError as error:
-        messages.print(Text(for_terminal(error.message)), soft_wrap=True)
-        error_file.write(error, args)
-    messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
-
-
 def grade(args: argparse.Namespace) -> int:
     """Grade once; the exit code."""
+    result = graded(args)
+    return int(args.fail_under is not None and result.score < args.fail_under)
+
+
+def graded(args: argparse.Namespace) -> Result:
+    """Grade once: run, judge, write, show."""
     exercise = load_exercise(args.exercise)
-    out: Path = args.out or _default_out(args.submission)
+    out = out_of(args)
     if args.out is None:
         files.check_leads_nowhere_else(out, Path.cwd())
     handed_in: Path = args.submission
@@ -57,7 +50,14 @@ def grade(args: argparse.Namespace) -> int:
     with ExitStack() as held:
         with open_submission(args.submission, args.executable) as submission:
             result, recordings = _run_and_judge(args, submission, exercise, out, held)
-        return _report(args, result, recordings, out)
+        _report(args, result, recordings, out)
+    return result
+
+
+def out_of(args: argparse.Namespace) -> Path:
+    """The folder of the result."""
+    out: Path | None = args.out
+    return _default_out(args.submission) if out is None else out
 
 
 def _run_and_judge(
@@ -111,8 +111,8 @@ def _show_nominal(known: Result, nominal: Recording, out: Path, console: Console
     terminal.show_nominal(Report.of(known, out, Recordings(nominal)), console)
 
 
-def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> int:
-    """Write the result and what lies beside it, show it; the exit code."""
+def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> None:
+    """Write the result and what lies beside it, and show it."""
     from grader.cli import showing
     from grader.reports import Report, render
 
@@ -126,7 +126,6 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     page = out / PAGE
     files.put(page, render("html", [report]).encode("utf-8"))
     showing.show(report, page)
-    return int(args.fail_under is not None and result.score < args.fail_under)
 
 
 def _default_out(submission: Path) -> Path:

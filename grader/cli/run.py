@@ -77,9 +77,11 @@ def main(args: argparse.Namespace) -> int:
     if not args.watch:
         return grade_one.grade(args)
     require("watchdog")
+    from grader.cli.rounds import Rounds
     from grader.cli.watch import each_save
 
-    for _ in each_save(args.submission):
-        grade_one.grade_and_go_on(args)
+    rounds = Rounds(args)
+    for _ in each_save(args.submission, grade_one.out_of(args)):
+        rounds.grade()
         reader.warm()
     return 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
@@ -23,10 +24,14 @@ FOREIGN = frozenset({".git", ".venv", "venv", "__pycache__", "build", "install"}
 QUIET_S = 0.1
 
 
-def each_save(submission: Path) -> Iterator[None]:
+def each_save(submission: Path, out: Path | None = None) -> Iterator[None]:
     """Yield at once, and then whenever the submission has been saved; ends at Ctrl-C.
 
-    A save that comes while the caller is busy is not lost.
+    A save that comes while the caller is busy is not lost. One is told once, also where more than
+    one event tells of it.
+
+    Args:
+        out: a folder whose files are not the submission's, though it may lie inside.
 
     Raises:
         UsageError: the folder to watch does not exist.
@@ -36,13 +41,17 @@ def each_save(submission: Path) -> Iterator[None]:
     folder = (submission if is_folder else submission.parent).absolute()
     if not folder.is_dir():
         raise UsageError(f"cannot watch {submission}: {folder} does not exist")
-    saves = Saves(folder, None if is_folder else submission.name)
+    saves = Saves(folder, None if is_folder else submission.name, out and out.absolute())
     observer = _watching(saves, folder, is_folder)
     try:
+        told = saves.state()
         yield
         while True:
             saves.wait()
-            yield
+            found = saves.state()
+            if found != told:
+                told = found
+                yield
     finally:
         observer.stop()
         observer.join()
@@ -54,11 +63,13 @@ class Saves(FileSystemEventHandler):
     Args:
         folder: what is watched.
         only: the name of the one file in it that counts; None for all.
+        out: a folder in it of which nothing counts.
     """
 
-    def __init__(self, folder: Path, only: str | None) -> None:
+    def __init__(self, folder: Path, only: str | None, out: Path | None = None) -> None:
         self._folder = folder
         self._only = only
+        self._out = out
         self._seen: SimpleQueue[FileSystemEvent] = SimpleQueue()
 
     def on_any_event(self, event: FileSystemEvent) -> None:
@@ -79,10 +90,25 @@ class Saves(FileSystemEventHandler):
         except Empty:
             return
 
+    def state(self) -> dict[str, tuple[int, int, int]]:
+        """What tells one save from another: of each file that counts inode, size and time."""
+        found = {}
+        for at, folders, names in os.walk(self._folder):
+            kept = (each for each in folders if each not in FOREIGN)
+            folders[:] = [] if self._only is not None else sorted(kept)
+            for path in (Path(at, name) for name in names):
+                with suppress(OSError):  # it has just gone
+                    if self._counts(str(path)):
+                        stat = path.stat()
+                        found[str(path)] = (stat.st_ino, stat.st_size, stat.st_mtime_ns)
+        return found
+
     def _counts(self, name: str) -> bool:
         path = Path(name)
         if self._only is not None:
             return path == self._folder / self._only
+        if self._out is not None and path.is_relative_to(self._out):
+            return False  # its name may be that of a file: graded/node.py
         inside = path.relative_to(self._folder) if path.is_relative_to(self._folder) else path
         return path.suffix in SUFFIXES and FOREIGN.isdisjoint(inside.parts)
 

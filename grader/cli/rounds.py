@@ -1,0 +1,56 @@
+"""Gradings one after the other, for somebody who saves, looks, and saves again: `--watch`."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.cli import error_file, grade_one
+from grader.errors import GraderError
+from grader.result.result import Result
+from grader.text import for_terminal
+from grader.text import points as shown
+
+
+class Rounds:
+    """What has been graded so far.
+
+    Args:
+        args: of `grader run`.
+    """
+
+    def __init__(self, args: argparse.Namespace) -> None:
+        self._args = args
+        self._last: Result | None = None
+        self._is_first = True
+
+    def grade(self) -> None:
+        """Grade once more; what cannot be used now may be usable after the next save."""
+        console, messages = Console(highlight=False), Console(stderr=True, highlight=False)
+        if not self._is_first and console.is_terminal:
+            console.clear()
+        self._is_first = False
+        error_file.prepare(self._args)
+        try:
+            result = grade_one.graded(self._args)
+        except GraderError as error:
+            messages.print(Text(for_terminal(error.message)), soft_wrap=True)
+            error_file.write(error, self._args)
+        else:
+            said = f"{time.strftime('%H:%M:%S')}  {change(self._last, result)}"
+            console.print(Text(said, "bold"), soft_wrap=True)
+            self._last = result
+        messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
+
+
+def change(last: Result | None, result: Result) -> str:
+    """What a score is compared with the last one: '62 -> 80 (+18)'."""
+    score = shown(result.score)
+    if last is None:
+        return f"{score} of {shown(result.max_score)}"
+    by = round(result.score - last.score, 2)
+    sign = "+" if by > 0 else ""
+    return f"{shown(last.score)} -> {score} ({sign}{shown(by)})" if by else f"{score}, as before"
