@@ -100,6 +100,8 @@ def _parser(words: Sequence[str]) -> error_file.Parser:
     """The parser of a call: of the verb that it asks for it knows the arguments."""
     asked = next((word for word in words if not word.startswith("-")), None)
     parser = error_file.Parser(prog="grader", description="Grade the turtlesim challenge.")
+    known = _versions() if "--version" in words else ""
+    parser.add_argument("--version", action="version", version=known)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, summary in VERBS.items():
         verb = verbs.add_parser(name, help=summary, description=summary)
@@ -107,6 +109,14 @@ def _parser(words: Sequence[str]) -> error_file.Parser:
             load(name).add_arguments(verb)
             error_file.add_argument(verb)
     return parser
+
+
+def _versions() -> str:
+    """Ours, and those that somebody who reports a fault is asked for."""
+    from grader import versions
+
+    ros = f", ROS 2 {distro}" if (distro := versions.ros_distro()) else ""
+    return f"grader {versions.grader()} (Python {versions.python()}, rclpy {versions.rclpy()}{ros})"
 
 
 def _misused(error: error_file.Misuse, args: Namespace) -> int:

@@ -13,6 +13,13 @@ from std_srvs.srv import Empty
 from turtlesim_py.ros import program
 from turtlesim_py.ros.rclcpp_node import RclcppNode
 
+#: For who asks what the program does.
+ABOUT = """\
+Reset the simulator, then let turtle1 draw a square of 2 m again and again. A turtlesim_node has to
+be running.
+
+parameters:
+    interfaces       package of the messages: turtlesim or turtlesim_msgs"""
 #: The square's side [m].
 SIDE_M = 2.0
 #: How fast it goes ahead [m/s] and turns [rad/s].
@@ -128,7 +135,7 @@ class DrawSquare(RclcppNode):
 
 def main(argv: list[str] | None = None) -> int:
     """Run until SIGINT or SIGTERM."""
-    return program.run("draw_square", DrawSquare, program.spin, argv)
+    return program.run("draw_square", DrawSquare, program.spin, argv, ABOUT)
 
 
 if __name__ == "__main__":

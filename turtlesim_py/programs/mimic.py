@@ -13,6 +13,14 @@ from geometry_msgs.msg import Twist
 from turtlesim_py.ros import program
 from turtlesim_py.ros.rclcpp_node import RclcppNode
 
+#: For who asks what the program does.
+ABOUT = """\
+Let one turtle do what another does: the speeds of input/pose become commands on output/cmd_vel.
+    mimic --ros-args -r input/pose:=turtle1/pose -r output/cmd_vel:=turtle2/cmd_vel
+
+parameters:
+    interfaces       package of the messages: turtlesim or turtlesim_msgs"""
+
 
 class Mimic(RclcppNode):
     """The node `/turtle_mimic`: the speeds of `input/pose` become commands on `output/cmd_vel`."""
@@ -32,7 +40,7 @@ class Mimic(RclcppNode):
 
 def main(argv: list[str] | None = None) -> int:
     """Run until SIGINT or SIGTERM."""
-    return program.run("mimic", Mimic, program.spin, argv)
+    return program.run("mimic", Mimic, program.spin, argv, ABOUT)
 
 
 if __name__ == "__main__":

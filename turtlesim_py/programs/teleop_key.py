@@ -26,6 +26,15 @@ Use arrow keys to move the turtle.
 Use g|b|v|c|d|e|r|t keys to rotate to absolute orientations. 'f' to cancel a rotation.
 'q' to quit.
 """
+#: For who asks what the program does.
+ABOUT = """\
+Drive turtle1 with the keyboard of this terminal: arrow keys drive, the letters round F turn to a
+heading, F cancels a turn, Q ends. A turtlesim_node has to be running.
+
+parameters:
+    scale_linear     speed ahead and back [m/s] (2.0)
+    scale_angular    speed of a turn [rad/s] (2.0)
+    interfaces       package of the messages: turtlesim or turtlesim_msgs"""
 #: Key -> how far ahead and how far to the left, in units of the scales.
 DRIVE = {"up": (1.0, 0.0), "down": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
 #: Key -> absolute heading [rad]; the original's digits.
@@ -101,7 +110,7 @@ def drive(node: TeleopTurtle, stopped: Callable[[], bool]) -> None:
 def main(argv: list[str] | None = None) -> int:
     """Run until Q, SIGINT or SIGTERM; 2 where there is no terminal."""
     try:
-        return program.run("turtle_teleop_key", TeleopTurtle, drive, argv)
+        return program.run("turtle_teleop_key", TeleopTurtle, drive, argv, ABOUT)
     except NotATerminal as error:
         print(f"turtle_teleop_key: {error}", file=sys.stderr)
         return program.UNUSABLE

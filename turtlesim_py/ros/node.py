@@ -29,6 +29,20 @@ from turtlesim_py.world.parameters import BY_NAME, PARAMETERS
 from turtlesim_py.world.sprites import NAMES
 from turtlesim_py.world.turtle import Reading
 
+#: For who asks what the program does.
+ABOUT = """\
+The simulator: turtles in a window that is not shown. To see it:
+    ros2 run rqt_image_view rqt_image_view /turtlesim/image
+    ros2 service call /turtlesim/save_canvas std_srvs/srv/Trigger    (writes a PNG)
+
+parameters:
+    background_r, background_g, background_b   colour of the background, 0 to 255
+    holonomic        turtles also go sideways (false)
+    turtle_image     picture of every turtle (a random one)
+    image_rate       pictures a second on ~/image while somebody looks (10)
+    canvas_folder    where ~/save_canvas writes (the current folder)
+    interfaces       package of the messages: turtlesim or turtlesim_msgs
+    use_sim_time     follow /clock (false)"""
 #: The longest name that rotate_absolute's hidden services add to a turtle's.
 LONGEST_SUFFIX = "/rotate_absolute/_action/cancel_goal"
 #: So much is logged of what an exception says [characters]: it may quote a whole request.
@@ -257,6 +271,11 @@ class TurtlesimNode(RclcppNode):
 
 def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
     """Let the clock that the node follows move the turtles until it is stopped."""
+    name = node.get_fully_qualified_name()
+    node.get_logger().info(
+        f"This turtlesim shows no window. To see it: ros2 run rqt_image_view rqt_image_view "
+        f"{name}/image, or as a file: ros2 service call {name}/save_canvas std_srvs/srv/Trigger"
+    )
     # What exists now stays: no search through it in the middle of a tick
     gc.collect()
     gc.freeze()
@@ -287,7 +306,7 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
 
 def main(argv: list[str] | None = None) -> int:
     """Run the simulator until SIGINT or SIGTERM; 2 where its arguments cannot be used."""
-    return program.run("turtlesim_node", TurtlesimNode, simulate, argv)
+    return program.run("turtlesim_node", TurtlesimNode, simulate, argv, ABOUT)
 
 
 if __name__ == "__main__":

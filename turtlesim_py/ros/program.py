@@ -25,15 +25,22 @@ def run(
     create: Callable[[], AnyNode],
     work: Callable[[AnyNode, Callable[[], bool]], None],
     argv: list[str] | None = None,
+    about: str = "",
 ) -> int:
     """Create a node and let it work until it has done, or SIGINT or SIGTERM; return the exit code.
+
+    Who asks for help gets it, and nothing is started.
 
     Args:
         name: the program's, for a complaint about its arguments.
         create: makes the node when ROS is up.
         work: gets the node and a function that says whether a signal has asked to stop.
         argv: program name and arguments; without it, those of this process.
+        about: what it does, and its parameters, for who asks.
     """
+    if asks_for_help(sys.argv if argv is None else argv):
+        print(f"usage: {name} [--help] [--ros-args -p NAME:=VALUE -r FROM:=TO ...]\n\n{about}")
+        return 0
     stop = False
 
     def on_signal(*_: Any) -> None:
@@ -57,6 +64,12 @@ def run(
     finally:
         rclpy.try_shutdown()
     return 0
+
+
+def asks_for_help(argv: list[str]) -> bool:
+    """Whether a word of the program's own, not one of ROS's, asks for help."""
+    own = argv[1 : argv.index("--ros-args")] if "--ros-args" in argv else argv[1:]
+    return not {"-h", "--help"}.isdisjoint(own)
 
 
 def spin(node: Node, stopped: Callable[[], bool]) -> None:

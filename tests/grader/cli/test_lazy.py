@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from grader import cli
+from grader import cli, versions
 from grader.cli import run
 from grader.grading import RUNNERS
 from tests.grader.reports import samples
@@ -43,9 +43,19 @@ def imported(*words: str | Path, cwd: Path = ROOT) -> set[str]:
     return set(json.loads(done.stdout.splitlines()[-1]))
 
 
-@pytest.mark.parametrize("words", [[], ["--help"], ["run", "--help"], ["run", "--nonsense"]])
+@pytest.mark.parametrize(
+    "words", [[], ["--help"], ["--version"], ["run", "--help"], ["run", "--nonsense"]]
+)
 def test_who_only_asks_for_help_waits_for_nothing(words):
     assert not DEAR & imported(*words)
+
+
+def test_the_versions_are_told(capsys):
+    with pytest.raises(SystemExit) as end:
+        cli.main(["--version"])
+    assert end.value.code == 0
+    said = capsys.readouterr().out
+    assert said.startswith(f"grader {versions.grader()} (Python {versions.python()}, rclpy ")
 
 
 def test_a_run_imports_the_types_of_no_release_and_validates_nothing_of_its_own(tmp_path):

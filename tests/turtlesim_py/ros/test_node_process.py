@@ -50,6 +50,15 @@ def test_two_nodes_in_two_namespaces_do_not_hear_each_other(graph: Graph) -> Non
         assert first.stop() == second.stop() == 0
 
 
+def test_it_says_that_it_shows_no_window_and_how_to_see_one() -> None:
+    with simulator("--ros-args", "-r", "__ns:=/unseen") as program:
+        line = program.wait_for_line("shows no window")
+        assert line.startswith("[INFO]")
+        for name in ("/unseen/turtlesim/image", "/unseen/turtlesim/save_canvas"):
+            assert name in line
+        assert program.stop() == 0
+
+
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_well_and_unknown_words_do_not_matter(how: signal.Signals) -> None:
     with simulator("--bogus", "word", "--ros-args", "-r", "__ns:=/ended") as program:

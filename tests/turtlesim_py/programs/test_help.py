@@ -1,0 +1,38 @@
+"""`--help` of every program says what it does, and starts nothing."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib import import_module
+
+import pytest
+
+from tests.programs import ROOT, Program
+
+SCRIPTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
+PROGRAMS = sorted(set(SCRIPTS) - {"grader"})
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("word", ["--help", "-h"])
+def test_who_asks_for_help_gets_it_and_nothing_starts(name, word, monkeypatch, capsys):
+    module, _, function = SCRIPTS[name].partition(":")
+    main = getattr(import_module(module), function)
+    monkeypatch.setattr("sys.argv", [name, "ignored", word])
+    monkeypatch.setattr("rclpy.init", lambda **_: pytest.fail("ROS was started"))
+    assert not main()
+    said = capsys.readouterr().out
+    assert said.startswith(f"usage: {name} ")
+    assert "turtle" in said.partition("\n\n")[2]
+
+
+@pytest.mark.parametrize("module", ["turtlesim_py.ros.node"])
+def test_a_parameter_s_value_is_no_cry_for_help(module):
+    with Program(module, "--ros-args", "-r", "__ns:=/helped", "-p", "turtle_image:=-h") as program:
+        assert program.wait() == 2
+
+
+def test_the_simulator_s_help_names_its_parameters():
+    about = import_module("turtlesim_py.ros.node").ABOUT
+    declared = ("background_r", "holonomic", "turtle_image", "image_rate", "canvas_folder")
+    assert all(name in about for name in declared)

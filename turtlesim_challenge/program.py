@@ -1,0 +1,28 @@
+"""The command `turtle_controller`: starts the reference controller, or says what that is."""
+
+from __future__ import annotations
+
+import sys
+
+ABOUT = """\
+usage: turtle_controller [--help] [--ros-args -r FROM:=TO ...]
+
+The reference controller: turtle1 draws a spiral in four colours and stops near the edge. A
+turtlesim_node has to be running. Stop it with Ctrl-C."""
+
+
+def main() -> None:
+    """Run the node until Ctrl-C; who asks for help gets it, and nothing is started."""
+    own = sys.argv[1:]
+    if "--ros-args" in own:
+        own = own[: own.index("--ros-args")]
+    if not {"-h", "--help"}.isdisjoint(own):
+        print(ABOUT)
+        return
+    from turtlesim_challenge import turtle_controller
+
+    turtle_controller.main()
+
+
+if __name__ == "__main__":
+    main()
