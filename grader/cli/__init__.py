@@ -31,7 +31,8 @@ VERBS = {
     "run": "Run a submission and judge it.",
     "check": "Judge a saved recording again.",
     "report": "Show a result in another format.",
-    "new": "Write the starter package of the challenge, or of another exercise.",
+    "new": "Write the exercise sheet and the starter package of the challenge, or of another "
+    "exercise.",
     "check-exercise": "Try an exercise on its right solutions and mutants: who catches what, and "
     "what is to mend.",
 }

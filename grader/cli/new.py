@@ -1,9 +1,10 @@
-"""Write the starter package of the challenge, or of another exercise."""
+"""Write the exercise sheet and the starter package of the challenge, or of another exercise."""
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import shlex
 import shutil
 from collections.abc import Iterator
@@ -12,21 +13,25 @@ from pathlib import Path
 
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.exercise.loading import load_exercise
+from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.sheet import Start, sheet
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
 
 #: The ROS 2 releases that a starter can be for.
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 #: What of a starter depends on the release.
-ADAPTED = ("*.py", "package.xml")
+ADAPTED = ("*.py", "package.xml", "README.md")
+SHEET = "README.md"
+#: What the sheet calls the program of who begins with nothing.
+PROGRAM = "my_node.py"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
     parser.add_argument(
-        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help="whose starter (the challenge's)"
+        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help="which one (the challenge)"
     )
     parser.add_argument(
         "--ros",
@@ -37,24 +42,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Copy the starter; nothing that is already there is touched.
+    """Copy the starter and write the sheet; nothing that is already there is touched.
 
     Raises:
-        UsageError: the folder holds something, or cannot be written; the exercise has no starter.
+        UsageError: the folder holds something, or cannot be written.
     """
     folder: Path = args.folder
     exercise = load_exercise(args.exercise)
-    starter = exercise.starter
-    if starter is None:
-        raise UsageError(f"the exercise {args.exercise!r} has no starter; nothing was written")
     try:
         if folder.exists() and not folder.is_dir():
             raise UsageError(f"{folder} is a file; give a new folder, nothing was written")
         if folder.exists() and any(folder.iterdir()):
             raise UsageError(f"{folder} is not empty; give a new folder, nothing was written")
         with _whole_or_not_at_all(folder) as copy:
-            skip = shutil.ignore_patterns("__pycache__", "*.pyc")
-            shutil.copytree(starter, copy, ignore=skip)
+            if exercise.starter is None:
+                copy.mkdir()
+            else:
+                skip = shutil.ignore_patterns("__pycache__", "*.pyc")
+                shutil.copytree(exercise.starter, copy, ignore=skip)
+            if not (copy / SHEET).exists():  # else its author has written one
+                _write_sheet(copy, exercise, _grading(folder.resolve().name, args.exercise))
             if args.ros:
                 _adapt(copy, load_scene(exercise.scene), args.ros)
     except shutil.Error as error:
@@ -62,17 +69,34 @@ def main(args: argparse.Namespace) -> int:
         raise UsageError(f"cannot copy {source}: {why}; nothing was written") from None
     except OSError as error:
         raise UsageError(f"cannot write {folder}: {error.strerror}") from None
-    print(f"The starter package is in {folder}.")
+    has_starter = exercise.starter is not None
+    print(f"The {'starter package' if has_starter else 'exercise sheet'} is in {folder}.")
+    print(f"{SHEET} says what is asked for and how it is judged.")
     to_fill_in = _with_todos(folder)
     if to_fill_in:
         print(f"Fill in the TODOs of {', '.join(to_fill_in)}, then run:")
     else:
-        print("Then run:")
-    words = ["grader", "run", f"./{folder}" if str(folder).startswith("-") else str(folder)]
-    if args.exercise != DEFAULT:
-        words += ["--exercise", args.exercise]
-    print(f"    {shlex.join(words)}")
+        print("Then run:" if has_starter else f"Write {PROGRAM} beside it, then run:")
+    print(f"    {_grading(str(folder), args.exercise)}")
     return 0
+
+
+def _grading(folder: str, exercise: str) -> str:
+    """The command that grades what is written there."""
+    words = ["grader", "run", f"./{folder}" if folder.startswith("-") else folder]
+    if exercise != DEFAULT:
+        words += ["--exercise", exercise]
+    return shlex.join(words)
+
+
+def _write_sheet(folder: Path, exercise: Exercise, grade: str) -> None:
+    manifest = folder / "package.xml"
+    text = manifest.read_text(encoding="utf-8", errors="replace") if manifest.is_file() else ""
+    package = re.search(r"<name>\s*(\w+)\s*</name>", text)
+    program = next(iter(_with_todos(folder)), PROGRAM)
+    start = Start(program, package[1] if package else "", grade)
+    made = sheet(exercise, load_scene(exercise.scene), start)
+    (folder / SHEET).write_text(made, encoding="utf-8")
 
 
 @contextmanager

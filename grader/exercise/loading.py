@@ -27,11 +27,23 @@ from grader.scenes.scene import Limits, Start
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
-    *("exercise", "title", "scene", "limits", "varied_runs", "points", "tolerances", "starter"),
+    *(
+        "exercise",
+        "title",
+        "task",
+        "scene",
+        "limits",
+        "varied_runs",
+        "points",
+        "tolerances",
+        "starter",
+    ),
 )
 LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
 MOST_RUNS = 100
+#: What of them is for people and judges nothing.
+WORDS = ("title", "task", "starter")
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 _NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
@@ -55,6 +67,7 @@ class Exercise:
     Attributes:
         name: as `--exercise` takes it, and as a result names it.
         title: what a student reads.
+        task: what is to be done, in Markdown; '' where the title says it all.
         limits: when a run ends.
         varied: further runs that start elsewhere.
         points: check name -> points, in the order of the report.
@@ -78,6 +91,7 @@ class Exercise:
     folder: Path = Path()
     starter: Path | None = None
     sha256: str = ""
+    task: str = ""
 
     @property
     def conditions(self) -> dict[str, float]:
@@ -272,16 +286,24 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, place.folder),
+        task=_task(data.get("task", "")),
     )
 
 
 def _sha256(data: Mapping[str, Any], folder: Path) -> str:
     """The hash of an exercise: comments do not count, and a copy without edits has the same."""
-    values = repr(data).encode("utf-8", "surrogatepass")  # of what YAML can hold; in its order
+    judging = {key: value for key, value in data.items() if key not in WORDS}
+    values = repr(judging).encode("utf-8", "surrogatepass")  # whatever YAML can hold; in its order
     packages = (folder, *(file.parent for file in folder.glob("*/__init__.py")))
     files = [path for package in packages for path in package.glob("*.py") if path.is_file()]
     code = {path.relative_to(folder).as_posix(): content.of_file(path) for path in files}
     return content.of_files({**code, DESCRIPTION: content.of_bytes(values)})
+
+
+def _task(task: object) -> str:
+    if not isinstance(task, str):
+        raise Mistake(("task",), f"expected a text, found {task!r}")
+    return task
 
 
 def _check_varied(varied: VariedRuns, farthest_m: float) -> None:

@@ -203,6 +203,14 @@ class Scene(Protocol):
     def adapted(self, text: str, ros_distro: str) -> str:
         """A Python file or a package.xml as a ROS 2 release needs it; named as in ROS_DISTRO."""
 
+    def how_to_try(self, program: str, package: str) -> str:
+        """How a student runs a node beside it by hand and sees what happens, in Markdown.
+
+        Args:
+            program: the node's Python file.
+            package: the ROS package that it is in; '' for none.
+        """
+
     # In the simulator's process ---------------------------------------------------------------
 
     def preload(self) -> None:

@@ -15,7 +15,7 @@ from grader.scenes.scene import (
     Start,
     Trace,
 )
-from grader.scenes.turtlesim import interfaces, remarks, starts, trace, view
+from grader.scenes.turtlesim import interfaces, remarks, starts, trace, trying, view
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.scenes.view import Pictures, View
 from turtlesim_py.world import sprites
@@ -57,6 +57,10 @@ class Turtlesim:
     def adapted(self, text: str, ros_distro: str) -> str:
         """With the package that the release has."""
         return interfaces.adapted(text, ros_distro)
+
+    def how_to_try(self, program: str, package: str) -> str:
+        """With ros2 and without."""
+        return trying.how_to_try(program, package)
 
     def preload(self) -> None:
         """Import the node, decode the picture of the turtle."""

@@ -17,9 +17,23 @@ def test_the_challenge_s_starter_comes_by_itself(tmp_path, capsys):
     assert (tmp_path / "mine" / "setup.py").is_file()
     assert capsys.readouterr().out.splitlines() == [
         f"The starter package is in {tmp_path / 'mine'}.",
+        "README.md says what is asked for and how it is judged.",
         "Fill in the TODOs of turtlesim_challenge/turtle_controller.py, then run:",
         f"    grader run {tmp_path / 'mine'}",
     ]
+
+
+def test_the_sheet_names_what_is_there(tmp_path):
+    assert main(["new", str(tmp_path / "mine")]) == 0
+    text = (tmp_path / "mine" / "README.md").read_text()
+    assert text.startswith("# A spiral in four colours\n")
+    assert (tmp_path / "mine" / "turtlesim_challenge" / "turtle_controller.py").is_file()
+    for command in (
+        "python3 turtlesim_challenge/turtle_controller.py",
+        "ros2 run turtlesim_challenge turtle_controller",
+        "grader run mine",
+    ):
+        assert f"    {command}\n" in text
 
 
 def text_of(folder, name):
@@ -44,6 +58,7 @@ def test_the_starter_is_for_the_release_that_is_asked_for_or_sourced(
     assert f"from {package}.msg import Pose\n" in controller
     assert f"from {package}.srv import SetPen" in controller
     assert "(with a turtlesim running)" in controller
+    assert f"a `{package}.msg.Pose`" in text_of(tmp_path / "mine", "README.md")
     manifest = text_of(tmp_path / "mine", "package.xml")
     assert f"<exec_depend>{package}</exec_depend>" in manifest
     assert "<name>turtlesim_challenge</name>" in manifest
@@ -53,7 +68,8 @@ def test_without_any_ros_it_is_as_it_comes(tmp_path, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     assert main(["new", str(tmp_path / "mine")]) == 0
     starter = load_exercise("turtlesim_challenge").starter
-    for path in (tmp_path / "mine").rglob("*.*"):
+    written = {*(tmp_path / "mine").rglob("*.*")} - {tmp_path / "mine" / "README.md"}
+    for path in written:
         assert path.read_bytes() == (starter / path.relative_to(tmp_path / "mine")).read_bytes()
 
 
@@ -67,18 +83,26 @@ def test_an_exercise_elsewhere_has_its_own(tmp_path, capsys):
     exercise = exercises.write(tmp_path / "ahead", starter="begin")
     (exercise / "begin").mkdir()
     (exercise / "begin" / "node.py").write_text("print('nothing')\n")
+    (exercise / "begin" / "README.md").write_text("the author's own\n")
     assert main(["new", str(tmp_path / "mine"), "--exercise", str(exercise)]) == 0
-    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["node.py"]
-    assert capsys.readouterr().out.splitlines()[1:] == [
+    assert {path.name for path in (tmp_path / "mine").iterdir()} == {"node.py", "README.md"}
+    assert (tmp_path / "mine" / "README.md").read_text() == "the author's own\n"
+    assert capsys.readouterr().out.splitlines()[2:] == [
         "Then run:",
         f"    grader run {tmp_path / 'mine'} --exercise {exercise}",
     ]
 
 
-def test_where_there_is_none_that_is_said_and_nothing_is_written(tmp_path, capsys):
-    assert main(["new", str(tmp_path / "mine"), "--exercise", "square"]) == 2
-    assert "the exercise 'square' has no starter" in capsys.readouterr().err
-    assert not (tmp_path / "mine").exists()
+def test_where_there_is_no_starter_the_sheet_comes_alone(tmp_path, capsys):
+    assert main(["new", str(tmp_path / "mine"), "--exercise", "square"]) == 0
+    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["README.md"]
+    assert "    python3 my_node.py\n" in (tmp_path / "mine" / "README.md").read_text()
+    assert capsys.readouterr().out.splitlines() == [
+        f"The exercise sheet is in {tmp_path / 'mine'}.",
+        "README.md says what is asked for and how it is judged.",
+        "Write my_node.py beside it, then run:",
+        f"    grader run {tmp_path / 'mine'} --exercise square",
+    ]
 
 
 def test_a_starter_must_be_a_folder(tmp_path):

@@ -1,0 +1,162 @@
+"""The exercise sheet: all that a student needs to know, made from the exercise that will judge.
+
+It is Markdown. What an author has written of the exercise in exercise.yaml (`title`, `task`, the
+comments beside its tolerances) and checks.py (the docstrings of the checks) is shown, with the
+numbers that are in force.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import yaml
+
+from grader.exercise.check import Check
+from grader.exercise.loading import Exercise
+from grader.exercise.places import DESCRIPTION
+from grader.scenes.scene import Scene
+from grader.text import points
+
+#: A line of exercise.yaml in a part: blanks, key, value, perhaps a comment.
+_VALUE = re.compile(r"^(\s+)([\w-]+)(:\s*)([^#\n]*?)(\s+#.*)?$")
+#: A tolerance in a check's docstring; with % it is meant in percent.
+_NAMED = re.compile(r"\{(\w+)(%?)\}")
+
+
+@dataclass(frozen=True)
+class Start:
+    """What a student begins with.
+
+    Attributes:
+        program: the Python file that is their node, relative to where they begin.
+        package: the ROS package that it is in; '' for none.
+        grade: the command that grades it, from the folder above.
+    """
+
+    program: str
+    package: str
+    grade: str
+
+
+def sheet(exercise: Exercise, scene: Scene, start: Start) -> str:
+    """The sheet."""
+    parts = (
+        [f"# {exercise.title}", exercise.task],
+        _judged(exercise, scene),
+        _tolerances(exercise),
+        ["## How to try it", scene.how_to_try(start.program, start.package)],
+        _handed_in(start),
+    )
+    texts = (text.strip("\n") for part in parts for text in part)
+    return "\n\n".join(text for text in texts if text) + "\n"
+
+
+def _judged(exercise: Exercise, scene: Scene) -> Iterator[str]:
+    checks = {check.name: check for check in exercise.checks}
+    listed = [(checks[name], worth) for name, worth in exercise.points.items() if worth]
+    yield f"## What it is worth: {points(exercise.max_score)} points"
+    yield "\n".join(
+        ["| points | what is looked at | check |", "|---:|---|---|"]
+        + [f"| {points(worth)} | {check.title} | `{check.name}` |" for check, worth in listed]
+    )
+    yield "\n".join(_waits([check for check, _ in listed]))
+    for check, worth in listed:
+        rubric = getattr(check, "rubric", "")
+        if rubric:
+            yield f"### {check.title}: {points(worth)} points"
+            yield _NAMED.sub(lambda found: _told(exercise.tolerances, found), rubric)
+    yield "## How it is judged"
+    yield _runs(exercise, scene)
+
+
+def _waits(checks: Iterable[Check]) -> Iterator[str]:
+    """What has to pass before something else is judged, a line each."""
+    waiting: dict[tuple[str, ...], list[str]] = {}
+    for check in checks:
+        if check.depends_on:
+            waiting.setdefault(check.depends_on, []).append(f"`{check.name}`")
+    for first, names in waiting.items():
+        passed = " and ".join(f"`{name}`" for name in first)
+        yield _wrapped(f"- Judged only where {passed} passed: {', '.join(names)}.", indent="  ")
+
+
+def _told(tolerances: object, found: re.Match[str]) -> str:
+    """A tolerance in the words of a docstring; what is none stays as it stands."""
+    name, percent = found.groups()
+    if not isinstance(tolerances, dict) or name not in tolerances:
+        return found[0]
+    value = tolerances[name]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return _in_yaml(value)
+    return f"{100 * value:g} %" if percent else f"{value:g}"
+
+
+def _runs(exercise: Exercise, scene: Scene) -> str:
+    limits, varied = exercise.limits, exercise.varied
+    told = [
+        "Your node is run beside a simulator that shows no window, for "
+        f"{limits.total_s:g} simulated seconds at most. The run ends before that when the "
+        f"{scene.thing} has moved and then rested for {limits.rest_s:g} s, when nothing has moved "
+        f"in the first {limits.first_motion_s:g} s, or when your node ends. Time is simulated: the "
+        "same program gets the same verdict every time, on any machine.",
+    ]
+    if varied.count:
+        runs = "One more run starts" if varied.count == 1 else f"{varied.count} more runs start"
+        told.append(
+            f"{runs} elsewhere, {varied.nearest_m:g} to {varied.farthest_m:g} m from the usual "
+            "place: a program that reads the pose works there too, one that counts its steps does "
+            "not."
+        )
+    return "\n\n".join(map(_wrapped, told))
+
+
+def _tolerances(exercise: Exercise) -> Iterator[str]:
+    if exercise.tolerances:
+        yield "The numbers that the checks go by (`_m` metres, `_s` seconds, `_deg` degrees):"
+        yield f"```yaml\n{_in_force(exercise)}\n```"
+
+
+def _in_force(exercise: Exercise) -> str:
+    """The tolerances as the exercise's own file explains them, with the values in force."""
+    text = (exercise.folder / DESCRIPTION).read_text(encoding="utf-8-sig")
+    _, found, rest = text.partition("\ntolerances:")
+    part = re.split(r"^(?=[^\s#])", rest.partition("\n")[2], maxsplit=1, flags=re.MULTILINE)[0]
+    original = (yaml.safe_load(text) or {}).get("tolerances") or {}
+    shown: list[str] = []
+    missing = dict(exercise.tolerances)
+    for line in part.rstrip().splitlines() if found else ():
+        value = _VALUE.match(line)
+        if value and (name := value[2]) in missing:
+            now = missing.pop(name)
+            if now != original.get(name):
+                line = f"{value[1]}{name}: {_in_yaml(now)}{value[5] or ''}"
+        shown.append(line.removeprefix("  "))
+    return "\n".join([*shown, *(f"{name}: {_in_yaml(value)}" for name, value in missing.items())])
+
+
+def _in_yaml(value: object) -> str:
+    dumped: str = yaml.safe_dump(value, default_flow_style=True)
+    return dumped.removesuffix("...\n").strip()
+
+
+def _handed_in(start: Start) -> Iterator[str]:
+    yield "## How to hand it in"
+    yield "Grade it yourself first, as often as you like, from the folder above this one:"
+    yield f"    {start.grade}"
+    yield _wrapped(
+        "The first line says what to mend first; `report.html`, whose place stands in the last "
+        "line, shows where. With `--watch` it is graded again whenever you save."
+    )
+    yield _wrapped(
+        "Hand in the .py file, the folder of the package, or a .zip of it, as your course asks. "
+        "Leave out what is made: `graded`, `build`, `install`, `log`, `__pycache__`."
+    )
+
+
+def _wrapped(text: str, indent: str = "") -> str:
+    return textwrap.fill(
+        text, 100, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )

@@ -1,0 +1,69 @@
+"""The exercise sheet says all that is judged, with the numbers that are in force."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from grader.errors import ExerciseError
+from grader.exercise.loading import load_exercise, names
+from grader.exercise.sheet import Start, sheet
+from grader.scenes import load_scene
+from tests.grader.testing import exercises
+
+START = Start("pkg/node.py", "pkg", "grader run mine")
+
+
+def sheet_of(where, start=START):
+    exercise = load_exercise(where)
+    return sheet(exercise, load_scene(exercise.scene), start)
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_begin(name):
+    exercise, text = load_exercise(name), sheet_of(name)
+    assert text.startswith(
+        f"# {exercise.title}\n\n{exercise.task.strip()}\n\n## What it is worth: 100"
+    )
+    for check in exercise.checks:
+        assert f"| {exercise.points[check.name]:g} | {check.title} | `{check.name}` |" in text
+    assert f"{exercise.limits.total_s:g} simulated seconds at most" in " ".join(text.split())
+    for key, value in exercise.tolerances.items():
+        assert f"\n{key}: {value}" in text
+    for words in ("/turtle1/cmd_vel", "/turtle1/pose", "floats"):
+        assert words in exercise.task
+    for words in (
+        "    turtlesim_node\n    python3 pkg/node.py\n",
+        "    ros2 run pkg node\n",
+        "save_canvas",
+        "report.html",
+        "    grader run mine\n",
+        "Hand in",
+    ):
+        assert words in text
+    assert len(max(text.splitlines(), key=len)) <= 100
+
+
+def test_numbers_are_those_in_force_and_keep_their_explanations(tmp_path):
+    path = tmp_path / "mine.yaml"
+    changes = {"tolerances": {"edge_m": 1.25, "centres_m": [5.5]}, "limits": {"total_s": 240}}
+    path.write_text(yaml.safe_dump({"exercise": "turtlesim_challenge", **changes}))
+    text = sheet_of(path)
+    assert "\nedge_m: 1.25            # a stop this near a wall is near the edge\n" in text
+    assert "\ncentres_m: [5.5]  # where students take the centre to be\n" in text
+    assert "240 simulated seconds" in " ".join(text.split())
+
+
+def test_an_exercise_needs_no_words_of_its_own(tmp_path):
+    folder = exercises.write(tmp_path / "ahead", tolerances={"far_m": 0.5})
+    text = sheet_of(folder, Start("my_node.py", "", "grader run mine"))
+    assert text.startswith("# Drive ahead\n\n## What it is worth: 10 points\n")
+    assert "- Judged only where `commands` passed: `far`." in text
+    assert "far_m: 0.5" in text
+    assert "ros2 run " not in text.partition("To see")[0]
+    assert "more run" not in text
+
+
+def test_a_task_is_a_text(tmp_path):
+    with pytest.raises(ExerciseError, match="task: expected a text, found 3"):
+        load_exercise(exercises.write(tmp_path / "ahead", task=3))
