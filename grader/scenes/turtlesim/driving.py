@@ -15,25 +15,31 @@ Controller = Callable[[int, Pose | None, Arena], None]
 
 #: It has come to rest if it stood still for so long: three seconds.
 REST_TICKS = 188
+#: Nothing has driven yet: fifteen seconds.
+FIRST_MOTION_TICKS = 938
 
 
 def drive(
     controller: Controller, ticks: int, start: Start | None = None
 ) -> tuple[TurtleTrace, Reason]:
-    """Let a controller drive until turtle1 has rested for three seconds, or for `ticks`."""
+    """Let a controller drive until turtle1 has driven and rested for three seconds, or for `ticks`.
+
+    Who has not driven yet may stand for longer, as in a run of a submission.
+    """
     arena = Arena(sprite="rolling")
     if start is not None:
         arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
     recorder = Recorder(arena)
     pose: Pose | None = None
-    still = 0
+    still, has_driven = 0, False
     for tick in range(1, ticks + 1):
         controller(tick, pose, arena)
         readings = arena.tick()
         recorder.take(readings)
         before, pose = pose, readings[FIRST_TURTLE].pose if FIRST_TURTLE in readings else None
         still = still + 1 if before and pose and before[:3] == pose[:3] else 0
-        if still == REST_TICKS and recorder.ticks > 2 * REST_TICKS:
+        has_driven = has_driven or bool(before and pose and before[:2] != pose[:2])
+        if still >= REST_TICKS and (has_driven or still >= FIRST_MOTION_TICKS):
             break
     return recorder.trace(), "rest" if still >= REST_TICKS else "time_limit"
 

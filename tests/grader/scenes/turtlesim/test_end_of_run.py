@@ -46,7 +46,15 @@ def test_a_rest_that_is_too_short_counts_for_nothing():
 
 
 def test_turning_on_the_spot_is_motion():
-    assert ends(lambda tick: at(1.0, theta=min(tick, 30))) == (30 + REST, "rest")
+    assert ends(lambda tick: at(1.0, theta=tick)) == (TOTAL, "time_limit")
+
+
+def test_who_turns_first_may_pause_before_driving():
+    def turns_then_drives(tick: int) -> Pose:
+        return at(1.0 + min(max(tick - 60, 0), 20), theta=min(tick, 30))
+
+    assert ends(turns_then_drives) == (80 + REST, "rest")
+    assert ends(lambda tick: at(1.0, theta=min(tick, 30))) == (30 + FIRST_MOTION, "rest")
 
 
 def test_a_published_speed_without_motion_is_none():
