@@ -24,6 +24,8 @@ from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import SIZE_M
 
 CENTRE_M = SIZE_M / 2.0
+QUADRANTS = 4
+ROMAN = {1: "I", 2: "II", 3: "III", 4: "IV"}
 NAMES = {1: "I (top right)", 2: "II (top left)", 3: "III (bottom left)", 4: "IV (bottom right)"}
 
 

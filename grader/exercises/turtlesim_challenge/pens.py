@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grader.exercise.check import Tolerances
+from grader.exercises.turtlesim_challenge.colours import Color, alike, groups
 from grader.exercises.turtlesim_challenge.path import Entry, Path
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
@@ -15,7 +16,9 @@ from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.events import CmdVel, Kill, Reset, SetPen
 from turtlesim_py.world.turtle import TICK_S
 
-Color = tuple[int, int, int]
+#: At most this part of a stay in a quadrant may pass before the colour is there, however late an
+#: exercise lets it come: what remains has to show it.
+MOST_OF_A_STAY = 0.9
 
 
 @dataclass(frozen=True)
@@ -25,12 +28,21 @@ class Coloring:
     Attributes:
         judged: the entries that left time for an answer.
         bad: those of them after which the pen did not take the quadrant's colour in time.
-        own: quadrant -> the colour that it ended with most often; None: with the pen up.
+        own: quadrant -> its colour: the one that is asked for, or else the one that it ended with
+            most often; None: with the pen up.
+        alike: the quadrants whose colours look the same, put together.
+        colors: the pen's colour in each tick, None where it is up.
+        waits: entry -> how many ticks the colour may take.
+        wanted: how many quadrants with colours of their own make all of the points.
     """
 
     judged: list[Entry]
     bad: list[Entry]
     own: dict[int, Color | None]
+    alike: list[list[int]]
+    colors: list[Color | None]
+    waits: dict[Entry, int]
+    wanted: int
 
     @property
     def tells(self) -> bool:
@@ -39,22 +51,24 @@ class Coloring:
 
     @property
     def share(self) -> float:
-        """The part of the entries that are right, less if quadrants share a colour."""
+        """The part of the entries that are right, times the part of the colours."""
         if not self.tells:
             return 0.0
-        return (1 - len(self.bad) / len(self.judged)) * self.different / len(self.own)
+        right = 1 - len(self.bad) / len(self.judged)
+        return right * self.different / max(self.wanted, len(self.own))
 
     @property
     def different(self) -> int:
         """How many colours the quadrants have."""
-        return len(set(self.own.values()) - {None})
+        return len(self.alike)
 
 
-def coloring(path: Path, tolerances: Tolerances) -> Coloring:
+def coloring(path: Path, tolerances: Tolerances, wanted: int = 0) -> Coloring:
     """Judge the colours of one run's entries.
 
-    An entry has until `late_s` after it, or half of a usual stay in a quadrant where stays are
-    shorter. Entries with a shorter stay than that, or after the last command, are not judged.
+    An entry has `late_s` for its colour, but no more than most of its stay. Entries with a stay
+    that is shorter than both `late_s` and half of a usual stay, or after the last command, are not
+    judged.
     """
     entries = path.entries(tolerances["band_m"])
     pens = pens_by_tick(path.recording)
@@ -64,18 +78,43 @@ def coloring(path: Path, tolerances: Tolerances) -> Coloring:
     if path.wall is not None:
         end = min(end, int(path.ticks[path.wall]))
     stays = [entry.last_tick - entry.tick + 1 for entry in entries]
-    usual = float(np.median(stays)) if stays else 0.0
-    patience = max(1, round(min(tolerances["late_s"] / TICK_S, usual / 2)))
-    judged = [e for e in entries if e.tick + patience <= min(e.last_tick, end)]
+    late = tolerances["late_s"] / TICK_S
+    least = max(1, round(min(late, float(np.median(stays)) / 2))) if stays else 1
+    waits = {
+        entry: max(least, round(min(late, MOST_OF_A_STAY * stay)))
+        for entry, stay in zip(entries, stays, strict=True)
+        if entry.tick + least <= min(entry.last_tick, end)
+    }
+    judged = [entry for entry in waits if entry.tick + waits[entry] <= end]
+    near = tolerances["color_distance"]
     own = _own_colors(judged, colors)
+    asked = demanded(tolerances)
+    own = {quadrant: asked.get(quadrant, color) for quadrant, color in own.items()}
     bad = [
         e
         for e in judged
         if own[e.quadrant] is None
-        or colors[e.settled(patience)] != own[e.quadrant]
-        or not _draws(colors[e.settled(patience) : e.last_tick + 1])
+        or not alike(colors[e.settled(waits[e])], own[e.quadrant], near)
+        or not _draws(colors[e.settled(waits[e]) : e.last_tick + 1])
     ]
-    return Coloring(judged, bad, own)
+    return Coloring(judged, bad, own, groups(own, near), colors, waits, wanted)
+
+
+def demanded(tolerances: Tolerances) -> dict[int, Color]:
+    """The colours that the exercise asks for, by quadrant; as a rule none."""
+    asked = tolerances.get("colours") or {}
+    return {int(quadrant): (c[0], c[1], c[2]) for quadrant, c in asked.items()}
+
+
+def came_after(entry: Entry, coloring: Coloring, distance: float) -> int | None:
+    """How many ticks after an entry the pen took the quadrant's colour; None: never."""
+    color = coloring.own[entry.quadrant]
+    if color is None:
+        return None
+    for tick in range(entry.tick, entry.last_tick + 1):
+        if alike(coloring.colors[tick], color, distance):
+            return tick - entry.tick
+    return None
 
 
 def pens_by_tick(recording: Recording) -> list[Pen | None]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
+from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, Path
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S
@@ -17,6 +19,12 @@ BEHIND_TURNS = 0.5
 MOSTLY = 0.9
 #: At how many places, evenly spread over all angles, a path is compared with its turn before.
 PLACES = 1000
+#: Who heads away from the centre by less than 30 degrees drives outwards, not round.
+OUTWARDS = math.cos(math.radians(30.0))
+#: The part of a spiral's growth that may come from driving straight outwards.
+HALFWAY = 0.5
+#: Of the turns that are asked for, this part shows nothing yet of how they are driven.
+TELLING = 0.5
 
 
 def turned(path: Path) -> Floats:
@@ -60,11 +68,14 @@ class Loops(NamedTuple):
         outside: the share of it, from the second round on, that is farther from the centre than
             what was drawn in the same direction one round before; 1 where there is none.
         farthest_m: the most by which it is farther [m].
+        straight_out: the share of the growth, from the second round on, that comes from driving
+            straight away from the centre instead of round it.
     """
 
     rounds: float
-    outside: float
-    farthest_m: float
+    outside: float = 1.0
+    farthest_m: float = 0.0
+    straight_out: float = 0.0
 
 
 def loops(path: Path) -> Loops:
@@ -74,7 +85,7 @@ def loops(path: Path) -> Loops:
     """
     points = path.points[path.free]
     if not len(points):
-        return Loops(0.0, 1.0, 0.0)
+        return Loops(0.0)
     centres = ((CENTRE_M, CENTRE_M), points[0], points.mean(axis=0))
     return max((_round(points - centre) for centre in centres), key=lambda found: found.rounds)
 
@@ -88,11 +99,33 @@ def _round(points: Floats) -> Loops:
     distance = np.hypot(points[:, 0], points[:, 1])
     # where it turns back for a while, what counts is the line that goes on
     goes_on = angle >= np.maximum.accumulate(angle)
+    straight_out = _straight_out(points, distance, angle)
     angle, distance = angle[goes_on], distance[goes_on]
     if angle[-1] <= 2 * np.pi:
-        return Loops(rounds, 1.0, 0.0)
+        return Loops(rounds)
     wider = distance - np.interp(angle - 2 * np.pi, angle, distance)
     wider = wider[angle >= 2 * np.pi]
     places = np.linspace(2 * np.pi, angle[-1], PLACES)
     outside = np.interp(places, angle[angle >= 2 * np.pi], wider) > 0
-    return Loops(rounds, float(outside.mean()), float(wider.max()))
+    return Loops(rounds, float(outside.mean()), float(wider.max()), straight_out)
+
+
+def _straight_out(points: Floats, distance: Floats, angle: Floats) -> float:
+    """See `Loops.straight_out`; 0 where there is no growth."""
+    later = angle[1:] >= 2 * np.pi
+    out, way = np.diff(distance)[later], np.hypot(*np.diff(points, axis=0).T)[later]
+    total = float(out.sum())
+    if total <= 0:
+        return 0.0
+    return float(out[np.abs(out) >= OUTWARDS * way].sum()) / total
+
+
+def shown(path: Path, tolerances: Tolerances) -> float:
+    """What a path's turns are worth as evidence of how it was driven.
+
+    1 for all turns that are asked for, 0 for half of them or less, and in proportion between: who
+    hardly drives has hardly done anything wrong, and nothing right.
+    """
+    turned, _ = turns(path)
+    made = min(turned, loops(path).rounds + BEHIND_TURNS) / max(tolerances["turns"], 1e-9)
+    return float(np.clip((made - TELLING) / (1 - TELLING), 0.0, 1.0))

@@ -2,66 +2,75 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
 from grader.exercise.check import Tolerances
 from grader.exercise.sentences import how_it_ended
 from grader.exercise.verdict import Finding
+from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.path import Path
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 
+#: What is left of the points of a stop near an edge that is not quite one: because no commands
+#: came any more, or while the turtle turns on and on.
+HALF = 0.5
+WALLS = ("left", "bottom", "right", "top")
 
-def judge_stop(path: Path, tolerances: Tolerances) -> Finding:
+#: How a run ended. `late`: the time was up while a spiral still grew, and had not
+#: touched a wall.
+Kind = Literal["stopped", "halfway", "wall", "late", "other", "void"]
+
+
+@dataclass(frozen=True)
+class Stop:
+    """The end of one run.
+
+    Attributes:
+        finding: what it is worth for itself.
+        wall: the wall that it stopped at or ran into; '' for none.
+        path: the run's.
+    """
+
+    kind: Kind
+    finding: Finding
+    path: Path
+    wall: str = ""
+
+
+def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
     """Whether a run ended at rest near an edge, by a command, without touching a wall."""
-    run = path.recording.run
-    ending = how_it_ended(path.recording)
     void = judge_start(path)
     if void is not None:
-        return void
+        return Stop("void", void, path)
     if path.wall is not None:
-        touched = path.at(int(path.ticks[path.wall]), "it touches the wall here")
-        return Finding(
-            0,
-            f"The turtle ran into a wall at {touched.time_s:.1f} s.",
-            "Watch the pose, and stop before a wall is reached.",
-            (touched,),
-        )
+        wall = nearest_wall(path, path.wall)
+        return Stop("wall", _touched(path, wall, tolerances), path, wall)
     if path.lost_tick is not None:
-        lost = path.at(path.lost_tick, "the last place it was at")
-        return Finding(
-            0,
-            f"At {lost.time_s:.1f} s your node sent a velocity that is not a number, and the "
-            "turtle was nowhere from then on.",
-            "Which division or logarithm can give nan or inf?",
-            (lost,),
-        )
-    end = path.at(path.stop_tick, "the last place it moved to")
+        return Stop("other", _lost(path, path.lost_tick), path)
     if path.last >= len(path) - 2:
-        return Finding(
-            0,
-            f"The turtle was still moving after {run.simulated_s:.0f} s.",
-            "Compare x and y of the pose with the size of the window, and publish a zero Twist.",
-            (end,),
-        )
+        if _is_on_its_way(path, tolerances):
+            return Stop("late", _late(path), path)
+        return Stop("other", _moving(path, tolerances), path)
+    end = path.at(path.stop_tick, "the last place it moved to")
     gap = float(path.wall_distance[path.last])
+    ending = how_it_ended(path.recording)
     if gap > tolerances["edge_m"]:
-        return Finding(
+        finding = Finding(
             0,
             f"The turtle came to rest {gap:.2f} m from the nearest wall; "
             f"{tolerances['edge_m']:g} m or less is near.{ending}",
             "What should make it stop is the pose, near an edge.",
             (end,),
         )
-    # The stop that counts is the command that was in force when the turtle came to rest.
-    commands = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
-    if not commands or not _stands_still(commands[-1]):
-        return Finding(
-            0,
-            f"The turtle came to rest {gap:.2f} m from the wall because no more commands came, "
-            f"not because it was told to stop.{ending}",
-            "Publish a Twist of zeros to stop.",
-            (end,),
-        )
-    return Finding(1, f"stopped by a command, {gap:.2f} m from the wall", evidence=(end,))
+        return Stop("other", finding, path)
+    finding = _told_to_rest(path, gap)
+    kind: Kind = "stopped" if finding.share >= 1 else "halfway" if finding.share else "other"
+    return Stop(kind, finding, path, nearest_wall(path, path.last))
 
 
 def judge_start(path: Path) -> Finding | None:
@@ -79,5 +88,170 @@ def judge_start(path: Path) -> Finding | None:
     )
 
 
-def _stands_still(command: CmdVel) -> bool:
+def nearest_wall(path: Path, row: int) -> str:
+    """The wall that the turtle is nearest to."""
+    return WALLS[int(np.argmin(_to_walls(path)[row]))]
+
+
+def passed_by_m(stop: Stop) -> float:
+    """By how much it had been nearer to its wall before, and drove away again [m]."""
+    row = stop.path.last
+    to_wall = _to_walls(stop.path)[: row + 1, WALLS.index(stop.wall)]
+    return float(to_wall[row] - to_wall.min())
+
+
+def is_told_to_stop_at(path: Path, tick: int, within_ticks: int) -> bool:
+    """Whether a command to stand still came at about this tick."""
+    return any(
+        stands_still(call) and abs(call.tick - tick) <= within_ticks for call in path.calls(CmdVel)
+    )
+
+
+def stands_still(command: CmdVel) -> bool:
+    """Whether a command says to stand still."""
     return not command.linear[0] and not command.angular[2]
+
+
+def _to_walls(path: Path) -> np.ndarray:
+    """How far each reading is from each of `WALLS` [m], float64 (n, 4)."""
+    return np.column_stack((path.x, path.y, path.size_m - path.x, path.size_m - path.y))
+
+
+def _touched(path: Path, wall: str, tolerances: Tolerances) -> Finding:
+    touched = path.at(int(path.ticks[path.wall or 0]), "it touches the wall here")
+    text = f"The turtle ran into the {wall} wall at {touched.time_s:.1f} s"
+    drove_on = _drove_on(path, touched.tick, tolerances)
+    if drove_on is None:
+        help_ = "Watch the pose, and stop before a wall is reached."
+        return Finding(0, f"{text}.", help_, (touched,))
+    stop, further = drove_on
+    told = path.at(stop.tick, "told to stop here")
+    return Finding(0, f"{text}: {_stop_and_go(stop, further)}.", _ONE_SAYS_STOP, (told, touched))
+
+
+_ONE_SAYS_STOP = (
+    "Who stops must also cease to drive: what else in your node publishes velocities, and how does "
+    "it learn that the turtle is to stand?"
+)
+
+
+def _stop_and_go(stop: CmdVel, further: CmdVel) -> str:
+    return (
+        f"your node stopped it at {stop.tick * TICK_S:.2f} s and then sent another command, to "
+        f"drive on, at {further.tick * TICK_S:.2f} s"
+    )
+
+
+def _drove_on(path: Path, until: int, tolerances: Tolerances) -> tuple[CmdVel, CmdVel] | None:
+    """The first command to stop near an edge that was followed by one to drive, and that one."""
+    commands = [call for call in path.calls(CmdVel) if call.tick <= until]
+    for stop, further in pairwise(commands):
+        if stop.linear[0] or not further.linear[0]:
+            continue
+        row = int(np.clip(np.searchsorted(path.ticks, stop.tick), 0, len(path) - 1))
+        if path.wall_distance[row] <= tolerances["edge_m"]:
+            return stop, further
+    return None
+
+
+def _lost(path: Path, tick: int) -> Finding:
+    lost = path.at(tick, "the last place it was at")
+    return Finding(
+        0,
+        f"At {lost.time_s:.1f} s your node sent a velocity that is not a number, and the "
+        "turtle was nowhere from then on.",
+        "Which division or logarithm can give nan or inf?",
+        (lost,),
+    )
+
+
+def _is_on_its_way(path: Path, tolerances: Tolerances) -> bool:
+    """Whether a spiral grew until the time was up: how near to a wall it stops is not known."""
+    if path.recording.run.outcome != "time_limit" or not len(path):
+        return False
+    if _drove_on(path, path.stop_tick, tolerances) is not None:
+        return False
+    growth = shape.growth(path)
+    return len(growth) > 0 and bool(growth.min() >= tolerances["growth_m"])
+
+
+def _late(path: Path) -> Finding:
+    seconds = f"{path.recording.run.simulated_s:.0f} s"
+    end = path.at(path.stop_tick, "here it was when the time was up")
+    return Finding(
+        0,
+        f"A run lasts {seconds}, and then the spiral was still growing, "
+        f"{float(path.wall_distance.min()):.2f} m away from the nearest wall: whether the turtle "
+        "would have stopped there was not to be seen.",
+        "Nothing is wrong with the way so far: let the spiral grow faster, so that it comes near "
+        f"a wall within {seconds}.",
+        (end,),
+    )
+
+
+def _moving(path: Path, tolerances: Tolerances) -> Finding:
+    seconds = f"{path.recording.run.simulated_s:.0f} s"
+    limit = ", the limit of a run" if path.recording.run.outcome == "time_limit" else ""
+    end = path.at(path.stop_tick, "the last place it moved to")
+    text = f"The turtle was still moving after {seconds}{limit}"
+    drove_on = _drove_on(path, path.stop_tick, tolerances)
+    if drove_on is not None:
+        stop, further = drove_on
+        told = path.at(stop.tick, "told to stop here")
+        return Finding(0, f"{text}: {_stop_and_go(stop, further)}.", _ONE_SAYS_STOP, (told, end))
+    nearest = float(path.wall_distance.min()) if len(path) else 0.0
+    if nearest > tolerances["edge_m"]:
+        return Finding(
+            0,
+            f"{text}, and never came nearer to a wall than {nearest:.2f} m.",
+            "The spiral has to grow until it is near an edge.",
+            (end,),
+        )
+    return Finding(
+        0,
+        f"{text}; it had come as near to a wall as {nearest:.2f} m.",
+        "Compare x and y of the pose with the size of the window, and publish a zero Twist.",
+        (end,),
+    )
+
+
+def _told_to_rest(path: Path, gap: float) -> Finding:
+    """Whether it was a command that ended all motion, near an edge."""
+    end = path.at(path.stop_tick, "the last place it moved to")
+    run = path.recording.run
+    ending = how_it_ended(path.recording)
+    # What counts is the command that was in force when the turtle drove no more, and, where it
+    # then turned on the spot, when it turned no more.
+    rest_tick = int(path.ticks[path.rest])
+    commands = path.calls(CmdVel)
+    drove = [call for call in commands if call.tick <= path.stop_tick + 1]
+    turned = [call for call in commands if call.tick <= rest_tick + 1]
+    if not drove or drove[-1].linear[0]:
+        by_error = run.outcome in ("crashed", "killed", "stalled")
+        return Finding(
+            0 if by_error else HALF,
+            f"The turtle came to rest {gap:.2f} m from the wall because no more commands came, "
+            f"not because it was told to stop.{ending}" + ("" if by_error else _HALF_OF_IT),
+            "Publish a Twist of zeros to stop.",
+            (end,),
+        )
+    if path.rest >= len(path) - 2:
+        return Finding(
+            HALF,
+            f"The turtle drove no farther {gap:.2f} m from the wall, but it turned on the spot "
+            f"until the run was over.{_HALF_OF_IT}",
+            "A Twist of zeros stops turning, too: what does angular.z say?",
+            (end,),
+        )
+    if not stands_still(turned[-1]):
+        return Finding(
+            HALF,
+            f"The turtle was told to drive no farther {gap:.2f} m from the wall, and to turn on "
+            f"the spot; that ended only because no more commands came.{ending}{_HALF_OF_IT}",
+            "Publish a Twist of zeros to stop, angular.z as well.",
+            (end,),
+        )
+    return Finding(1, f"stopped by a command, {gap:.2f} m from the wall", evidence=(end,))
+
+
+_HALF_OF_IT = " That is half of the points."

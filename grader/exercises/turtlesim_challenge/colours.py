@@ -1,0 +1,93 @@
+"""Which colours an eye tells apart, and what it calls them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from turtlesim_py.world.trajectory import Floats
+
+Color = tuple[int, int, int]
+
+#: What students call colours; a colour is called by the nearest.
+NAMES: dict[str, Color] = {
+    "black": (0, 0, 0),
+    "white": (255, 255, 255),
+    "grey": (128, 128, 128),
+    "red": (255, 0, 0),
+    "dark red": (128, 0, 0),
+    "green": (0, 255, 0),
+    "dark green": (0, 128, 0),
+    "blue": (0, 0, 255),
+    "dark blue": (0, 0, 128),
+    "yellow": (255, 255, 0),
+    "cyan": (0, 255, 255),
+    "magenta": (255, 0, 255),
+    "orange": (255, 165, 0),
+    "purple": (128, 0, 128),
+    "pink": (255, 192, 203),
+    "brown": (150, 75, 0),
+    "the pen's first colour": (179, 184, 255),
+}
+#: A colour that is farther from all of these has no name.
+NAMED = 20.0
+
+# sRGB to XYZ (IEC 61966-2-1), and the white D65 that it goes with
+_TO_XYZ = np.array(
+    [
+        [0.4124, 0.3576, 0.1805],
+        [0.2126, 0.7152, 0.0722],
+        [0.0193, 0.1192, 0.9505],
+    ]
+)
+_WHITE = _TO_XYZ.sum(axis=1)
+
+
+def lab(colors: npt.ArrayLike) -> Floats:
+    """CIELAB coordinates (CIE 15:2004, 8.2.1) of sRGB colours from 0 to 255; (n, 3) -> (n, 3)."""
+    srgb = np.asarray(colors, dtype=np.float64).reshape(-1, 3) / 255.0
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    xyz = linear @ _TO_XYZ.T / _WHITE
+    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
+    x, y, z = f.T
+    return np.column_stack((116 * y - 16, 500 * (x - y), 200 * (y - z)))
+
+
+def distances(colors: npt.ArrayLike, color: Color) -> Floats:
+    """How differently colours look from one, float64 (n,): the Euclidean distance in CIELAB.
+
+    About 2.3 is just noticeable where two areas touch (Mahy, Van Eycken, Oosterlinck 1994).
+    """
+    return np.asarray(np.linalg.norm(lab(colors) - lab(color), axis=1))
+
+
+def alike(one: Color | None, other: Color | None, distance: float) -> bool:
+    """Whether nobody tells two colours apart; None is no colour, a pen that is up."""
+    if one is None or other is None:
+        return one is other
+    return one == other or bool(distances(other, one)[0] < distance)
+
+
+def groups(colors: Mapping[int, Color | None], distance: float) -> list[list[int]]:
+    """The quadrants that look alike, put together; those without a colour are left out."""
+    found: list[list[int]] = []
+    for quadrant, color in sorted(colors.items()):
+        if color is None:
+            continue
+        home = next((g for g in found if alike(colors[g[0]], color, distance)), None)
+        if home is None:
+            found.append([quadrant])
+        else:
+            home.append(quadrant)
+    return found
+
+
+def name(color: Color | None) -> str:
+    """What to call a colour: 'red (255, 0, 0)'."""
+    if color is None:
+        return "off"
+    far = distances(list(NAMES.values()), color)
+    numbers = f"({', '.join(str(int(channel)) for channel in color)})"
+    return f"{list(NAMES)[int(np.argmin(far))]} {numbers}" if far.min() < NAMED else numbers

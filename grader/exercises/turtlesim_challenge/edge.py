@@ -1,0 +1,135 @@
+"""Whether the turtle stops near an edge, wherever it starts: all runs together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grader.exercise.check import Tolerances
+from grader.exercise.verdict import Finding
+from grader.exercises.turtlesim_challenge.path import Path
+from grader.exercises.turtlesim_challenge.stops import (
+    Stop,
+    is_told_to_stop_at,
+    judge_stop,
+    passed_by_m,
+)
+from grader.recording.recording import Recordings
+from turtlesim_py.world.turtle import TICK_S
+
+#: Who is told to stop this near to the same moment, wherever it started, counts [ticks].
+SAME_MOMENT_TICKS = 32
+
+
+def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """The worst of all runs; those in which the time was up too early tell nothing."""
+    first = judge_stop(Path(recordings.nominal), tolerances)
+    if first.kind not in ("stopped", "halfway", "late", "wall"):
+        return first.finding
+    stops = [first]
+    for number, recording in enumerate(recordings.varied, start=1):
+        stops.append(_judge_varied(Path(recording, number), tolerances))
+    if first.kind == "wall":
+        return _one_wall_only(stops) or first.finding
+    telling = [stop for stop in stops if stop.kind != "late"]
+    if not telling:
+        return first.finding
+    worst = min(telling, key=lambda stop: stop.finding.share)
+    if worst.finding.share >= 1:
+        return Finding(1, _all_right(stops), evidence=telling[0].finding.evidence)
+    if worst is first or (first.kind == "halfway" and worst.finding.share > 0):
+        return worst.finding
+    return _not_elsewhere(stops, worst)
+
+
+def in_varied_runs_too(recordings: Recordings) -> str:
+    """The end of a sentence: that it held in all of them."""
+    count = len(recordings.varied)
+    if not count:
+        return ""
+    which = "run that starts" if count == 1 else f"{count} runs that start"
+    return f", and in the {which} elsewhere too"
+
+
+def _judge_varied(path: Path, tolerances: Tolerances) -> Stop:
+    stop = judge_stop(path, tolerances)
+    if stop.kind != "stopped":
+        return stop
+    passed_by = passed_by_m(stop)
+    if passed_by <= tolerances["passed_by_m"]:
+        return stop
+    gap = float(path.wall_distance[path.last])
+    finding = Finding(
+        0,
+        f"the turtle stopped {gap:.2f} m from the {stop.wall} wall, but had been nearer to that "
+        f"wall by {passed_by:.2f} m before, and had driven on.",
+        "",
+        stop.finding.evidence,
+    )
+    return replace(stop, kind="other", finding=finding)
+
+
+def _all_right(stops: list[Stop]) -> str:
+    late = [number for number, stop in enumerate(stops) if stop.kind == "late"]
+    told = next(stop.finding.rationale for stop in stops if stop.kind != "late")
+    if not late:
+        count = len(stops) - 1
+        which = "run that starts" if count == 1 else f"{count} runs that start"
+        return f"It {told}{f', and in the {which} elsewhere too' if count else ''}."
+    seconds = f"{stops[late[0]].path.recording.run.simulated_s:.0f} s"
+    which = "the run from the centre" if late[0] == 0 else f"run {late[0]}"
+    return f"It {told}. In {which} the time, {seconds}, was up before it came to a stop."
+
+
+def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
+    """It stops when it starts from the centre, and not elsewhere."""
+    nominal = stops[0].finding.rationale.removesuffix(".")
+    before = "" if stops[0].kind == "late" else f"From the centre it {nominal}, but "
+    if stops[0].kind == "halfway":
+        before = f"{nominal}, but only when it started in the centre: "
+    if worst.kind == "void":
+        told = f"The turtle started elsewhere (run {worst.path.number}). {worst.finding.rationale}"
+        lead = "" if stops[0].kind == "late" else f"{before.removesuffix(', but ')}. "
+        return replace(worst.finding, rationale=lead + told)
+    here = stops[0]
+    if here.kind == "stopped" and is_told_to_stop_at(
+        worst.path, here.path.stop_tick, SAME_MOMENT_TICKS
+    ):
+        return Finding(
+            0,
+            f"{before}when it started elsewhere (run {worst.path.number}) it was told to stop at "
+            f"the same moment, at {here.path.stop_tick * TICK_S:.1f} s, wherever it was: "
+            f"{worst.finding.rationale}",
+            "The stop must depend on the pose, not on the time or on how often something was done.",
+            worst.finding.evidence,
+        )
+    only = _one_wall_only(stops)
+    if only is not None:
+        return only
+    return Finding(
+        0,
+        f"{before}not when it started elsewhere (run {worst.path.number}): "
+        f"{worst.finding.rationale}",
+        "The stop must depend on the pose, not on the time or on how often something was done.",
+        worst.finding.evidence,
+    )
+
+
+def _one_wall_only(stops: list[Stop]) -> Finding | None:
+    """It stops at some walls and runs into others."""
+    at = sorted({stop.wall for stop in stops if stop.kind in ("stopped", "halfway")})
+    into = [stop for stop in stops if stop.kind == "wall" and stop.wall not in at]
+    touched = [stop for stop in stops if stop.kind == "wall"]
+    if not at or not into or len(into) < len(touched):
+        return None
+    worst = into[0]
+    where = "the run from the centre" if worst.path.number == 0 else f"run {worst.path.number}"
+    walls = " and ".join(at)
+    return Finding(
+        0,
+        f"It stopped at the {walls} wall{'s' if len(at) > 1 else ''}, but not at the {worst.wall} "
+        f"one. In {where}: {worst.finding.rationale}",
+        f"Is the {worst.wall} wall watched? There are four: x and y each have a smallest and a "
+        "largest value. The stop must depend on the pose, not on the time or on how often "
+        "something was done.",
+        worst.finding.evidence,
+    )

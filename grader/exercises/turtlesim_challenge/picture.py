@@ -1,0 +1,79 @@
+"""Whether the picture shows four quarters in four colours."""
+
+from __future__ import annotations
+
+from grader.exercise.check import Tolerances
+from grader.exercise.verdict import Finding
+from grader.exercises.turtlesim_challenge import colours, ink, pens
+from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path
+from grader.exercises.turtlesim_challenge.penning import told_alike
+from grader.recording.recording import Recording
+from grader.scenes.turtlesim.trace import TurtleTrace
+from turtlesim_py.world.events import SetPen
+
+
+def judge_picture(recording: Recording, tolerances: Tolerances) -> Finding:
+    """Ink in all quarters, each mainly in one colour, and these colours differ."""
+    background, near = ink.background(recording), tolerances["color_distance"]
+    quarters = ink.quarters(ink.own_drawing(recording), background, near)
+    empty = [NAMES[q] for q, quarter in quarters.items() if quarter.pixels < ink.LEAST_PIXELS]
+    if empty:
+        return Finding(
+            0,
+            f"There is next to nothing drawn in quadrant {', '.join(empty)}.",
+            _how_to_draw(recording, near),
+        )
+    mixed = _mixed(quarters, tolerances)
+    if mixed:
+        # A colour may come as late as pen_per_quadrant allows: what was drawn until then is no mix.
+        settled = ink.settled_drawing(recording, _pauses(recording, tolerances))
+        for quadrant, quarter in ink.quarters(settled, background, near).items():
+            if quarter.pixels >= ink.LEAST_PIXELS:
+                quarters[quadrant] = quarter
+        mixed = _mixed(quarters, tolerances)
+    if mixed:
+        shares = ", ".join(f"{ROMAN[q]} {int(100 * quarters[q].share)} %" for q in mixed)
+        return Finding(
+            0,
+            f"Some quarters mix colours. The main colour should cover "
+            f"{100 * tolerances['own_ink']:g} % or more of what is drawn there; it covers only: "
+            f"{shares}.",
+            "The colour should change where the turtle enters a quadrant.",
+        )
+    own = {quadrant: quarter.color for quadrant, quarter in quarters.items()}
+    groups = colours.groups(own, near)
+    if len(groups) < QUADRANTS:
+        return Finding(
+            0,
+            " ".join(told_alike(groups, own)),
+            "Give each quadrant a colour of its own, one that an eye tells from the others.",
+        )
+    total = sum(quarter.pixels for quarter in quarters.values())
+    return Finding(1, f"Four quarters, four colours, {total} painted pixels.")
+
+
+def _mixed(quarters: dict[int, ink.Quarter], tolerances: Tolerances) -> list[int]:
+    return [q for q, quarter in quarters.items() if quarter.share < tolerances["own_ink"]]
+
+
+def _pauses(recording: Recording, tolerances: Tolerances) -> list[tuple[int, int]]:
+    """From and to which ticks the colour may still be that of the quadrant before."""
+    path = Path(recording)
+    entries = path.entries(tolerances["band_m"])
+    waits = pens.coloring(path, tolerances).waits
+    before = [0, *(entry.last_tick + 1 for entry in entries[:-1])]
+    return [
+        (first, entry.tick + waits[entry])
+        for first, entry in zip(before, entries, strict=True)
+        if entry in waits
+    ]
+
+
+def _how_to_draw(recording: Recording, near: float) -> str:
+    calls = TurtleTrace.of(recording.trace).of_kind(SetPen)
+    if any(call.off for call in calls):
+        return "The pen is off: look at what your requests say of `off`; 0 is a pen that draws."
+    background = ink.background(recording)
+    if any(colours.alike((call.r, call.g, call.b), background, near) for call in calls):
+        return "What is drawn in the colour of the background cannot be seen."
+    return "Draw on until the spiral fills the window."

@@ -1,0 +1,421 @@
+"""Controllers that were once judged wrongly, or told what was not the cause."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from grader.exercise.check import judge
+from grader.exercise.loading import load_exercise
+from grader.recording.recording import Recordings
+from grader.testing import drive, pen, twist
+from tests.grader.driving import BLUE, CENTRE, GREEN, RED, WHITE, Spiral
+from turtlesim_py.world.turtle import SIZE_M
+
+EXERCISE = load_exercise("turtlesim_challenge")
+
+
+def verdicts(controller, varied=True, ticks=4000, **tolerances):
+    starts = EXERCISE.starts() if varied else []
+    runs = tuple(drive(controller(), ticks, start) for start in starts)
+    recordings = Recordings(drive(controller(), ticks), runs)
+    found = judge(
+        recordings, EXERCISE.checks, EXERCISE.points, {**EXERCISE.tolerances, **tolerances}
+    )
+    return {verdict.check: verdict for verdict in found}
+
+
+def total(found):
+    return sum(verdict.score for verdict in found.values())
+
+
+# How it stops -------------------------------------------------------------------------------------
+
+
+class TurnsAtTheEdge(Spiral):
+    """Stops by turning on the spot, and stands a second later."""
+
+    since = 0
+
+    def __call__(self, tick, pose, arena):
+        super().__call__(tick, pose, arena)
+        self.since += self.stopped
+        if self.stopped and tick % 31 == 0:
+            self.goes_on(arena)
+
+    def stop(self, arena):
+        self.stopped = True
+        twist(arena, 0.0, 1.0)
+
+    def goes_on(self, arena):
+        twist(arena, 0.0, 1.0 if self.since < 60 else 0.0)
+
+
+class TurnsForEver(TurnsAtTheEdge):
+    def goes_on(self, arena):
+        twist(arena, 0.0, 1.0)
+
+
+class TurnsAndFallsSilent(TurnsAtTheEdge):
+    def goes_on(self, arena):
+        if self.since < 60:
+            twist(arena, 0.0, 1.0)
+
+
+class FallsSilent(Spiral):
+    def stop(self, arena):
+        self.stopped = True
+
+
+class TimerGoesOn(Spiral):
+    """Sends its zeros once, and its timer knows nothing of it."""
+
+    def __call__(self, tick, pose, arena):
+        super().__call__(tick, pose, arena)
+        if self.stopped and tick % 31 == 1:
+            self.drive(tick, arena)
+
+
+def test_who_stops_by_turning_and_then_stands_has_stopped_by_a_command():
+    assert verdicts(TurnsAtTheEdge)["edge_stop"].status == "passed"
+
+
+@pytest.mark.parametrize(
+    ("controller", "told"),
+    [
+        (TurnsForEver, "turned on the spot until the run was over"),
+        (TurnsAndFallsSilent, "to turn on the spot; that ended only because no more commands came"),
+        (FallsSilent, "because no more commands came"),
+    ],
+)
+def test_a_stop_that_is_not_quite_one_is_worth_half_as_in_the_square(controller, told):
+    found = verdicts(controller, varied=controller is not TurnsForEver)["edge_stop"]
+    assert found.score == 12.5
+    assert told in found.rationale
+    assert "half of the points" in found.rationale
+
+
+def test_who_stops_and_then_drives_on_is_told_when():
+    found = verdicts(TimerGoesOn, varied=False)["edge_stop"]
+    assert found.score == 0
+    assert "your node stopped it at 50.19 s" in found.rationale
+    assert "then sent another command" in found.rationale
+    assert "what else in your node publishes" in found.help
+
+
+class WatchesTheRightWallOnly(Spiral):
+    def near_edge(self, tick, pose):
+        return pose.x > SIZE_M - 0.5
+
+
+class WatchesTheTopWallOnly(Spiral):
+    def near_edge(self, tick, pose):
+        return pose.y > SIZE_M - 0.5
+
+
+@pytest.mark.parametrize("controller", [WatchesTheRightWallOnly, WatchesTheTopWallOnly])
+def test_who_watches_one_wall_only_is_told_which_one_is_not_watched(controller):
+    found = verdicts(controller)["edge_stop"]
+    assert found.score == 0
+    assert "It stopped at the" in found.rationale
+    assert "There are four" in found.help
+
+
+class CountsItsSteps(Spiral):
+    def near_edge(self, tick, pose):
+        return self.speed > 5.1
+
+
+class CountsToASmallerCircle(Spiral):
+    """Stops by the radius of its circle, which it knows from its own commands."""
+
+    def near_edge(self, tick, pose):
+        return self.speed > 3.6
+
+
+@pytest.mark.parametrize("controller", [CountsItsSteps, CountsToASmallerCircle])
+def test_a_stop_by_the_commands_is_none_by_the_pose(controller):
+    found = verdicts(controller)["edge_stop"]
+    assert found.score == 0
+    assert "at the same moment" in found.rationale
+
+
+class Slow(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.012
+        twist(arena, self.speed)
+
+
+class VerySlow(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.005
+        twist(arena, self.speed)
+
+
+LIMIT = 11250  # ticks in 180 s
+
+
+def test_a_slow_right_spiral_is_judged_by_the_runs_that_come_near_a_wall():
+    found = verdicts(Slow, ticks=LIMIT)
+    assert total(found) == 100
+    assert "the time, 180 s, was up" in found["edge_stop"].rationale
+
+
+def test_a_spiral_too_slow_for_any_run_is_told_the_limit_and_nothing_of_windows():
+    found = verdicts(VerySlow, varied=False, ticks=LIMIT)["edge_stop"]
+    assert "A run lasts 180 s" in found.rationale
+    assert "grow faster" in found.help
+
+
+class OneTimer(Spiral):
+    """Looks at the pose twice a second only, with the limits of a well-known tutorial."""
+
+    def __call__(self, tick, pose, arena):
+        if pose is None or tick % 31 != 1 or self.stopped:
+            return
+        self.watch(tick, pose, arena)
+        if not self.stopped:
+            self.drive(tick, arena)
+
+    def near_edge(self, tick, pose):
+        return not (2 < pose.x < 9 and 2 < pose.y < 9)
+
+
+def test_one_timer_of_2_hz_and_the_limits_2_to_9_stop_near_an_edge():
+    assert verdicts(OneTimer)["edge_stop"].status == "passed"
+
+
+class TurnsAndPausesFirst(Spiral):
+    def __call__(self, tick, pose, arena):
+        if tick == 1:
+            twist(arena, 0.0, 1.0)
+        if tick > 300:
+            super().__call__(tick - 300, pose, arena)
+
+
+def test_who_turns_on_the_spot_and_pauses_before_driving_is_judged_by_the_driving():
+    found = verdicts(TurnsAndPausesFirst)
+    assert {name for name, verdict in found.items() if verdict.status != "passed"} <= {
+        "steady_rate"
+    }
+
+
+# What was hardly done -----------------------------------------------------------------------------
+
+
+class CrashesAtSixSeconds(Spiral):
+    def __call__(self, tick, pose, arena):
+        if tick < 375:
+            super().__call__(tick, pose, arena)
+
+
+class HalfATurn(Spiral):
+    """Round to the left, and straight to the wall."""
+
+    def drive(self, tick, arena):
+        twist(arena, 1.0, 0.5 if tick < 390 else 0.0)
+
+
+class PenOff(Spiral):
+    def entered(self, quadrant, arena):
+        arena.set_pen("turtle1", *self.colors[quadrant], 3, 1)
+
+
+class FloodsCommands(Spiral):
+    def __call__(self, tick, pose, arena):
+        super().__call__(tick, pose, arena)
+        if not self.stopped:
+            for _ in range(3):
+                twist(arena, self.speed)
+
+
+def test_what_was_hardly_driven_earns_next_to_nothing_for_how_it_was_driven():
+    found = verdicts(CrashesAtSixSeconds, varied=False)
+    assert found["steady_rate"].score + found["no_redundant_calls"].score < 2
+    assert "fewer than the 2 turns" in found["no_redundant_calls"].rationale
+
+
+def test_two_quadrants_are_not_four():
+    found = verdicts(HalfATurn, varied=False)
+    assert found["pen_per_quadrant"].score == 10
+    assert "Of the four quadrants 2 were entered" in found["pen_per_quadrant"].rationale
+    assert total(found) < 55
+
+
+def test_a_pen_that_is_off_is_told_first_and_its_calls_are_worth_nothing():
+    found = verdicts(PenOff)
+    assert total(found) == 65
+    assert "The pen is off everywhere" in found["pen_per_quadrant"].rationale
+    assert "`off`" in found["no_redundant_calls"].help
+
+
+def test_several_commands_in_each_step_are_no_rate():
+    found = verdicts(FloodsCommands, varied=False)["steady_rate"]
+    assert found.score == 0
+    assert "nothing makes your node wait" in found.rationale
+
+
+# Colours ------------------------------------------------------------------------------------------
+
+
+class TwoAlike(Spiral):
+    colors = {1: WHITE, 2: RED, 3: GREEN, 4: RED}
+
+
+class HardlyDifferent(Spiral):
+    colors = {1: WHITE, 2: (255, 255, 254), 3: GREEN, 4: BLUE}
+
+
+class FourShades(Spiral):
+    colors = {1: (200, 0, 0), 2: (201, 0, 0), 3: (202, 0, 0), 4: (203, 1, 1)}
+
+
+def test_two_quadrants_of_one_colour_are_named_with_it():
+    found = verdicts(TwoAlike)
+    told = "Quadrants II and IV are both red (255, 0, 0)."
+    assert told in found["pen_per_quadrant"].rationale
+    assert told in found["picture"].rationale
+    assert "times 3/4 for colours" in found["pen_per_quadrant"].rationale
+    assert found["pen_per_quadrant"].score == 15
+
+
+@pytest.mark.parametrize(("controller", "left"), [(HardlyDifferent, 15), (FourShades, 5)])
+def test_colours_that_no_eye_tells_apart_are_one(controller, left):
+    found = verdicts(controller)
+    assert (found["pen_per_quadrant"].score, found["picture"].score) == (left, 0)
+
+
+class Late(Spiral):
+    """Each colour comes some ticks after the turtle; a subclass says how many."""
+
+    ticks = 0
+
+    def __init__(self):
+        super().__init__()
+        self.due = {}
+
+    def __call__(self, tick, pose, arena):
+        self.now = tick
+        super().__call__(tick, pose, arena)
+        for when in [when for when in self.due if when <= tick]:
+            pen(arena, self.due.pop(when))
+
+    def entered(self, quadrant, arena):
+        self.due[self.now + self.ticks] = self.colors[quadrant]
+
+
+class HalfASecondLate(Late):
+    ticks = 31
+
+
+class NineTenthsLate(Late):
+    ticks = 56
+
+
+def test_a_colour_that_is_late_is_told_how_late_and_what_is_allowed():
+    found = verdicts(NineTenthsLate, varied=False)["pen_per_quadrant"]
+    assert found.score < 5
+    assert "The colour comes 0.8" in found.rationale
+    assert "0.61 s are allowed" in found.rationale
+    note = found.evidence[0].note
+    assert note.startswith("enters quadrant IV (bottom right); blue (0, 0, 255) comes 0.67 s later")
+    assert note.endswith("until then green (0, 255, 0)")
+
+
+def test_an_exercise_may_allow_more_than_half_of_a_stay():
+    assert verdicts(NineTenthsLate, late_s=1.5)["pen_per_quadrant"].status == "passed"
+
+
+def test_the_picture_forgives_what_pen_per_quadrant_forgives():
+    found = verdicts(HalfASecondLate)
+    assert (found["pen_per_quadrant"].score, found["picture"].score) == (20, 5)
+    found = verdicts(NineTenthsLate)
+    assert found["picture"].score == 0
+    assert "75 % or more" in found["picture"].rationale
+
+
+class ColoursTheBackground(Spiral):
+    """Sets the background on entering a quadrant, and never the pen."""
+
+    def entered(self, quadrant, arena):
+        for channel, value in zip("rgb", self.colors[quadrant], strict=True):
+            arena.set_parameter(f"background_{channel}", value)
+
+
+def test_the_background_is_not_the_pen():
+    found = verdicts(ColoursTheBackground, varied=False)
+    assert found["pen_per_quadrant"].rationale == "The pen was never changed."
+
+
+# Shapes -------------------------------------------------------------------------------------------
+
+
+class ConcentricCircles:
+    """Circles round one place, each reached by driving straight out of the one before."""
+
+    def __call__(self, tick, pose, arena):
+        if tick % 5 != 1:
+            return
+        at, circle = tick % 800, tick // 800
+        radius = 0.5 + 0.5 * circle
+        if at < 800 - 190:
+            twist(arena, 2 * math.pi * radius / (610 * 0.016), 2 * math.pi / (610 * 0.016))
+        elif at < 800 - 130:
+            twist(arena, 0.0, -math.pi / 2 / (60 * 0.016))
+        elif at < 800 - 70:
+            twist(arena, 0.5 / (60 * 0.016), 0.0)
+        else:
+            twist(arena, 0.0, math.pi / 2 / (70 * 0.016))
+
+
+class SwingsInAndOut(Spiral):
+    """A spiral with a wobble that its turns do not cross."""
+
+    def drive(self, tick, arena):
+        self.speed += 0.05
+        twist(arena, max(0.05, self.speed + 0.08 * math.sin(tick / 20)))
+
+
+class Backwards(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.05
+        twist(arena, -self.speed)
+
+
+class ToAndFro(Spiral):
+    """Half a second ahead, half a second back, turning all the time."""
+
+    def drive(self, tick, arena):
+        self.speed += 0.05
+        twist(arena, self.speed if tick // 31 % 2 else -self.speed)
+
+
+def test_concentric_circles_are_no_spiral():
+    found = verdicts(ConcentricCircles, varied=False, ticks=8000)["spiral"]
+    assert found.score <= 15
+    assert "straight outwards" in found.rationale
+
+
+@pytest.mark.parametrize("controller", [SwingsInAndOut, Backwards])
+def test_what_counts_is_the_line_that_is_drawn(controller):
+    assert verdicts(controller, varied=False)["spiral"].status == "passed"
+
+
+def test_driving_to_and_fro_is_no_spiral():
+    assert verdicts(ToAndFro, varied=False)["spiral"].score <= 15
+
+
+def test_who_starts_elsewhere_is_told_what_would_be_fine():
+    spiral = Spiral()
+
+    def controller():
+        return lambda tick, pose, arena: (
+            arena.teleport_absolute("turtle1", CENTRE + 1.0, CENTRE, 0.0)
+            if tick == 1
+            else spiral(tick, pose, arena)
+        )
+
+    found = verdicts(controller, varied=False)["spiral"]
+    assert "starts 1.00 m from the centre; 0.5 m is fine" in found.rationale
+    assert "Of the points it earned 30 % for the turns and 50 % for the growth." in found.rationale
