@@ -21,16 +21,25 @@ from grader.recording.recording import Recordings
 
 Tolerances = Mapping[str, Any]
 CheckFunction = Callable[[Recordings, Tolerances], Finding]
+#: Raises a ValueError where a tolerance cannot be used.
+LookAt = Callable[[Any], None]
 
 
 @dataclass(frozen=True)
 class Check:
-    """A named check function and the checks that must have passed before it."""
+    """A named check function and the checks that must have passed before it.
+
+    Attributes:
+        title: the first line of its docstring.
+        rubric: the rest of it: what is measured and how partial credit is computed, for students;
+            `{name}` stands for a tolerance, `{name%}` for one in percent.
+    """
 
     name: str
     title: str
     function: CheckFunction
     depends_on: tuple[str, ...]
+    rubric: str = ""
 
 
 #: Asks a check, by its name, for its finding; see `grader.exercise.asking.Asked`.
@@ -42,6 +51,7 @@ class Checks:
 
     def __init__(self) -> None:
         self._checks: list[Check] = []
+        self._looks: dict[str, LookAt] = {}
 
     def __iter__(self) -> Iterator[Check]:
         return iter(self._checks)
@@ -50,6 +60,25 @@ class Checks:
     def functions(self) -> Mapping[str, CheckFunction]:
         """Their functions by their names."""
         return {check.name: check.function for check in self}
+
+    def tolerance(self, look: LookAt) -> LookAt:
+        """Have the tolerances looked at by the decorated function when the exercise is loaded.
+
+        Its name is that of the tolerance that it looks at; it raises a ValueError that says what
+        was expected and what was found. A tolerance that the yaml does not name is not looked at.
+        """
+        self._looks[look.__name__] = look
+        return look
+
+    def wrong_tolerance(self, tolerances: Tolerances) -> tuple[str, str] | None:
+        """The name of the first tolerance that cannot be used, and why; None: all can."""
+        for name, look in self._looks.items():
+            try:
+                if name in tolerances:
+                    look(tolerances[name])
+            except ValueError as error:
+                return name, str(error)
+        return None
 
     def __call__(
         self, *wrong: object, after: tuple[str, ...] = ()
@@ -69,14 +98,16 @@ class Checks:
             raise ValueError(f"after: no check above is named {', '.join(sorted(unknown))}")
 
         def register(function: CheckFunction) -> CheckFunction:
-            title = (function.__doc__ or function.__name__).strip().splitlines()[0]
+            title, _, rubric = (inspect.getdoc(function) or function.__name__).partition("\n")
             name = function.__name__
             if name in {check.name for check in self._checks}:
                 raise ValueError(f"two checks are named {name!r}")
             if not _takes_two(function):
                 found = inspect.signature(function)
                 raise TypeError(f"{name}: expected (recordings, tolerances), found {found}")
-            self._checks.append(Check(name, title.rstrip("."), function, tuple(after)))
+            self._checks.append(
+                Check(name, title.strip().rstrip("."), function, tuple(after), rubric.strip())
+            )
             return function
 
         return register
@@ -142,9 +173,10 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
 
     missing = [n for n in check.depends_on if n in earlier and earlier[n].status != "passed"]
     if missing:
-        names = " and ".join(repr(name) for name in missing)
+        titles = " and ".join(f"“{earlier[name].title}”" for name in missing)
         return not_judged(
-            f"Not judged, because {names} did not pass.", f"Look at {missing[0]!r} first."
+            f"Not judged, because {titles} did not pass.",
+            f"Look at “{earlier[missing[0]].title}” first.",
         )
     try:
         finding = ask(check.name)

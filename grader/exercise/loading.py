@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
+from difflib import get_close_matches
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
@@ -166,6 +167,7 @@ def _from_file(path: Path) -> Exercise:
     try:
         edited = _read(path)
         try:
+            _check_keys(edited.data)
             place, original = _original(edited.data.get("exercise"), path.parent)
             return _build(_merged(original, edited.data), place)
         except Mistake as mistake:
@@ -203,9 +205,7 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
     for key in ("exercise", "title", "limits", "points"):
         if key not in data:
             raise Mistake((), f"it has no {key!r}")
-    for key in data:
-        if key not in KEYS:
-            raise Mistake((), f"unknown {key!r}; there are {', '.join(KEYS)}")
+    _check_keys(data)
     name = data["exercise"]
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise Mistake(("exercise",), f"expected a name such as my_exercise, found {name!r}")
@@ -218,6 +218,20 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
             ("exercise",), f"{name!r} is the name of an installed exercise; give yours another"
         )
     return data
+
+
+def _check_keys(data: Mapping[Any, Any]) -> None:
+    for key in data:
+        if key not in KEYS:
+            raise Mistake((str(key),), f"unknown; {_did_you_mean(key, KEYS)}")
+
+
+def _did_you_mean(key: object, known: Iterable[object]) -> str:
+    """What there is instead of a key that nobody knows."""
+    names = [str(name) for name in known]
+    near = get_close_matches(str(key), names, n=1)
+    there_are = f"here are {', '.join(names)}"
+    return f"did you mean {near[0]!r}? T{there_are}" if near else f"t{there_are}"
 
 
 def _read(path: Path) -> YamlFile:
@@ -236,7 +250,7 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
             raise Mistake((part,), f"expected names with numbers, found {given!r}")
         for key, value in given.items():
             if key not in known:
-                raise Mistake((part,), f"unknown {key!r}; there are {', '.join(map(str, known))}")
+                raise Mistake((part,), f"unknown {key!r}; {_did_you_mean(key, known)}")
             if not _alike(value, known[key]):
                 raise Mistake((part, key), f"expected e.g. {known[key]!r}, found {value!r}")
         merged[part] = {**known, **given}
@@ -274,6 +288,9 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     if not isinstance(tolerances, dict):
         raise Mistake(("tolerances",), f"expected names with values, found {tolerances!r}")
     checks = places.import_checks(place)
+    wrong = checks.wrong_tolerance(tolerances)
+    if wrong is not None:
+        raise Mistake(("tolerances", wrong[0]), wrong[1])
     return Exercise(
         name=data["exercise"],
         title=str(data["title"]),
@@ -330,7 +347,7 @@ def _numbers(data: Mapping[str, Any], part: str, examples: Mapping[str, float]) 
         raise Mistake((part,), f"expected names with numbers, found {given!r}")
     for key, value in given.items():
         if key not in examples:
-            raise Mistake((part,), f"unknown {key!r}; there are {', '.join(examples)}")
+            raise Mistake((part,), f"unknown {key!r}; {_did_you_mean(key, examples)}")
         if not _is_amount(value) or (isinstance(examples[key], int) and value != int(value)):
             what = "a whole number" if isinstance(examples[key], int) else "a number"
             raise Mistake((part, key), f"expected {what} from 0, found {value!r}")
@@ -366,7 +383,8 @@ def _points(points: object, checks: Checks) -> dict[str, float]:
     known = [check.name for check in checks]
     for check, value in points.items():
         if check not in known:
-            raise Mistake(("points",), f"no check is named {check!r}; there are {', '.join(known)}")
+            text = f"no check is named {check!r}; {_did_you_mean(check, known)}"
+            raise Mistake(("points",), text)
         if not _is_amount(value):
             raise Mistake(("points", str(check)), f"expected a number from 0, found {value!r}")
     if not any(points.values()):

@@ -29,7 +29,12 @@ checks = Checks()
 
 @checks()
 def drives(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """The node drives turtle1."""
+    """The node drives turtle1.
+
+    turtle1 has driven {driven_m} m or more in the nominal run, by velocity commands, and nothing
+    but these moved it between its start and its return. All or nothing. Without it nothing else is
+    judged.
+    """
     recording = recordings.nominal
     commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
     if not commands:
@@ -58,31 +63,56 @@ def drives(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 @checks(after=("drives",))
 def sides(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """The way has four sides of about 2 m."""
+    """The way has four sides of about 2 m.
+
+    The way is drawn with straight lines, as with a ruler: a bend that stands out by less than
+    {corner_size_m} m is no corner. A side is right if it is {side_m} m long, give or take
+    {side_error_m} m. The points are the number of right sides, four at most, divided by the number
+    of sides or by four, whichever is more: 3 right sides of 5 are 3/5 of the points.
+    """
     return judge_sides(Way(recordings.nominal), tolerances)
 
 
 @checks(after=("drives",))
 def corners(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """It has four corners of about 90 degrees, all to the same hand."""
+    """It has four corners of about 90 degrees, all to the same hand.
+
+    A corner is right if the way turns in it by 90 degrees, give or take {corner_error_deg}, to the
+    hand to which most corners turn. The start is a corner, too, if the way leads back to it. The
+    points are counted as for the sides.
+    """
     return judge_corners(Way(recordings.nominal), tolerances)
 
 
 @checks(after=("drives", "corners"))
 def straight(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """The sides are straight."""
+    """The sides are straight.
+
+    Between its corners the way lies {crooked_m} m at most beside the straight line. The points are
+    the part of the sides for which that holds.
+    """
     return judge_straight(Way(recordings.nominal), tolerances)
 
 
 @checks(after=("drives",))
 def returns(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """It comes to rest where it started, after one round."""
+    """It comes to rest where it started, after one round.
+
+    It comes to rest {return_m} m or less from its start, and drives on for no more than
+    {further_m} m after its first return. Half of the points if it comes to rest {near_m} m or less
+    from its start, or was there before and drove on.
+    """
     return judge_returns(Way(recordings.nominal), tolerances)
 
 
 @checks(after=("drives",))
 def stops(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """A command brings it to rest."""
+    """A command brings it to rest.
+
+    A command of speed 0 ends the motion, and turtle1 then rests for {rest_s} s. Half of the points
+    if it rests only because no more commands come: the simulator stops a turtle a second after its
+    last command.
+    """
     recording = recordings.nominal
     way = Way(recording)
     if not way.rests(tolerances):
@@ -111,7 +141,12 @@ def stops(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
 @checks(after=("drives",))
 def anywhere(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """It draws the square from any start."""
+    """It draws the square from any start.
+
+    In every run that starts elsewhere, sides, corners, straightness and return are judged as
+    above, each a quarter. The points are the mean of these runs; one in which the node has turtle1
+    put somewhere else first counts as nothing.
+    """
     if not recordings.varied:
         raise ValueError(
             "there is no run from elsewhere: the exercise needs varied_runs, or no points for "

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.sentences import how_it_ended
 from grader.exercise.verdict import Finding
@@ -9,6 +11,7 @@ from grader.exercises.turtlesim_challenge.calls import judge_calls
 from grader.exercises.turtlesim_challenge.edge import judge_edge
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.penning import judge_pens
+from grader.exercises.turtlesim_challenge.pens import check_demanded
 from grader.exercises.turtlesim_challenge.picture import judge_picture
 from grader.exercises.turtlesim_challenge.rate import judge_rate
 from grader.exercises.turtlesim_challenge.spiral import judge_spiral
@@ -20,9 +23,19 @@ from turtlesim_py.world.turtle import TICK_S
 checks = Checks()
 
 
+@checks.tolerance
+def colours(asked: Any) -> None:
+    """The colours that the quadrants are to have, if any: {1: [255, 255, 255], ...}."""
+    check_demanded(asked)
+
+
 @checks()
 def moves(recordings: Recordings, _: Tolerances) -> Finding:
-    """The node starts and moves turtle1."""
+    """The node starts and moves turtle1.
+
+    The first thing of all: a command on /turtle1/cmd_vel has moved turtle1 by its linear velocity.
+    All or nothing. Without it nothing else is judged.
+    """
     recording = recordings.nominal
     path = Path(recording)
     commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
@@ -79,35 +92,87 @@ def _where_it_published(recording: Recording) -> str:
 
 @checks(after=("moves",))
 def spiral(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """A spiral from the centre, wider with each turn."""
+    """A spiral from the centre, wider with each turn.
+
+    The drawn line of the run from the centre, whatever its direction and however the turtle heads:
+    driving backwards, corners instead of arcs, and wobbles that stay outside of the turn before
+    are fine. Three parts, each all or nothing.
+
+    - {share_start%} for the start: no farther than {start_m} m from the centre of the window.
+    - {share_turns%} for the turns: at least {turns} full turns; at most {wrong_way_share%} of all
+      turning goes the other way; and the line goes round a centre as often, less half a turn.
+    - The rest for growing gently: with each turn the mean distance from the centre grows by
+      {growth_m} m at least and {gentle_m} m at most; nine tenths of the line lie outside of the
+      turn before; and no more than half of the growth comes from driving straight outwards, as
+      between concentric circles.
+    """
     return judge_spiral(Path(recordings.nominal), tolerances)
 
 
 @checks(after=("moves",))
 def steady_rate(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """Commands come at a fixed rate, without pauses."""
+    """Commands come at a fixed rate, without pauses.
+
+    The times between the velocity commands of the run from the centre, up to the stop:
+    {rate_share%} of them differ from the usual time by {rate_deviation%} of it at most. A pause
+    longer than a second, or several commands in every step of the simulator, is no rate. All or
+    nothing, but for a path with fewer than {turns} turns: half of them are worth nothing, all of
+    them everything, and between it goes in proportion.
+    """
     return judge_rate(Path(recordings.nominal), tolerances)
 
 
 @checks(after=("moves",))
 def edge_stop(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """Stops by a command near an edge, wherever it starts."""
+    """Stops by a command near an edge, wherever it starts.
+
+    In every run turtle1 comes to rest {edge_m} m or less from the nearest wall, without touching
+    one, because a command says so: linear.x 0, and in the end angular.z 0 as well. Who turns on
+    the spot first and stands then has stopped. Half of the points if it rests only because no more
+    commands come (the simulator stops a turtle a second after its last command), or turns on the
+    spot to the end. The worst run counts. A run that starts elsewhere counts as none where turtle1
+    was nearer to the wall by more than {passed_by_m} m before and drove on: such a stop does not
+    come from the pose. Where the time was up while the spiral still grew, the other runs decide.
+    """
     return judge_edge(recordings, tolerances)
 
 
 @checks(after=("moves",))
 def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """Each quadrant entered gets its own pen colour."""
+    """Each quadrant entered gets its own pen colour.
+
+    An entry is right if the pen has its quadrant's colour {late_s} s after the turtle has come in
+    by {band_m} m, and draws. A quadrant's colour is the one that most of its stays end with, or
+    the one that the exercise asks for. Stays too short for an answer do not count. Colours are
+    different if an eye tells them apart: if they are {color_distance} apart in CIELAB (about 2.3
+    is just noticeable).
+
+    The points are the part of the entries that are right, times the number of different colours
+    out of four: 15 right entries of 31, and 3 colours, are 15/31 x 3/4 x 20 = 7.26 of 20 points.
+    In a run that starts elsewhere the quadrants that were entered count instead of four; the worst
+    run counts.
+    """
     return judge_pens(recordings, tolerances)
 
 
 @checks(after=("moves",))
 def picture(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """Four quarters, each in a colour of its own."""
+    """Four quarters, each in a colour of its own.
+
+    What the run from the centre leaves on the canvas: each quarter has ink, {own_ink%} or more of
+    it in one colour, and the four colours differ as above. What is drawn within the {late_s} s
+    that a colour may take does not count as mixed, and what has the colour of the background is
+    not there. Another background is allowed. All or nothing.
+    """
     return judge_picture(recordings.nominal, tolerances)
 
 
 @checks(after=("moves",))
 def no_redundant_calls(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """set_pen is called on entering a quadrant only."""
+    """set_pen is called on entering a quadrant only.
+
+    In the run from the centre set_pen is called no more often than quadrants are entered, and
+    {spare_calls} times more. Calls that switch the pen off are worth nothing. All or nothing, but
+    for a path with fewer than {turns} turns, as for the rate.
+    """
     return judge_calls(Path(recordings.nominal), tolerances)

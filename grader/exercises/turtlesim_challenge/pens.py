@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 
 from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge.colours import Color, alike, groups
-from grader.exercises.turtlesim_challenge.path import Entry, Path
+from grader.exercises.turtlesim_challenge.path import QUADRANTS, Entry, Path
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.canvas import Pen
@@ -104,6 +106,28 @@ def demanded(tolerances: Tolerances) -> dict[int, Color]:
     """The colours that the exercise asks for, by quadrant; as a rule none."""
     asked = tolerances.get("colours") or {}
     return {int(quadrant): (c[0], c[1], c[2]) for quadrant, c in asked.items()}
+
+
+def check_demanded(asked: Any) -> None:
+    """Look at what an exercise says of colours.
+
+    Raises:
+        ValueError: it is no mapping of quadrants, 1 to 4, to different colours.
+    """
+    if not isinstance(asked, dict):
+        raise ValueError(f"expected quadrants with colours, found {asked!r}")
+    for quadrant, color in asked.items():
+        if type(quadrant) is not int or not 1 <= quadrant <= QUADRANTS:
+            raise ValueError(f"expected quadrants from 1 to {QUADRANTS}, found {quadrant!r}")
+        is_color = isinstance(color, list) and len(color) == len("rgb")
+        if not is_color or not all(type(c) is int and 0 <= c <= 255 for c in color):
+            raise ValueError(
+                f"{quadrant}: expected [red, green, blue], each a whole number from 0 to 255, "
+                f"found {color!r}"
+            )
+    for (one, color), (another, other) in combinations(asked.items(), 2):
+        if color == other:
+            raise ValueError(f"{one} and {another} are the same; expected different colours")
 
 
 def came_after(entry: Entry, coloring: Coloring, distance: float) -> int | None:

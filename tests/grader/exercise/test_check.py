@@ -56,7 +56,7 @@ def test_a_part_of_the_share_fails_with_that_part_of_the_points_and_help():
 def test_what_depends_on_a_failed_check_is_not_judged_and_says_for_which_it_waited():
     second = verdicts(an_exercise(0.5), {"first": 4, "second": 6})["second"]
     assert (second.status, second.score, second.max_score) == ("not_judged", 0, 6)
-    assert "'first'" in second.rationale
+    assert "“The first thing” did not pass" in second.rationale
 
 
 def test_a_check_reads_the_exercises_tolerances():

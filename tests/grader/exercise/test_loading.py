@@ -58,7 +58,18 @@ def test_the_same_seed_gives_the_same_starts():
         ({"points": {}}, "points: expected check names with points"),
         ({"limits": {"rest_s": "long"}}, "limits: rest_s: expected e.g. 3, found 'long'"),
         ({"limits": 5}, "limits: expected names with numbers, found 5"),
-        ({"tolerances": {"edgem": 1}}, "tolerances: unknown 'edgem'"),
+        ({"tolerances": {"edgem": 1}}, "tolerances: unknown 'edgem'; did you mean 'edge_m'?"),
+        ({"point": {"moves": 1}}, "mine.yaml, line 2: point: unknown; did you mean 'points'?"),
+        ({"limits": {"total": 60}}, "limits: unknown 'total'; did you mean 'total_s'?"),
+        ({"points": {"move": 1}}, "points: no check is named 'move'; did you mean 'moves'?"),
+        ({"varied_runs": {"count": 1.5}}, "count: expected a whole number from 0, found 1.5"),
+        ({"tolerances": {"colours": {5: [0, 0, 0]}}}, "colours: expected quadrants from 1 to 4"),
+        ({"tolerances": {"colours": {1: "red"}}}, "colours: 1: expected [red, green, blue], each"),
+        ({"tolerances": {"colours": {1: [0, 0, 256]}}}, "found [0, 0, 256]"),
+        (
+            {"tolerances": {"colours": {1: [9, 9, 9], 3: [9, 9, 9]}}},
+            "colours: 1 and 3 are the same",
+        ),
     ],
 )
 def test_a_mistake_in_an_edited_copy_is_named(tmp_path, changes, words):

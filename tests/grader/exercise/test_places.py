@@ -123,7 +123,7 @@ def test_a_mistake_in_its_code_is_told_with_file_and_line(tmp_path, files, words
     [
         ({"exercise": "square"}, "'square' is the name of an installed exercise"),
         ({"exercise": ["a"]}, "exercise: expected a name such as my_exercise, found ['a']"),
-        ({"tolerance": {}}, "exercise.yaml: unknown 'tolerance'"),
+        ({"tolerance": {}}, "tolerance: unknown; did you mean 'tolerances'?"),
         ({"limits": {"rest_s": 1}}, "limits: first_motion_s is missing"),
         ({"limits": {"rest": 1}}, "limits: unknown 'rest'"),
         ({"limits": {"rest_s": "x"}}, "limits: rest_s: expected a number from 0, found 'x'"),
