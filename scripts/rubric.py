@@ -1,7 +1,4 @@
-"""Write into docs/rubric.md what the checks of our exercises measure, from the checks themselves.
-
-    python scripts/rubric.py
-"""
+"""Write into docs/rubric.md what the checks of our exercises measure, from the checks themselves."""
 
 from __future__ import annotations
 

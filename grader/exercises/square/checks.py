@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -116,6 +117,17 @@ def stops(recordings: Recordings, tolerances: Tolerances) -> Finding:
     recording = recordings.nominal
     way = Way(recording)
     if not way.rests(tolerances):
+        drove_on = stopped_and_drove_on(recording, way, tolerances)
+        if drove_on is not None:
+            stop, further = (command.tick for command in drove_on)
+            return Finding(
+                0,
+                f"turtle1 was stopped at {stop * TICK_S:.2f} s, back at its start, and then your "
+                f"node sent another command, to drive on, at {further * TICK_S:.2f} s.",
+                "What else in your node publishes velocities, and how does it learn that the "
+                "turtle is to stand?",
+                (way.at(stop, "told to stop here"), way.at(further, "told to drive on")),
+            )
         return Finding(
             0,
             f"turtle1 was still moving when the run ended after {recording.run.simulated_s:.1f} s.",
@@ -175,6 +187,23 @@ def stop_command(recording: Recording, last_motion: int) -> int | None:
             break
         found = command.tick
     return found if found is not None and found <= last_motion + STOP_SHOWS else None
+
+
+def stopped_and_drove_on(
+    recording: Recording, way: Way, tolerances: Tolerances
+) -> tuple[CmdVel, CmdVel] | None:
+    """The first command to stand after the return, near the start, and the one that ended it."""
+    lap_end = way.return_to_start(tolerances)
+    if lap_end is None:
+        return None
+    since = int(way.ticks[lap_end])
+    commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
+    for stop, further in pairwise(commands):
+        row = min(int(np.searchsorted(way.ticks, stop.tick)), len(way) - 1)
+        is_back = stop.tick + STOP_SHOWS >= since and way.gap_m[row] <= tolerances["near_m"]
+        if is_back and is_stop(stop) and not is_stop(further):
+            return stop, further
+    return None
 
 
 def is_stop(command: CmdVel) -> bool:

@@ -388,3 +388,23 @@ def test_an_exercise_that_promises_points_for_other_starts_must_have_them():
     alone = Recordings(drive(Legs(polygon([2] * 4))))
     with pytest.raises(CheckFailed, match="varied_runs"):
         judge(alone, exercise.checks, exercise.points, exercise.tolerances)
+
+
+class StopsAndDrivesOn(Legs):
+    """Says once that it stands, and its timer knows nothing of it."""
+
+    def __call__(self, tick, pose, arena):
+        total = sum(ticks for ticks, _, _ in self.legs)
+        if tick == total + 1:
+            twist(arena, 0.0, 0.0)
+        elif tick <= total:
+            super().__call__(tick, pose, arena)
+        elif tick % AGAIN == 1 and tick > total + AGAIN:
+            twist(arena, 0.2, 1.0)
+
+
+def test_who_stops_and_then_drives_on_is_told_when():
+    found = judged(lambda: StopsAndDrivesOn(polygon([2] * 4)))["stops"]
+    assert found.score == 0
+    assert "and then your node sent another command" in found.rationale
+    assert found.evidence[0].note == "told to stop here"

@@ -286,6 +286,18 @@ def test_colours_that_no_eye_tells_apart_are_one(controller, left):
     assert (found["pen_per_quadrant"].score, found["picture"].score) == (left, 0)
 
 
+ASKED = {1: list(WHITE), 2: list(RED), 3: list(GREEN), 4: [255, 255, 0]}
+
+
+def test_an_exercise_may_ask_for_its_own_colours():
+    found = verdicts(Spiral, varied=False, colours={**ASKED, 4: list(BLUE)})
+    assert total(found) == 100
+    found = verdicts(Spiral, varied=False, colours=ASKED)["pen_per_quadrant"]
+    assert 14 < found.score < 16
+    assert "Quadrant IV is to be yellow (255, 255, 0)." in found.rationale
+    assert "draws in blue (0, 0, 255) there, not in yellow" in found.evidence[0].note
+
+
 class Late(Spiral):
     """Each colour comes some ticks after the turtle; a subclass says how many."""
 
