@@ -31,7 +31,7 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
         )
     nominal = pens.coloring(path, tolerances, QUADRANTS)
     paths = [path, *(Path(run, number) for number, run in enumerate(recordings.varied, start=1))]
-    colorings = [nominal, *(pens.coloring(path, tolerances) for path in paths[1:])]
+    colorings = [nominal, *(_elsewhere(path, tolerances, nominal) for path in paths[1:])]
     away = first_moved_away(recordings)
     if away is not None and nominal.share > 0:
         return away
@@ -48,6 +48,15 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
     return Finding(
         found.share, " ".join(sentences), _help(found), _evidence(path, found, tolerances)
     )
+
+
+def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pens.Coloring:
+    """A run from elsewhere: a quadrant that was entered once or twice may tell no colour itself."""
+    by_itself = pens.coloring(path, tolerances)
+    if by_itself.different == len(by_itself.own):
+        return by_itself
+    as_before = pens.coloring(path, tolerances, known=nominal.own)
+    return max(by_itself, as_before, key=lambda coloring: coloring.share)
 
 
 def first_moved_away(recordings: Recordings) -> Finding | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -65,12 +66,22 @@ class Coloring:
         return len(self.alike)
 
 
-def coloring(path: Path, tolerances: Tolerances, wanted: int = 0) -> Coloring:
+def coloring(
+    path: Path,
+    tolerances: Tolerances,
+    wanted: int = 0,
+    known: Mapping[int, Color | None] | None = None,
+) -> Coloring:
     """Judge the colours of one run's entries.
 
     An entry has `late_s` for its colour, but no more than most of its stay. Entries with a stay
     that is shorter than both `late_s` and half of a usual stay, or after the last command, are not
     judged.
+
+    Args:
+        wanted: how many quadrants with colours of their own make all of the points; 0: those that
+            were entered.
+        known: the quadrants' colours, where another run has told them.
     """
     entries = path.entries(tolerances["band_m"])
     pens = pens_by_tick(path.recording)
@@ -90,7 +101,7 @@ def coloring(path: Path, tolerances: Tolerances, wanted: int = 0) -> Coloring:
     judged = [entry for entry in waits if entry.tick + waits[entry] <= end]
     near = tolerances["color_distance"]
     own = _own_colors(judged, colors)
-    asked = demanded(tolerances)
+    asked = {**(known or {}), **demanded(tolerances)}
     own = {quadrant: asked.get(quadrant, color) for quadrant, color in own.items()}
     bad = [
         e

@@ -1,0 +1,317 @@
+"""Search for controllers of the challenge that are judged wrongly.
+
+    python scripts/search_wrong_verdicts.py [--count 200] [--seed 1] [--limit-s 600] [--show]
+
+Random controllers, right ones of many styles and wrong ones with one or two faults, drive the world
+without ROS. What each really did is known from how it was made: the faults that were put in are the
+oracle, and it looks at no check. A wrong one is *killed* if it loses points in a check that its
+fault concerns; a right one is *spared* if it keeps all points. Printed are both rates, and every
+controller that was judged wrongly, with the numbers that make it again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import random
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from grader.exercise.check import judge  # noqa: E402
+from grader.exercise.loading import Exercise, load_exercise  # noqa: E402
+from grader.recording.recording import Recordings  # noqa: E402
+from grader.testing import drive, pen, twist  # noqa: E402
+from turtlesim_py.world.arena import Arena  # noqa: E402
+from turtlesim_py.world.turtle import SIZE_M, TICK_S, Pose  # noqa: E402
+
+CENTRE_M = SIZE_M / 2
+#: Fault -> the checks of which at least one has to take points for it.
+FAULTS: Mapping[str, tuple[str, ...]] = {
+    "never_stops": ("edge_stop",),
+    "stops_early": ("edge_stop",),
+    "silent": ("edge_stop",),
+    "drives_on": ("edge_stop",),
+    "turns_on": ("edge_stop",),
+    "one_wall": ("edge_stop",),
+    "counts": ("edge_stop",),
+    "circle": ("spiral",),
+    "inward": ("spiral",),
+    "line": ("spiral",),
+    "zigzag": ("spiral",),
+    "turns_back": ("spiral",),
+    "jumps": ("spiral",),
+    "off_centre": ("spiral",),
+    "irregular": ("steady_rate",),
+    "pauses": ("steady_rate",),
+    "no_pen": ("pen_per_quadrant",),
+    "pen_off": ("pen_per_quadrant", "picture"),
+    "two_alike": ("pen_per_quadrant", "picture"),
+    "shades": ("pen_per_quadrant", "picture"),
+    "late": ("pen_per_quadrant", "picture"),
+    "wrong_centre": ("pen_per_quadrant", "picture"),
+    "random_colours": ("pen_per_quadrant", "picture"),
+    "by_time": ("pen_per_quadrant", "picture"),
+    "every_pose": ("no_redundant_calls",),
+    "background": ("picture",),
+}
+#: Colours that anybody tells apart, one from each row.
+PALETTES = (
+    ((255, 255, 255), (0, 0, 0), (255, 255, 0)),
+    ((255, 0, 0), (200, 0, 0), (255, 100, 100)),
+    ((0, 255, 0), (0, 128, 0), (0, 200, 100)),
+    ((0, 0, 255), (0, 0, 128), (128, 0, 255)),
+)
+
+
+@dataclass(frozen=True)
+class Style:
+    """How a controller is written; with no faults, all of these are right.
+
+    Attributes:
+        period: ticks between velocity commands.
+        turn: angular velocity [rad/s], positive to the left.
+        speed, growth: the first linear velocity and what each command adds to it [m/s].
+        margin_m: it stops when a wall is nearer.
+        one_timer: whether it looks at the pose only when it publishes.
+        answer: ticks until the pen has changed.
+        repeats: whether it goes on publishing zeros.
+        backwards: whether it drives backwards.
+        waits: ticks before anything.
+        faults: what was done wrong.
+        chance: a seed for what a fault leaves open.
+    """
+
+    period: int
+    turn: float
+    speed: float
+    growth: float
+    margin_m: float
+    one_timer: bool
+    answer: int
+    repeats: bool
+    backwards: bool
+    waits: int
+    colors: tuple[tuple[int, int, int], ...]
+    faults: tuple[str, ...] = ()
+    chance: int = 0
+
+
+def some_style(chance: random.Random) -> Style:
+    """A right solution."""
+    one_timer = chance.random() < 0.3
+    turn = chance.choice((0.8, 1.0, 1.2, 1.5, 2.0))
+    period = chance.choice((6, 12, 31) if one_timer else (3, 6, 12, 31, 50))
+    per_turn = chance.uniform(0.2, 0.8)  # by so much the radius grows with each turn [m]
+    commands = 2 * math.pi / turn / (period * TICK_S)
+    colors = [chance.choice(row) for row in PALETTES]
+    chance.shuffle(colors)
+    return Style(
+        period=period,
+        turn=turn * chance.choice((1, 1, -1)),
+        speed=chance.choice((0.0, 0.0, 0.1, 0.3)) * turn,
+        growth=per_turn * turn / commands,
+        margin_m=chance.uniform(1.0, 2.0) if one_timer else chance.uniform(0.3, 1.5),
+        one_timer=one_timer,
+        answer=chance.randrange(0, 5),
+        repeats=chance.random() < 0.4,
+        backwards=chance.random() < 0.1,
+        waits=chance.choice((0, 0, 0, 30, 300)),
+        colors=tuple(colors),
+        chance=chance.randrange(2**32),
+    )
+
+
+@dataclass
+class Controller:
+    """A style at work, in a submission's place."""
+
+    style: Style
+    speed: float = 0.0
+    quadrant: int = 0
+    stopped_at: int = 0
+    commands: int = 0
+    due: dict[int, tuple[int, int, int]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.speed = self.style.speed
+        self.chance = random.Random(self.style.chance)
+        self.wall = self.chance.randrange(4)
+        self.period = self.style.period
+        self.next_at = self.style.waits + 1
+
+    def has(self, fault: str) -> bool:
+        """Whether something is done wrong."""
+        return fault in self.style.faults
+
+    def __call__(self, tick: int, pose: Pose | None, arena: Arena) -> None:
+        for when in [when for when in self.due if when <= tick]:
+            self.paint(self.due.pop(when), arena)
+        if tick < self.style.waits or pose is None:
+            return
+        if self.has("off_centre") and tick == self.style.waits + 2:
+            arena.teleport_absolute("turtle1", CENTRE_M + 1.2, CENTRE_M, 0.0)
+        is_due = tick >= self.next_at
+        if self.style.one_timer and not is_due:
+            return
+        if not self.stopped_at:
+            self.watch(tick, pose, arena)
+        if is_due:
+            self.next_at = tick + self.period
+            if self.has("irregular"):
+                self.next_at = tick + self.chance.choice((2, 9, 25, 55))
+            if self.has("pauses") and self.commands in (60, 61):
+                self.next_at = tick + 110
+            self.publish(tick, arena)
+
+    def publish(self, tick: int, arena: Arena) -> None:
+        """What its timer does."""
+        if self.stopped_at and not self.has("drives_on"):
+            if self.has("turns_on"):
+                twist(arena, 0.0, self.style.turn)
+            elif self.style.repeats and not self.has("silent"):
+                twist(arena, 0.0, 0.0)
+            return
+        self.commands += 1
+        speed, turn = self.velocity(tick)
+        twist(arena, -speed if self.style.backwards else speed, turn)
+
+    def velocity(self, tick: int) -> tuple[float, float]:
+        """The next command, as the shape wants it."""
+        style = self.style
+        seconds = tick * TICK_S
+        if self.has("circle"):
+            return abs(style.turn) * 1.5, style.turn
+        if self.has("inward"):
+            self.speed = max(0.05, (self.speed or 2.5 * abs(style.turn)) - style.growth / 2)
+            return self.speed, style.turn
+        if self.has("line"):
+            return 0.8, 0.02
+        if self.has("zigzag"):
+            return 1.0, style.turn * (1 if seconds % 4 < 2 else -1)
+        self.speed += style.growth
+        if self.has("jumps"):
+            radius = 0.5 + 3.4 * (self.speed // (3.4 * abs(style.turn)))
+            return radius * abs(style.turn), style.turn
+        if self.has("turns_back") and seconds % 10 < 2:
+            return self.speed, -style.turn
+        return self.speed, style.turn
+
+    def watch(self, tick: int, pose: Pose, arena: Arena) -> None:
+        """What it does about a pose."""
+        if self.is_near(pose):
+            self.stopped_at = tick
+            if not self.has("silent"):
+                twist(arena, 0.0, self.style.turn if self.has("turns_on") else 0.0)
+            return
+        quadrant = self.quadrant_of(tick, pose)
+        if quadrant != self.quadrant or self.has("every_pose"):
+            self.quadrant = quadrant
+            delay = round(0.95 / abs(self.style.turn) / TICK_S) if self.has("late") else 0
+            if self.has("late"):
+                delay = max(delay, 45)
+            self.due[tick + self.style.answer + delay] = self.color_of(quadrant)
+
+    def is_near(self, pose: Pose) -> bool:
+        """Whether it is to stop here."""
+        sides = (pose.x, pose.y, SIZE_M - pose.x, SIZE_M - pose.y)
+        if self.has("never_stops"):
+            return False
+        if self.has("counts"):
+            return self.speed > 3.2 * abs(self.style.turn)
+        if self.has("stops_early"):
+            return min(sides) < 3.2
+        if self.has("one_wall"):
+            return sides[self.wall] < self.style.margin_m
+        return min(sides) < self.style.margin_m
+
+    def quadrant_of(self, tick: int, pose: Pose) -> int:
+        """Where it believes to be."""
+        if self.has("by_time"):
+            return int(tick * TICK_S * abs(self.style.turn) / (math.pi / 2)) % 4 + 1
+        centre = CENTRE_M + (1.5 if self.has("wrong_centre") else 0.0)
+        if pose.y >= centre:
+            return 1 if pose.x >= centre else 2
+        return 3 if pose.x < centre else 4
+
+    def color_of(self, quadrant: int) -> tuple[int, int, int]:
+        """The colour that it asks for."""
+        colors = list(self.style.colors)
+        if self.has("two_alike"):
+            colors[3] = colors[1]
+        if self.has("shades"):
+            r, g, b = colors[1]
+            colors[3] = (r ^ 1, g ^ 1, b ^ 1)
+        if self.has("background"):
+            colors[2] = (69, 86, 255)
+        if self.has("random_colours"):
+            return tuple(self.chance.randrange(256) for _ in "rgb")  # type: ignore[return-value]
+        return colors[quadrant - 1]
+
+    def paint(self, color: tuple[int, int, int], arena: Arena) -> None:
+        """The answer of the service."""
+        if self.has("no_pen"):
+            return
+        if self.has("pen_off"):
+            arena.set_pen("turtle1", *color, 3, 1)
+        else:
+            pen(arena, color)
+
+
+def judged(style: Style, exercise: Exercise) -> dict[str, tuple[float, str]]:
+    """Check -> the share of its points, and what it says."""
+    ticks = round(exercise.limits.total_s / TICK_S)
+    make: Callable[[], Controller] = lambda: Controller(style)  # noqa: E731
+    runs = [drive(make(), ticks, start) for start in (None, *exercise.starts())]
+    verdicts = judge(
+        Recordings(runs[0], tuple(runs[1:])), exercise.checks, exercise.points, exercise.tolerances
+    )
+    return {v.check: (v.score / v.max_score, v.rationale) for v in verdicts}
+
+
+def main() -> None:
+    """Search, and tell what was found."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--count", type=int, default=200, help="controllers")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--limit-s", type=float, default=600, help="wall time at most")
+    parser.add_argument("--show", action="store_true", help="print every controller")
+    asked = parser.parse_args()
+    exercise = load_exercise("turtlesim_challenge")
+    chance = random.Random(asked.seed)
+    until = time.monotonic() + asked.limit_s
+    of: Counter[str] = Counter()
+    good: Counter[str] = Counter()
+    for number in range(asked.count):
+        style = some_style(chance)
+        if number % 3:
+            faults = chance.sample(sorted(FAULTS), 1 if chance.random() < 0.7 else 2)
+            style = replace(style, faults=tuple(faults))
+        if time.monotonic() > until:
+            print(f"The time is up after {number} controllers.")
+            break
+        found = judged(style, exercise)
+        lost = {check: said for check, (share, said) in found.items() if share < 1}
+        if style.faults:
+            missed = [f for f in style.faults if lost.keys().isdisjoint((*FAULTS[f], "moves"))]
+            is_right = not missed
+        else:
+            is_right = not lost
+        kind = "wrong" if style.faults else "right"
+        of[kind] += 1
+        good[kind] += is_right
+        if asked.show or not is_right:
+            print(f"{number}: {'as it should be' if is_right else 'JUDGED WRONGLY'}: {style}")
+            print("".join(f"    {check}: {said}\n" for check, said in lost.items()), end="")
+    print(f"killed: {good['wrong']} of {of['wrong']} wrong ones lose the points of every fault")
+    print(f"spared: {good['right']} of {of['right']} right ones keep all points")
+
+
+if __name__ == "__main__":
+    main()
