@@ -1,4 +1,4 @@
-"""Write into docs/rubric.md what the checks of our exercises measure, from the checks themselves."""
+"""Write into docs/rubric.md what the checks of our exercises measure, as they say it."""
 
 from __future__ import annotations
 

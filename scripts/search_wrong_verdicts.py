@@ -151,6 +151,7 @@ class Controller:
         return fault in self.style.faults
 
     def __call__(self, tick: int, pose: Pose | None, arena: Arena) -> None:
+        """What a submission would do before a tick."""
         for when in [when for when in self.due if when <= tick]:
             self.paint(self.due.pop(when), arena)
         if tick < self.style.waits or pose is None:
