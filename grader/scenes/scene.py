@@ -48,7 +48,8 @@ class Limits:
 
     Attributes:
         first_motion_s: nothing has moved by then.
-        rest_s: something has moved and then rested for so long.
+        rest_s: something has driven and then rested for so long; who has not yet left the place
+            may pause for as long as `first_motion_s`.
         total_s: in any case.
     """
 
