@@ -46,7 +46,8 @@ class End:
         name: with its namespace, after remapping.
         type: as 'geometry_msgs/msg/Twist'.
         is_met: whether anybody else had the other end of it, at the end of the run.
-        used: how many messages it has sent, received, or requests sent.
+        used: how many messages it has sent, received, or requests sent; of a process that was ended
+            by force, so many at least.
         place: where it was made.
     """
 

@@ -6,6 +6,7 @@
 | run.json | how the run went, where it started, what the submission published on | yes |
 | output.txt | what the submission printed | yes |
 | circumstances.json | what differs between equal runs: duration, provenance | if it is there |
+| conduct.json | what the submission's process told of itself, if anything | if it is there |
 | path.png, window.png | the bag's pictures, for people | no |
 | scenario.json | the inputs, for `python -m turtlesim_py.scenario` | no |
 
@@ -34,6 +35,7 @@ from typing import TYPE_CHECKING, Any
 from grader import limited, strict_json
 from grader.errors import RecordingError
 from grader.limited import Limits
+from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
 from grader.requirements import require
@@ -47,11 +49,15 @@ SCHEMA = "turtlesim-grader/recording/v2"
 NAME = "recording"
 BAG, METADATA, RUN, OUTPUT = f"{NAME}.mcap", "metadata.yaml", "run.json", "output.txt"
 CIRCUMSTANCES_FILE, SCENARIO = "circumstances.json", "scenario.json"
+CONDUCT = "conduct.json"
 PATH_PICTURE, WINDOW_PICTURE = "path.png", "window.png"
 #: The scene of a recording that names none.
 FIRST_SCENE = "turtlesim"
 #: In the order in which they come into the folder.
-FILES = (BAG, RUN, OUTPUT, CIRCUMSTANCES_FILE, SCENARIO, PATH_PICTURE, WINDOW_PICTURE, METADATA)
+FILES = (
+    *(BAG, RUN, OUTPUT, CONDUCT, CIRCUMSTANCES_FILE, SCENARIO),
+    *(PATH_PICTURE, WINDOW_PICTURE, METADATA),
+)
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
 #: Stands beside them.
@@ -63,6 +69,7 @@ SIZES = {
     RUN: 2**20,
     OUTPUT: 2**26,
     CIRCUMSTANCES_FILE: 2**20,
+    CONDUCT: 2**20,
 }
 #: An exercise has no more.
 MOST_VARIED_RUNS = 100
@@ -251,6 +258,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     _write_json(folder / CIRCUMSTANCES_FILE, circumstances)
     # Bytes: a student's line ends stay as they are.
     (folder / OUTPUT).write_bytes(recording.output.encode("utf-8", "surrogatepass"))
+    if recording.conduct.is_told:
+        _write_json(folder / CONDUCT, recording.conduct.to_json())
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)
     if recording.start is None:  # a scenario begins in the usual place
@@ -348,7 +357,18 @@ def _load(folder: Path, facts: dict[str, Any]) -> Recording:
         start=Start(**facts["start"]) if facts["start"] else None,
         scene=scene.name,
         provenance=Provenance.from_json(facts[PROVENANCE]) if facts[PROVENANCE] else None,
+        conduct=_conduct(folder / CONDUCT),
     )
+
+
+def _conduct(path: Path) -> Conduct:
+    """What the process has told of itself; nothing in a recording that is older than that."""
+    if not path.exists():
+        return Conduct()
+    try:
+        return Conduct.from_json(_read_json(path))
+    except ValueError as error:
+        raise RecordingError(f"{path} is damaged: {error}") from None
 
 
 def _read_bag(folder: Path, scene: Scene, ticks: int) -> Trace:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from grader.recording.conduct import Conduct
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
 from grader.run.plan import Plan
 from grader.run.processes.sandbox.limits import LIMITS, size
 from grader.scenes.scene import Reason, Trace
 
+NOTHING_TOLD = Conduct()
 #: How much of a process's output is looked at for why it ended [characters], [lines].
 LAST_WORDS, MOST_LAST_LINES = 8192, 20
 #: Exit codes that only a limit gives, SIGXCPU and SIGXFSZ, and what happened.
@@ -86,7 +88,11 @@ def limits_struck(exit_code: int | None, output: str, excess: str) -> tuple[str,
 
 
 def record(
-    plan: Plan, trace: Trace, topics: tuple[PublishedTopic, ...], ending: Ending
+    plan: Plan,
+    trace: Trace,
+    topics: tuple[PublishedTopic, ...],
+    ending: Ending,
+    conduct: Conduct = NOTHING_TOLD,
 ) -> Recording:
     """Everything about a run that is over."""
     return Recording(
@@ -108,4 +114,5 @@ def record(
         output=ending.output,
         start=plan.start,
         scene=plan.scene,
+        conduct=conduct,
     )

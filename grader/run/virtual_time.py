@@ -13,7 +13,7 @@ from dataclasses import asdict, replace
 
 from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
-from grader.run import handover, real_time, stage, zygotes
+from grader.run import evidence, handover, real_time, stage, zygotes
 from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lockstep import contract
 from grader.run.lost import SimulatorLost
@@ -32,6 +32,8 @@ STOPPED = "the node's process was stopped (SIGSTOP), and nobody let it go on"
 FLOODING = "the node sent so much that the simulator used more than {:.0f} s of processor time"
 #: So long a process that has hung up, or was killed, may take to end on a busy machine [s].
 END_S = 20.0
+#: Of silences: a program that is still there, and could be asked where it is.
+COMPUTES = ("stalled", "slow")
 PATIENCE = Patience()
 #: What runs as the simulator's process.
 MODULE = zygotes.MODULE
@@ -75,13 +77,16 @@ def _try(
     with (
         stage.open_stage() as place,
         cores.reserve_core(ours.fileno()) as core_id,
+        evidence.open_evidence() as told,
         ours,
         theirs,
     ):
         submission = place.own(submission)
-        words = command(submission, scene.introduction, ours.fileno())
-        student = place.virtual_student(words, submission, pass_fds=(ours.fileno(),))
+        fds = (ours.fileno(), told.descriptor)
+        words = command(submission, scene.introduction, *fds)
+        student = place.virtual_student(words, submission, pass_fds=fds)
         ours.close()
+        told.has_begun()
 
         def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
             output = submission.as_handed_in(student.output())
@@ -110,6 +115,8 @@ def _try(
                     if message["say"] == "done" and student.ends_for_excess():
                         message["silence"] = "gone"  # for what it has filled since the last look
                     exit_code = student.wait(END_S) if message.get("silence") == "gone" else None
+                    if message.get("silence") in COMPUTES:
+                        told.ask(student.pid)
             finally:
                 student.end(gently=False)
             if student.was_lost:
@@ -124,13 +131,16 @@ def _try(
             raise SimulatorLost(failure, ending("killed", None)) from failure
     how, flags = _judge(message, exit_code, patience)
     flags += message["flags"]
-    return record(plan, trace, topics, ending(how, exit_code, tuple(flags))), ""
+    conduct = told.conduct(submission, message["reached_s"])
+    return record(plan, trace, topics, ending(how, exit_code, tuple(flags)), conduct), ""
 
 
-def command(submission: Submission, introduction: Introduction, link_fd: int) -> list[str]:
+def command(
+    submission: Submission, introduction: Introduction, link_fd: int, evidence_fd: int
+) -> list[str]:
     """How the submission's process is started."""
     nodes = json.dumps(introduction.nodes)
-    words = [str(link_fd), nodes, *stage.target(submission)]
+    words = [str(link_fd), str(evidence_fd), nodes, *stage.target(submission)]
     return [*zygotes.command(zygotes.STUDENT), *words]
 
 

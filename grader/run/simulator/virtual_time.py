@@ -114,6 +114,7 @@ class Lockstep:
             "silence": self._link.silence,
             "waits": self._link.waits,
             "was_at_rest": self._was_at_rest,
+            "reached_s": min(self._link.reached(), self._tick) * TICK_NS / 1e9,
             "flags": [*self._link.flags, *self._simulation.flags],
             "marks": self._marks,
         }

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 import traceback
+from dataclasses import dataclass
 from types import CodeType, FrameType
 
 from grader.run.lockstep import faults
 from grader.run.student.scheduler import Scheduler
+from grader.run.student.telling import Line, stack, trace
 
 MESSAGE = """
 Your node is stuck here, at {time_s:.2f} s: it waits for something that can no longer happen.
@@ -22,7 +24,22 @@ Nobody spins this node while this call waits, so no answer, message or timer can
 another thread, or use rclpy.spin_until_future_complete()."""
 
 
-def find(scheduler: Scheduler, runs_callback: CodeType, waits: frozenset[CodeType]) -> str:
+@dataclass(frozen=True)
+class Stuck:
+    """What is told of it.
+
+    Attributes:
+        text: for the author of the submission.
+        kind: as in `grader.recording.conduct.Stop`.
+        lines: where it is, outermost first.
+    """
+
+    text: str
+    kind: str
+    lines: list[Line]
+
+
+def find(scheduler: Scheduler, runs_callback: CodeType, waits: frozenset[CodeType]) -> Stuck | None:
     """Describe the first thread that is stuck in a callback or in a waiting call of rclpy's.
 
     Args:
@@ -30,50 +47,53 @@ def find(scheduler: Scheduler, runs_callback: CodeType, waits: frozenset[CodeTyp
         runs_callback: the code of rclpy that callbacks are called from.
         waits: code of rclpy that waits for another thread to spin.
 
-    Returns: '' where threads only wait, as a program may that has done its work.
+    Returns: None where threads only wait, as a program may that has done its work.
     """
     frames = sys._current_frames()
     for runner in scheduler.runners:
-        stack = _stack(frames.get(runner.ident))
-        codes = [frame.f_code for frame in stack]
+        lines = stack(frames.get(runner.ident))
+        codes = [frame.f_code for frame, _ in lines]
         if runs_callback in codes or not waits.isdisjoint(codes):
-            advice = IN_CALLBACK if runs_callback in codes else OUTSIDE
-            return MESSAGE.format(
-                time_s=scheduler.now_ns / 1e9, stack=_format(_lines(stack)), advice=advice
-            )
-    return ""
+            is_callback = runs_callback in codes
+            return _stuck(lines, "callback" if is_callback else "call", scheduler.now_ns)
+    return None
 
 
-def find_refused(error: BaseException, now_ns: int) -> str:
+def find_waiting(scheduler: Scheduler) -> list[Line]:
+    """Where the main thread waits, which is for good; nothing where any thread spins."""
+    frames = sys._current_frames()
+    stacks = [stack(frames.get(runner.ident)) for runner in scheduler.runners]
+    if any(_is_spin(frame) for lines in stacks for frame, _ in lines):
+        return []
+    return stack(frames.get(scheduler.main.ident))
+
+
+def _is_spin(frame: FrameType) -> bool:
+    module = str(frame.f_globals.get("__name__", ""))
+    return frame.f_code.co_name == "spin" and module.startswith("rclpy")
+
+
+def find_refused(error: BaseException, now_ns: int) -> Stuck | None:
     """Describe a spin within a spin that this rclpy has refused, where others would be stuck.
 
-    Returns: '' for another exception.
+    Returns: None for another exception.
     """
-    trace = list(traceback.walk_tb(error.__traceback__))
+    lines = trace(error)
     is_refused = (
         isinstance(error, RuntimeError)
         and str(error) == "Executor is already spinning"
-        and trace[-1][0].f_globals.get("__name__") == "rclpy.executors"
+        and lines[-1][0].f_globals.get("__name__") == "rclpy.executors"
     )
-    if not is_refused:
-        return ""
-    return MESSAGE.format(time_s=now_ns / 1e9, stack=_format(trace), advice=IN_CALLBACK)
+    return _stuck(lines, "callback", now_ns) if is_refused else None
 
 
-def _stack(frame: FrameType | None) -> list[FrameType]:
-    """Outermost first."""
-    stack = []
-    while frame is not None:
-        stack.append(frame)
-        frame = frame.f_back
-    return stack[::-1]
+def _stuck(lines: list[Line], kind: str, now_ns: int) -> Stuck:
+    advice = IN_CALLBACK if kind == "callback" else OUTSIDE
+    text = MESSAGE.format(time_s=now_ns / 1e9, stack=_format(lines), advice=advice)
+    return Stuck(text, kind, lines)
 
 
-def _lines(stack: list[FrameType]) -> list[tuple[FrameType, int]]:
-    return [(frame, frame.f_lineno) for frame in stack]
-
-
-def _format(lines: list[tuple[FrameType, int]]) -> str:
+def _format(lines: list[Line]) -> str:
     """As a traceback, without our own lines."""
     shown = [line for line in lines if not _is_ours(line[0].f_code.co_filename)]
     return "".join(traceback.StackSummary.extract(iter(shown)).format())

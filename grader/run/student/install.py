@@ -19,9 +19,10 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep import actions, endpoints, events, faults, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import Kind
-from grader.run.student import chance, deadlock, executor, graph
+from grader.run.student import chance, deadlock, executor, graph, witness
 from grader.run.student.scheduler import Scheduler
 from grader.run.student.simulator_link import SimulatorLink
+from grader.run.student.telling import Teller
 from grader.run.student.waiting import VirtualWaiter, clock_event_class
 
 
@@ -36,8 +37,9 @@ def install(
     scheduler: Scheduler,
     nodes: Sequence[graph.Name],
     refuse: Callable[[str], None],
-) -> SimulatorLink:
-    """Replace what tells or waits for time in rclpy, after `prepare`; returns the link.
+    teller: Teller,
+) -> tuple[SimulatorLink, witness.Witness]:
+    """Replace what tells or waits for time in rclpy, after `prepare`; who looks on comes last.
 
     Args:
         nodes: the simulator's.
@@ -65,8 +67,19 @@ def install(
     scheduler.on_foreign_thread = lambda: refuse(
         "runs Python in a thread that a C extension has started"
     )
-    link.on_standstill = lambda: _look_for_deadlock(scheduler, link, waiter)
-    return link
+    looks_on = witness.Witness(teller, _is_met)
+    link.on_standstill = lambda: _look_for_deadlock(scheduler, link, waiter, looks_on)
+    link.on_over = looks_on.sum_up
+    witness.install(looks_on)
+    witness.install_actions(looks_on)
+    return link, looks_on
+
+
+def _is_met(kind: str, entity: Any) -> Callable[[], bool]:
+    """The entity itself is not to live longer for it."""
+    handle = entity._client_handle if kind == "action_client" else entity.handle
+    endpoint = handle.endpoints[0]
+    return lambda: endpoint.matches > 0
 
 
 class _Guarded:
@@ -127,7 +140,9 @@ def _replace_events_executor() -> None:
         setattr(module, EventsExecutor.__name__, EventsExecutor)
 
 
-def _look_for_deadlock(scheduler: Scheduler, link: SimulatorLink, waiter: VirtualWaiter) -> None:
+def _look_for_deadlock(
+    scheduler: Scheduler, link: SimulatorLink, waiter: VirtualWaiter, looks_on: witness.Witness
+) -> None:
     if waiter.is_hopeful():
         return
     link.on_standstill = lambda: None  # once is enough
@@ -141,5 +156,8 @@ def _look_for_deadlock(scheduler: Scheduler, link: SimulatorLink, waiter: Virtua
     runs_callback = rclpy.task.Task.__call__.__code__
     found = deadlock.find(scheduler, runs_callback, frozenset(w.__code__ for w in waits))
     if found:
-        print(found, file=sys.stderr, flush=True)
+        print(found.text, file=sys.stderr, flush=True)
+        looks_on.stuck(found.kind, found.lines)
+    elif lines := deadlock.find_waiting(scheduler):
+        looks_on.stuck("call", lines)
     link.note(Kind.STUCK if found else Kind.WAITING)

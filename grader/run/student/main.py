@@ -170,13 +170,16 @@ def call(
 ) -> int:
     """Run what was handed in to its end; its exit code. Tracebacks go without our own lines.
 
-    `on_error`: told of an exception that nobody has caught, before its traceback is printed.
+    `on_error`: told of an exception that nobody has caught, before its traceback is printed; also
+        of one that Python prints nothing of.
     """
     try:
         code = run(root, target, function)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
+        on_error(interrupt)
         return 130
     except SystemExit as leaving:
+        on_error(leaving)
         code = leaving.code
         if isinstance(code, str):
             print(code, file=sys.stderr)

@@ -57,6 +57,8 @@ class SimulatorLink(EndpointRegistry):
         self.on_arrival: Callable[[], None] = lambda: None
         #: called when nothing can ever happen any more
         self.on_standstill: Callable[[], None] = lambda: None
+        #: called when the run is over, before this process ends for it
+        self.on_over: Callable[[], None] = lambda: None
         self.remotes = Remotes()
         self._scheduler = scheduler
         self._channel = SimulatorChannel(refuse)
@@ -141,6 +143,7 @@ class SimulatorLink(EndpointRegistry):
             self.remotes.remove(table)
             self._connect_anew()
         if packet.state == State.OVER:
+            self.on_over()
             real.leave(0)
 
     # Messages ---------------------------------------------------------------------------------

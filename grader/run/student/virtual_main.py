@@ -1,13 +1,13 @@
 """The submission's process in virtual time: replace what tells time, run what was handed in.
 
-    python virtual_main.py FD NODES ROOT module:function
-    python virtual_main.py FD NODES ROOT path/to/script.py [function]
+    python virtual_main.py FD EVIDENCE NODES ROOT module:function
+    python virtual_main.py FD EVIDENCE NODES ROOT path/to/script.py [function]
     python virtual_main.py --zygote SOCKET GRADER_PID MESSAGES
 
-FD is the link to the simulator, NODES a JSON list of the names and namespaces of the simulator's
-nodes. Started by path, like `grader.run.student.main`, whose rules for what a submission may import
-are the same. Everything of ours is imported before the submission is, and then forgotten by the
-import system.
+FD is the link to the simulator, EVIDENCE a pipe to the grader (`telling`), NODES a JSON list of the
+names and namespaces of the simulator's nodes. Started by path, like `grader.run.student.main`,
+whose rules for what a submission may import are the same. Everything of ours is imported before the
+submission is, and then forgotten by the import system.
 
 As a zygote it does the same up to where the link comes in, imports what nearly every submission
 needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with the
@@ -36,6 +36,7 @@ from grader.run.student import (  # noqa: E402
     refusal,
     signals,
     sockets,
+    telling,
     threads,
 )
 
@@ -57,8 +58,9 @@ def main() -> None:
             sys.exit(fault)  # the run says so, when it has started from nothing
         words = become_one_of_many(scheduler, state, words[2:])
         student_main.die_with_parent()
-    _, fd, nodes, root, target, *more = words
+    _, fd, evidence, nodes, root, target, *more = words
     connection = socket.socket(fileno=int(fd))
+    teller = telling.Teller(int(evidence), root, lambda: scheduler.now_ns / 1e9)
 
     def give_up(kind: Kind, what: str) -> None:
         with suppress(OSError):  # the simulator is gone
@@ -76,7 +78,7 @@ def main() -> None:
         from grader.run.student import install as inside_rclpy
 
         known = [(name, namespace) for name, namespace in json.loads(nodes)]
-        link = inside_rclpy.install(scheduler, known, refuse)
+        link, witness = inside_rclpy.install(scheduler, known, refuse, teller)
         link.take_up(connection)
     except refusal.Unsupported as lack:
         give_up(Kind.FAILED, f"virtual time does not work here: {lack}")
@@ -87,16 +89,19 @@ def main() -> None:
         """An exception has ended the main thread."""
         faults.report(error)
         if stuck := deadlock.find_refused(error, scheduler.now_ns):
-            print(stuck, file=sys.stderr, flush=True)
+            print(stuck.text, file=sys.stderr, flush=True)
+            witness.stuck(stuck.kind, stuck.lines)
             link.note(Kind.STUCK)
             while True:
                 scheduler.block()
+        witness.raised(error)
         faults.hide_our_frames(error)
 
     refusal.watch(refuse)
     student_main.forget_ourselves(root, target)
     code = student_main.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
+    witness.returned(code)
     atexit._run_exitfuncs()
     faults.guarded(link.synchronise)()
     real.leave(code)

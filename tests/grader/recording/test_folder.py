@@ -17,6 +17,7 @@ from grader import cli
 from grader.errors import RecordingError
 from grader.recording import bag
 from grader.recording import folder as storage
+from grader.recording.conduct import Conduct, End, Place, Stop
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import Log
@@ -25,11 +26,16 @@ from turtlesim_py.world.events import RotateAbsolute, SetParameter, SetPen
 from turtlesim_py.world.trajectory import Trajectory
 
 CIRCUMSTANCES = "circumstances.json"
+CONDUCT = Conduct(
+    is_told=True,
+    ends=(End("publisher", "/pose", "turtlesim/msg/Pose", False, 3, Place("a.py", 7)),),
+    stop=Stop("callback", 1.5, "Client.call", Place("a.py", 9, "on_pose", "self.pen.call(red)")),
+)
 
 
 @pytest.fixture(scope="module")
 def recorded() -> Recording:
-    return drive(Spiral(), ticks=600)
+    return replace(drive(Spiral(), ticks=600), conduct=CONDUCT)
 
 
 @pytest.fixture
@@ -467,3 +473,22 @@ def test_an_input_that_is_nested_without_measure_is_refused(recorded, tmp_path, 
     monkeypatch.undo()
     with pytest.raises(RecordingError):
         storage.load(tmp_path)
+
+
+# What the process told of itself --------------------------------------------------------------
+
+
+def test_what_the_process_told_comes_back(folder):
+    assert storage.load(folder).conduct == CONDUCT
+
+
+def test_a_recording_of_which_nothing_was_told_has_no_file_for_it(recorded, folder):
+    storage.save(replace(recorded, conduct=Conduct()), folder)
+    assert not (folder / "conduct.json").exists()
+    assert storage.load(folder).conduct == Conduct()
+
+
+def test_a_conduct_of_another_form_is_refused_by_name(folder):
+    change(folder / "conduct.json", spun_s="soon")
+    with pytest.raises(RecordingError, match=r"conduct\.json is damaged: expected seconds"):
+        storage.load(folder)

@@ -17,15 +17,18 @@ def refusal(message: str, where: str = rclpy.executors.__name__) -> Exception:
 
 
 def test_a_refused_spin_within_a_spin_is_shown_where_it_is() -> None:
-    text = deadlock.find_refused(refusal("Executor is already spinning"), 1_500_000_000)
+    stuck = deadlock.find_refused(refusal("Executor is already spinning"), 1_500_000_000)
+    assert stuck is not None
+    text = stuck.text
+    assert stuck.kind == "callback"
     assert "Your node is stuck here, at 1.50 s" in text
     assert 'scope["enter_spin"]()' in text
     assert "Do not wait in a callback" in text
 
 
 def test_other_exceptions_are_what_they_are() -> None:
-    assert deadlock.find_refused(refusal("Executor is already spinning", "controller"), 0) == ""
-    assert deadlock.find_refused(refusal("No"), 0) == ""
+    assert deadlock.find_refused(refusal("Executor is already spinning", "controller"), 0) is None
+    assert deadlock.find_refused(refusal("No"), 0) is None
 
 
 def test_executors_that_refuse_a_spin_within_a_spin_do_not_any_more(monkeypatch) -> None:  # type: ignore[no-untyped-def]

@@ -1,0 +1,148 @@
+"""What a submission's process tells of itself, on its way to the recording.
+
+A pipe, into which the process writes lines of JSON (`student.telling`) and, at a signal or where it
+dies by a mistake in C, where its threads are (Python's faulthandler). A pipe holds 64 KB at most,
+whoever writes. What is in it is read when the process has ended, strictly: where anything of it is
+not as our own code would have written it, nothing was told.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from grader import strict_json, system
+from grader.recording.conduct import Conduct
+from grader.run import dumps
+from grader.run.processes.process import await_readable
+from grader.run.student.telling import asking_signal
+from grader.submission.opening import Submission
+
+MOST_BYTES = 65_536
+#: How long a process may take to say where it is [s]; it has nothing else to do.
+PATIENCE_S = 1.0
+
+
+class Evidence:
+    """The grader's end of the pipe.
+
+    Attributes:
+        descriptor: what the submission's process inherits; -1: it can inherit none.
+    """
+
+    def __init__(self) -> None:
+        self._reads, self.descriptor = os.pipe() if system.inherits_descriptors() else (-1, -1)
+        self._data = b""
+        if self._reads >= 0:
+            os.set_blocking(self._reads, False)
+
+    def has_begun(self) -> None:
+        """The process has its end of the pipe now; ours of it is closed."""
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+            self.descriptor = -1
+
+    def close(self) -> None:
+        """Give back what is open; what was told can be asked for afterwards."""
+        self.has_begun()
+        self._read()
+        if self._reads >= 0:
+            os.close(self._reads)
+            self._reads = -1
+
+    def ask(self, pid: int) -> None:
+        """Have a process that still runs say where its threads are, and wait for that."""
+        number = asking_signal()
+        self._read()
+        if self._reads < 0 or not number:
+            return
+        with suppress(OSError):
+            os.kill(pid, number)
+            await_readable(self._reads, PATIENCE_S)
+
+    def conduct(self, submission: Submission, ended_s: float) -> Conduct:
+        """All that was told; of a process that has told nothing, or nonsense, that it has not.
+
+        Args:
+            ended_s: how far the process has got, on the clock of the run [s].
+        """
+        self._read()
+        if not self._data:
+            return Conduct()
+        try:
+            return _conduct(self._data.decode("ascii"), submission, ended_s)
+        except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
+            return Conduct()
+
+    def _read(self) -> None:
+        with suppress(OSError):
+            while self._reads >= 0 and len(self._data) <= MOST_BYTES:
+                chunk = os.read(self._reads, MOST_BYTES)
+                self._data += chunk
+                if not chunk:
+                    return
+
+
+@contextmanager
+def open_evidence() -> Iterator[Evidence]:
+    """A pipe for one run."""
+    evidence = Evidence()
+    try:
+        yield evidence
+    finally:
+        evidence.close()
+
+
+def _conduct(text: str, submission: Submission, ended_s: float) -> Conduct:
+    """Raises ValueError and its like: it is not what our own code writes."""
+    if len(text) > MOST_BYTES:
+        raise ValueError(f"more than {MOST_BYTES} bytes")
+    told: dict[str, Any] = {
+        **{"is_told": True, "ends": [], "spun_s": None, "waits": [], "slow": []},
+        **{"stop": None, "raised": None, "returned_s": None},
+    }
+    lines = text.splitlines()
+    for line in lines:
+        if line.startswith("{"):
+            _add(told, strict_json.loads(line))
+    own = dumps.Own(submission)
+    if told["stop"] is None and told["raised"] is None and told["returned_s"] is None:
+        told.update(dumps.ending([line for line in lines if line[:1] != "{"], own, ended_s))
+    for place in _places(told):
+        place["file"] = own.as_handed_in(place["file"])
+    return Conduct.from_json(told)
+
+
+def _add(told: dict[str, Any], line: Any) -> None:
+    ((what, value),) = line.items()
+    match what:
+        case "end":
+            told["ends"].append({**value, "is_met": False, "used": 0})
+        case "used":
+            number, used, is_met = value
+            told["ends"][number].update(used=used, is_met=is_met)
+        case "wait" | "slow":
+            number, value = value
+            entries = told["waits" if what == "wait" else "slow"]
+            if number == len(entries):
+                entries.append(value)
+            else:
+                entries[number] = value
+        case "spun":
+            told["spun_s"] = value
+        case "returned":
+            told["returned_s"] = value
+        case "stop" | "raised":
+            told[what] = value
+        case _:
+            raise ValueError(f"told of {what!r:.40}")
+
+
+def _places(told: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Every place in it that there is."""
+    ends = (told["stop"], told["raised"])
+    for entry in (*told["ends"], *told["waits"], *told["slow"], *ends):
+        if entry is not None and entry["place"] is not None:
+            yield entry["place"]

@@ -1,0 +1,124 @@
+"""What is told of a submission's process: whole runs, most of them in virtual time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from grader.recording.conduct import End, Place, Stop
+from grader.recording.recording import Recording
+
+Recorded = Callable[..., Recording]
+PEN = "self.pen.call(SetPen.Request(r=255, width=3))"
+
+
+@pytest.mark.records("conduct/wrong_ends", times=2)
+def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
+    recorded: Recorded,
+) -> None:
+    conduct = recorded("conduct/wrong_ends").conduct
+
+    def place(line: int, text: str) -> Place:
+        return Place("wrong_ends.py", line, "Controller.__init__", text)
+
+    cmd_vel = 'self.velocity = self.create_publisher(TwistStamped, "/turtle1/cmd_vel", 10)'
+    rotation = 'self.rotation = ActionClient(self, RotateAbsolute, "/turtle1/rotate_absolute")'
+    assert conduct.ends == (
+        End("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped", False, 6,
+            place(17, cmd_vel)),
+        End("subscription", "/pose", "turtlesim/msg/Pose", False, 0,
+            place(18, 'self.create_subscription(Pose, "/pose", print, 10)')),
+        End("subscription", "/turtle1/pose", "turtlesim/msg/Pose", True, 0,
+            place(19, 'self.create_subscription(Pose, "turtle1/pose", print, 10)')),
+        End("client", "/set_pen", "turtlesim/srv/SetPen", False, 0,
+            place(20, 'self.pen = self.create_client(SetPen, "/set_pen")')),
+        End("action_client", "/turtle1/rotate_absolute", "turtlesim/action/RotateAbsolute", True, 0,
+            place(21, rotation)),
+    )  # fmt: skip
+    assert (conduct.spun_s, conduct.returned_s, conduct.raised) == (None, 3.0, None)
+
+
+@pytest.mark.records("conduct/wrong_ends", times=2)
+def test_the_same_is_told_of_two_runs(recorded: Recorded) -> None:
+    first, second = recorded("conduct/wrong_ends"), recorded("conduct/wrong_ends", 2)
+    assert first.conduct == second.conduct
+
+
+@pytest.mark.records("conduct/spins_once")
+def test_a_program_that_spins_once_and_is_through_tells_both(recorded: Recorded) -> None:
+    conduct = recorded("conduct/spins_once").conduct
+    assert (conduct.is_told, conduct.spun_s, conduct.stop) == (True, 0.0, None)
+    assert conduct.returned_s is not None
+    assert conduct.returned_s < 0.1
+
+
+@pytest.mark.parametrize(
+    ("name", "stop"),
+    [
+        pytest.param(f"misbehaving/{name}", stop, marks=pytest.mark.records(f"misbehaving/{name}"))
+        for name, stop in (
+            ("calls_in_callback", ("callback", 1.0, "Client.call", 15, PEN)),
+            ("calls_without_spinning", ("call", 0.0, "Client.call", 10, PEN.removeprefix("self."))),
+            ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
+            (
+                "spins_in_callback",
+                *(("callback", 0.48, "spin_until_future_complete", 26,
+                   "rclpy.spin_until_future_complete(self, answer)"),),
+            ),
+        )
+    ],
+)  # fmt: skip
+def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(
+    recorded: Recorded, name: str, stop: tuple[str, float, str, int, str]
+) -> None:
+    found = recorded(name).conduct.stop
+    assert found is not None
+    assert found.place is not None
+    assert (found.kind, found.time_s, found.call, found.place.line, found.place.text) == stop
+
+
+@pytest.mark.parametrize(
+    ("name", "raised"),
+    [
+        pytest.param(name, raised, marks=pytest.mark.records(name))
+        for name, raised in (
+            ("misbehaving/raises_in_callback", ("AttributeError", 0.48, 17, "on_pose")),
+            ("misbehaving/exits", ("SystemExit", 1.0, 16, "")),
+            ("conduct/raises_inside_rclpy", ("AttributeError", 0.5, 10, "tick")),
+            ("conduct/says_goodbye", ("SystemExit", 0.0, 9, "leave")),
+        )
+    ],
+)
+def test_what_ended_it_is_told_with_the_last_line_of_its_own(
+    recorded: Recorded, name: str, raised: tuple[str, float, int, str]
+) -> None:
+    conduct = recorded(name).conduct
+    found = conduct.raised
+    assert found is not None
+    assert found.place is not None
+    assert (found.type, found.time_s, found.place.line, found.place.function) == raised
+    assert conduct.returned_s is None
+
+
+@pytest.mark.records("conduct/says_goodbye")
+def test_the_text_that_a_program_leaves_with_is_told(recorded: Recorded) -> None:
+    raised = recorded("conduct/says_goodbye").conduct.raised
+    assert raised is not None
+    assert raised.text == "bye"
+
+
+@pytest.mark.records("conduct/aborts")
+def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded: Recorded) -> None:
+    raised = recorded("conduct/aborts").conduct.raised
+    assert raised is not None
+    assert (raised.type, raised.place) == (
+        "SIGSEGV",
+        Place("aborts.py", 9, "crash", "ctypes.string_at(1)"),
+    )
+
+
+@pytest.mark.records("misbehaving/busy_for_ever")
+def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
+    found = recorded("misbehaving/busy_for_ever").conduct.stop
+    assert found == Stop("loop", 0.096, "", Place("busy_for_ever.py", 13, "", "while True:"))
