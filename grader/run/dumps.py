@@ -22,6 +22,14 @@ FATAL = {
     "Floating point exception": "SIGFPE",
     "Illegal instruction": "SIGILL",
 }
+#: Functions of rclpy that wait for another thread to spin, and what they are called.
+WAITS = {
+    ("rclpy/client.py", "call"): "Client.call",
+    ("rclpy/timer.py", "sleep"): "Rate.sleep",
+    ("action/client.py", "send_goal"): "ActionClient.send_goal",
+    ("action/client.py", "_get_result"): "ActionClient.get_result",
+    ("action/client.py", "_cancel_goal"): "ActionClient.cancel_goal",
+}
 LONGEST = 300
 MOST_SOURCE_BYTES = 1_000_000
 _FATAL = re.compile(r"Fatal Python error: ([\w\- ]{1,40})")
@@ -85,9 +93,25 @@ class Own:
         }
 
 
-def ending(lines: Sequence[str], own: Own, ended_s: float) -> dict[str, Any]:
-    """How a process has ended, or where it went no further; nothing where no dump tells."""
-    fatal, threads = "", list[list[Frame]]()
+Thread = list[Frame]
+
+
+@dataclass(frozen=True)
+class Dump:
+    """What was written.
+
+    Attributes:
+        fatal: the mistake in C; '' for none.
+        threads: each with its frames, the innermost first; first of all the one that wrote it.
+    """
+
+    fatal: str
+    threads: list[Thread]
+
+
+def read(lines: Sequence[str]) -> Dump:
+    """The last dump in these lines."""
+    fatal, threads = "", list[Thread]()
     for line in lines:
         if found := _FATAL.match(line):
             fatal, threads = found[1], []
@@ -95,22 +119,59 @@ def ending(lines: Sequence[str], own: Own, ended_s: float) -> dict[str, Any]:
             threads.append([])
         elif (found := _FRAME.fullmatch(line)) and threads:
             threads[-1].append(Frame(found[1], int(found[2]), found[3]))
-    if fatal:
-        # the first is that whose mistake it was
-        frames = [frame for frame in (threads[0] if threads else []) if own.name(frame)]
+    return Dump(fatal, threads)
+
+
+def ending(dump: Dump, own: Own, ended_s: float, *, computes: bool) -> dict[str, Any]:
+    """How a process has ended, or where it went no further; nothing where no dump tells."""
+    if dump.fatal:
+        frames = [frame for frame in dump.threads[0] if own.name(frame)] if dump.threads else []
         place = own.place(frames[0]) if frames else None
-        told = {"type": FATAL.get(fatal, fatal), "text": "", "time_s": ended_s, "place": place}
-        return {"raised": told}
-    return _loop(threads, own, ended_s)
-
-
-def _loop(threads: list[list[Frame]], own: Own, ended_s: float) -> dict[str, Any]:
-    """The thread that computes is in the submission's own code, or was called from there last."""
-    with_own = [frames for frames in threads if any(map(own.name, frames))]
-    if not with_own:
+        kind = FATAL.get(dump.fatal, dump.fatal)
+        return {"raised": {"type": kind, "text": "", "time_s": ended_s, "place": place}}
+    found = _loop(dump.threads, own) if computes else _standstill(dump.threads, own)
+    if found is None:
         return {}
-    depths = [next(n for n, f in enumerate(frames) if own.name(f)) for frames in with_own]
-    frames, at = min(zip(with_own, depths, strict=True), key=lambda each: each[1])
-    call = frames[at - 1].function[:LONGEST] if at else ""
-    told = {"kind": "loop", "time_s": ended_s, "call": call, "place": own.place(frames[at])}
-    return {"stop": told}
+    kind, thread, at = found
+    call = _call(thread[at - 1]) if at else ""
+    return {"stop": {"kind": kind, "time_s": ended_s, "call": call, "place": own.place(thread[at])}}
+
+
+def _loop(threads: list[Thread], own: Own) -> tuple[str, Thread, int] | None:
+    """The thread that computes is in the submission's own code, or was called from there last."""
+    found = [("loop", thread, _own(thread, own)) for thread in threads]
+    return min((each for each in found if each[2] >= 0), key=lambda each: each[2], default=None)
+
+
+def _standstill(threads: list[Thread], own: Own) -> tuple[str, Thread, int] | None:
+    """A thread that waits in a callback or a call, while no other spins."""
+    spinning = [thread for thread in threads if any(map(_spins, thread))]
+    for thread in threads:
+        at = _own(thread, own)
+        if at <= 0:
+            continue
+        waits = any((_library(frame.file), frame.function) in WAITS for frame in thread[:at])
+        callback = any(_library(frame.file) == "rclpy/task.py" for frame in thread[at:])
+        if callback and [thread] == spinning and (waits or any(map(_spins, thread[:at]))):
+            return "callback", thread, at
+        if waits and not spinning:
+            return "call", thread, at
+    return None
+
+
+def _own(thread: Thread, own: Own) -> int:
+    """Which frame is the last of the submission's own; -1: none."""
+    return next((at for at, frame in enumerate(thread) if own.name(frame)), -1)
+
+
+def _spins(frame: Frame) -> bool:
+    return _library(frame.file) == "rclpy/executors.py" and "spin" in frame.function
+
+
+def _library(file: str) -> str:
+    """A file with its folder: of two of the same name in one library these are the same."""
+    return "/".join(file.split("/")[-2:])
+
+
+def _call(frame: Frame) -> str:
+    return WAITS.get((_library(frame.file), frame.function), frame.function)[:LONGEST]

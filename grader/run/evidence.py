@@ -23,6 +23,8 @@ from grader.submission.opening import Submission
 MOST_BYTES = 65_536
 #: How long a process may take to say where it is [s]; it has nothing else to do.
 PATIENCE_S = 1.0
+#: It writes line by line, and has said all when nothing more comes for so long [s].
+QUIET_S = 0.1
 
 
 class Evidence:
@@ -60,29 +62,37 @@ class Evidence:
             return
         with suppress(OSError):
             os.kill(pid, number)
-            await_readable(self._reads, PATIENCE_S)
+            wait_s = PATIENCE_S
+            while len(self._data) < MOST_BYTES and await_readable(self._reads, wait_s):
+                if not self._read():
+                    return
+                wait_s = QUIET_S
 
-    def conduct(self, submission: Submission, ended_s: float) -> Conduct:
+    def conduct(self, submission: Submission, ended_s: float, *, computes: bool) -> Conduct:
         """All that was told; of a process that has told nothing, or nonsense, that it has not.
 
         Args:
             ended_s: how far the process has got, on the clock of the run [s].
+            computes: it would have gone on without waiting for anything.
         """
         self._read()
         if not self._data:
             return Conduct()
         try:
-            return _conduct(self._data.decode("ascii"), submission, ended_s)
+            return _conduct(self._data.decode("ascii"), submission, ended_s, computes)
         except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
             return Conduct()
 
-    def _read(self) -> None:
+    def _read(self) -> bool:
+        """Take what is there; whether that was anything."""
+        before = len(self._data)
         with suppress(OSError):
             while self._reads >= 0 and len(self._data) <= MOST_BYTES:
                 chunk = os.read(self._reads, MOST_BYTES)
                 self._data += chunk
                 if not chunk:
-                    return
+                    break
+        return len(self._data) > before
 
 
 @contextmanager
@@ -95,7 +105,7 @@ def open_evidence() -> Iterator[Evidence]:
         evidence.close()
 
 
-def _conduct(text: str, submission: Submission, ended_s: float) -> Conduct:
+def _conduct(text: str, submission: Submission, ended_s: float, computes: bool) -> Conduct:
     """Raises ValueError and its like: it is not what our own code writes."""
     if len(text) > MOST_BYTES:
         raise ValueError(f"more than {MOST_BYTES} bytes")
@@ -109,7 +119,8 @@ def _conduct(text: str, submission: Submission, ended_s: float) -> Conduct:
             _add(told, strict_json.loads(line))
     own = dumps.Own(submission)
     if told["stop"] is None and told["raised"] is None and told["returned_s"] is None:
-        told.update(dumps.ending([line for line in lines if line[:1] != "{"], own, ended_s))
+        dump = dumps.read([line for line in lines if line[:1] != "{"])
+        told.update(dumps.ending(dump, own, ended_s, computes=computes))
     for place in _places(told):
         place["file"] = own.as_handed_in(place["file"])
     return Conduct.from_json(told)

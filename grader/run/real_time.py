@@ -9,10 +9,11 @@ from collections.abc import Callable
 
 from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
-from grader.run import handover, stage
+from grader.run import evidence, handover, stage
 from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
+from grader.run.processes import usage
 from grader.run.processes.watched import Watched
 from grader.run.simulator_process import Message, Simulator, start_simulator
 from grader.run.student import main as student_main
@@ -23,6 +24,8 @@ from grader.submission.opening import Submission
 #: Told the simulated time [s] now and then.
 Progress = Callable[[float], None]
 
+#: A program that used so much of the run's time on a processor has computed rather than waited.
+COMPUTES = 0.5
 #: What runs as the simulator's process.
 MODULE = "grader.run.simulator.real_time"
 
@@ -39,10 +42,18 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
     """
     started = time.monotonic()
     scene = load_scene(plan.scene)
-    with stage.open_stage() as place, start_simulator(MODULE, place, plan) as simulator:
+    with (
+        stage.open_stage() as place,
+        evidence.open_evidence() as told,
+        start_simulator(MODULE, place, plan) as simulator,
+    ):
         simulator.expect("ready")
         submission = place.own(submission)
-        student = place.student(command(submission, scene.introduction), submission)
+        words = command(submission, scene.introduction, told.descriptor)
+        fds = (told.descriptor,) if told.descriptor >= 0 else ()
+        student = place.student(words, submission, fds)
+        told.has_begun()
+        began_s = time.monotonic()
 
         def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
             output = submission.as_handed_in(student.output())
@@ -59,33 +70,45 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
 
         try:
             try:
-                done, exit_code = _watch(simulator, student, progress)
+                done, exit_code, ended_s = _watch(simulator, student, progress)
+                ended_s -= began_s
+                computes = usage.look(student.pid).cpu_s > COMPUTES * ended_s
+                if exit_code is None:
+                    told.ask(student.pid)
+                told.close()  # what comes then is how it ends when it is told to
             finally:
                 student.end()
             trace, topics = handover.fetch(place.recording, scene)
         except GraderFailure as failure:
             raise SimulatorLost(failure, ending("killed", None)) from failure
     how = outcome(done["reason"], exit_code)
-    return record(plan, trace, topics, ending(how, exit_code, tuple(done["flags"])))
+    conduct = told.conduct(submission, ended_s, computes=computes)
+    return record(plan, trace, topics, ending(how, exit_code, tuple(done["flags"])), conduct)
 
 
-def command(submission: Submission, introduction: Introduction) -> list[str]:
+def command(submission: Submission, introduction: Introduction, evidence_fd: int) -> list[str]:
     """How the submission's process is started."""
     awaited = json.dumps([introduction.topics, introduction.services])
-    return [sys.executable, student_main.__file__, awaited, *stage.target(submission)]
+    words = [awaited, str(evidence_fd), *stage.target(submission)]
+    return [sys.executable, student_main.__file__, *words]
 
 
 def _watch(
     simulator: Simulator, student: Watched, progress: Progress | None
-) -> tuple[Message, int | None]:
-    """Start the clock of the run, wait for its end; how it came and the student's exit code."""
+) -> tuple[Message, int | None, float]:
+    """Start the clock of the run, wait for its end: how it came, the student's exit code, and when.
+
+    When the student's process ended, or the run: on the machine's monotonic clock [s].
+    """
     simulator.say("start")
     exit_code: int | None = None
+    ended_s = 0.0
     while True:
         message = simulator.next(0.05)
         if message and message["say"] == "done":
-            return message, exit_code
+            return message, exit_code, ended_s or time.monotonic()
         if message and progress:
             progress(message["seconds"])
         if exit_code is None and (exit_code := student.poll()) is not None:
+            ended_s = time.monotonic()
             simulator.say("exited")

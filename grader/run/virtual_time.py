@@ -131,7 +131,8 @@ def _try(
             raise SimulatorLost(failure, ending("killed", None)) from failure
     how, flags = _judge(message, exit_code, patience)
     flags += message["flags"]
-    conduct = told.conduct(submission, message["reached_s"])
+    computes = message["silence"] in COMPUTES
+    conduct = told.conduct(submission, message["reached_s"], computes=computes)
     return record(plan, trace, topics, ending(how, exit_code, tuple(flags)), conduct), ""
 
 

@@ -1,6 +1,6 @@
 """What happens in the submission's process of a run.
 
-In real time that is `main`, with `witness` and `telling`. In virtual time:
+In real time that is `main`, with `looking`, `witness` and `telling`. In virtual time:
 
 | module | what it does |
 |---|---|

@@ -1,14 +1,14 @@
 """The submission's process: run what was handed in, and nothing of ours.
 
-    python main.py AWAITED ROOT module:function
-    python main.py AWAITED ROOT path/to/script.py [function]
+    python main.py AWAITED EVIDENCE ROOT module:function
+    python main.py AWAITED EVIDENCE ROOT path/to/script.py [function]
 
 AWAITED is a JSON list of two lists: topics and services that have to be connected when the
-submission gets them; see `Introduced`.
+submission gets them; see `Introduced`. EVIDENCE is a pipe to the grader (`telling`), -1 for none.
 
-Started by path, not with -m, and it imports nothing of the grader, so that the submission finds
-the interpreter as it would at a student's desk. ROOT comes first on the import path; our packages
-of the same names as the submission's are out of reach, whatever is installed.
+Started by path, not with -m, and of the grader it imports only what looks on (`looking`), so that
+the submission finds the interpreter as it would at a student's desk. ROOT comes first on the import
+path; our packages of the same names as the submission's are out of reach, whatever is installed.
 """
 
 import ctypes
@@ -23,7 +23,7 @@ import sys
 import time
 import traceback
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -49,8 +49,31 @@ class OnlyFromSubmission:
         return spec
 
 
+class AfterImport:
+    """An import hook: when one of these modules has been loaded, each of its calls is made."""
+
+    def __init__(self, calls: Mapping[str, Sequence[Callable[[types.ModuleType], None]]]) -> None:
+        self._calls = calls
+
+    def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
+        """Load as usual, then call."""
+        if name not in self._calls:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, path)
+        if spec is not None and spec.loader is not None:
+            load = spec.loader.exec_module
+
+            def exec_module(module: types.ModuleType) -> None:
+                load(module)
+                for call in self._calls[name]:
+                    call(module)
+
+            spec.loader.exec_module = exec_module  # type: ignore[method-assign]
+        return spec
+
+
 class Introduced:
-    """An import hook: what drives the scene is connected when the submission gets it, in real time.
+    """What drives the scene is connected when the submission gets it, in real time.
 
     ROS drops what is published before the other side is found, which takes some tenths of a
     second, and seconds on a busy machine: the same submission would do something else each time.
@@ -65,22 +88,9 @@ class Introduced:
         self.sure_patience_s = 10.0
         self._topics, self._services = _with_endings(topics), _with_endings(services)
 
-    def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
-        """Load `rclpy.node` as usual, then put the waiting in."""
-        if name != "rclpy.node":
-            return None
-        spec = importlib.machinery.PathFinder.find_spec(name, path)
-        if spec is not None and spec.loader is not None:
-            load = spec.loader.exec_module
-
-            def exec_module(module: types.ModuleType) -> None:
-                load(module)
-                self._patch(module.Node)
-
-            spec.loader.exec_module = exec_module  # type: ignore[method-assign]
-        return spec
-
-    def _patch(self, node: Any) -> None:
+    def patch(self, module: Any) -> None:
+        """Put the waiting into `rclpy.node`."""
+        node = module.Node
         create_publisher, create_client = node.create_publisher, node.create_client
 
         @functools.wraps(create_publisher)
@@ -208,11 +218,20 @@ def forget_ourselves(root: str, target: str) -> None:
 
 def main() -> None:
     """Prepare the interpreter, run, and leave with the exit code."""
-    _, awaited, root, target, *more = sys.argv
+    _, awaited, evidence, root, target, *more = sys.argv
     die_with_parent()
+    sys.path[0] = str(Path(__file__).resolve().parents[3])
+    from grader.run.student.looking import Looking
+
+    looking = Looking(int(evidence), root)
     forget_ourselves(root, target)
-    sys.meta_path.insert(0, Introduced(*json.loads(awaited)))
-    sys.exit(call(root, target, more[0] if more else None))
+    introduced = Introduced(*json.loads(awaited))
+    calls = {name: [look] for name, look in looking.calls.items()}
+    calls["rclpy.node"].insert(0, introduced.patch)
+    sys.meta_path.insert(0, AfterImport(calls))
+    code = call(root, target, more[0] if more else None, looking.raised)
+    looking.returns(code)
+    sys.exit(code)
 
 
 def _without_our_frames(error: BaseException) -> BaseException:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
+from grader.run.lockstep import faults
 from grader.run.student import telling
 from grader.run.student.telling import Line, Teller
 
@@ -90,9 +91,9 @@ class Witness:
 
     def look_for_others(self) -> None:
         """Ask of each end whether somebody has the other one, now that something may have come."""
-        for end in self._ends:
+        for end in list(self._ends):
             if not end.is_met:
-                self._tell_of(end)
+                _quietly(self._tell_of, end)
 
     def spins(self) -> None:
         """An executor is spun for the first time."""
@@ -232,8 +233,9 @@ def _maker(frame: FrameType | None) -> FrameType | None:
     """Who has made an end; None where every node has it."""
     while frame is not None:
         module = str(frame.f_globals.get("__name__", ""))
-        is_ours = module.startswith("grader.run.")
-        if not is_ours and not (module.startswith("rclpy.") and frame.f_code.co_name in _MAKERS):
+        if not faults.is_ours(frame.f_code.co_filename) and not (
+            module.startswith("rclpy.") and frame.f_code.co_name in _MAKERS
+        ):
             return None if module in _EVERY_NODE else frame
         frame = frame.f_back
     return None

@@ -6,8 +6,13 @@ from collections.abc import Callable
 
 import pytest
 
-from grader.recording.conduct import End, Place, Stop
+from grader.recording.conduct import Conduct, End, Place, Stop
 from grader.recording.recording import Recording
+from grader.run import real_time
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits
+from grader.submission.opening import open_submission
+from tests.grader.run.conftest import SUBMISSIONS
 
 Recorded = Callable[..., Recording]
 PEN = "self.pen.call(SetPen.Request(r=255, width=3))"
@@ -122,3 +127,37 @@ def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded: Recorded) -
 def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
     found = recorded("misbehaving/busy_for_ever").conduct.stop
     assert found == Stop("loop", 0.096, "", Place("busy_for_ever.py", 13, "", "while True:"))
+
+
+# In real time ---------------------------------------------------------------------------------
+
+
+def in_real_time(name: str) -> Conduct:
+    with open_submission(SUBMISSIONS / f"{name}.py") as submission:
+        return real_time.run(submission, Plan(Limits(3, 1, 20))).conduct
+
+
+def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:
+    conduct = in_real_time("misbehaving/raises_in_callback")
+    assert conduct.raised is not None
+    assert conduct.raised.place == Place("raises_in_callback.py", 17, "on_pose", "print(pose.z)")
+    assert [(end.kind, end.name, end.is_met) for end in conduct.ends] == [
+        ("publisher", "/turtle1/cmd_vel", True),
+        ("subscription", "/turtle1/pose", True),
+    ]
+    assert conduct.spun_s is not None
+    assert conduct.spun_s < conduct.raised.time_s
+
+
+def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end() -> None:
+    conduct = in_real_time("misbehaving/calls_in_callback")
+    assert (conduct.raised, conduct.returned_s) == (None, None)
+    assert conduct.stop is not None
+    assert (conduct.stop.kind, conduct.stop.call) == ("callback", "Client.call")
+    assert conduct.stop.place == Place("calls_in_callback.py", 15, "on_timer", PEN)
+
+
+def test_in_real_time_a_program_that_comes_to_its_end_tells_so() -> None:
+    conduct = in_real_time("conduct/spins_once")
+    assert conduct.returned_s is not None
+    assert (conduct.stop, conduct.raised) == (None, None)

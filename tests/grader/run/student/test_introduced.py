@@ -34,7 +34,7 @@ def patched(clock: types.SimpleNamespace, connected_s: float) -> type:
         def create_client(self, kind: object, name: str) -> None:
             raise AssertionError
 
-    main.Introduced(["/turtle1/cmd_vel"], [])._patch(Node)
+    main.Introduced(["/turtle1/cmd_vel"], []).patch(types.SimpleNamespace(Node=Node))
     return Node
 
 
