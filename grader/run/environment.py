@@ -73,8 +73,19 @@ def environment(folder: Path, isolated: Mapping[str, str]) -> dict[str, str]:
 
 
 def student_environment(env: Mapping[str, str]) -> dict[str, str]:
-    """In virtual time a submission's sets have the same order every time."""
-    return {**env, "PYTHONHASHSEED": "0"}
+    """A submission's messages look at what is put into them, as all did up to ROS 2 Humble.
+
+    Later ones do so where they are asked to. Else `linear.x = 2`, an int where a float belongs, is
+    sent as 1e-323 by the wheels of Jazzy, and aborts the process where rclpy's assertions in C are
+    compiled in; 256 in an uint8 becomes 0. Each message module reads this where it is imported, so
+    a zygote has to have it as well.
+    """
+    return {**env, "ROS_PYTHON_CHECK_FIELDS": "1"}
+
+
+def virtual_environment(env: Mapping[str, str]) -> dict[str, str]:
+    """The same in virtual time, where a submission's sets have the same order every time."""
+    return {**student_environment(env), "PYTHONHASHSEED": "0"}
 
 
 def simulator_environment(env: Mapping[str, str]) -> dict[str, str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from grader import scratch, system
 from grader.run import zygotes
-from grader.run.environment import environment, student_environment
+from grader.run.environment import environment, student_environment, virtual_environment
 from grader.run.processes import isolation, levels
 from grader.run.processes.family import start_student
 from grader.run.processes.sandbox.confinement import NAMESPACES
@@ -70,14 +70,14 @@ class Stage:
         pass_fds: tuple[int, ...] = (),
     ) -> Watched:
         """Start the submission's process in its own folder."""
-        return self._start(command, {}, submission, pass_fds)
+        return self._start(command, student_environment({}), submission, pass_fds)
 
     def virtual_student(
         self, command: Sequence[str], submission: Submission, pass_fds: tuple[int, ...]
     ) -> Watched:
         """The same for virtual time: forked, unless that would make a difference."""
         warm = zygotes.for_student(submission.root, self.namespaces)
-        return self._start(command, student_environment({}), submission, pass_fds, warm)
+        return self._start(command, virtual_environment({}), submission, pass_fds, warm)
 
     def _start(
         self,

@@ -23,7 +23,7 @@ from grader import system
 from grader.run.environment import (
     lasting_environment,
     simulator_environment,
-    student_environment,
+    virtual_environment,
 )
 from grader.run.processes.zygote import Warm, Zygote, ZygoteLost, shadows
 from grader.scenes import MESSAGES, NAMES
@@ -79,7 +79,7 @@ def zygote(side: str) -> Zygote | None:
         return None
     words = command(side)
     if side == STUDENT:
-        env, needs = student_environment(lasting_environment()), json.dumps(MESSAGES)
+        env, needs = virtual_environment(lasting_environment()), json.dumps(MESSAGES)
     else:
         env = simulator_environment(lasting_environment())
         needs = json.dumps((MESSAGES, NAMES))

@@ -85,6 +85,8 @@ def main() -> None:
     except Exception as error:
         give_up(Kind.FAILED, faults.failed(faults.whose(error) or repr(error)))
 
+    connect = faults.guarded(link.connect)
+
     def on_error(error: BaseException) -> None:
         """An exception has ended the main thread."""
         faults.report(error)
@@ -94,6 +96,7 @@ def main() -> None:
             link.note(Kind.STUCK)
             while True:
                 scheduler.block()
+        connect()  # so that it is known who has the other ends
         witness.raised(error)
         faults.hide_our_frames(error)
 
@@ -101,6 +104,7 @@ def main() -> None:
     student_main.forget_ourselves(root, target)
     code = student_main.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
+    connect()
     witness.returned(code)
     atexit._run_exitfuncs()
     faults.guarded(link.synchronise)()

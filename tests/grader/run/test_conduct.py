@@ -13,6 +13,7 @@ from grader.run.plan import Plan
 from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
 from tests.grader.run.conftest import SUBMISSIONS
+from turtlesim_py.world.events import CmdVel
 
 Recorded = Callable[..., Recording]
 PEN = "self.pen.call(SetPen.Request(r=255, width=3))"
@@ -161,3 +162,33 @@ def test_in_real_time_a_program_that_comes_to_its_end_tells_so() -> None:
     conduct = in_real_time("conduct/spins_once")
     assert conduct.returned_s is not None
     assert (conduct.stop, conduct.raised) == (None, None)
+
+
+# Numbers of the wrong type --------------------------------------------------------------------
+
+
+@pytest.mark.records("fields/wrong_colours")
+def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message(
+    recorded: Recorded,
+) -> None:
+    recording = recorded("fields/wrong_colours")
+    lines = recording.output.splitlines()
+    assert lines[:5] == [
+        "The 'r' field must be an unsigned integer in [0, 255]",
+        "The 'g' field must be an unsigned integer in [0, 255]",
+        "The 'b' field must be of type 'int'",
+        "The 'width' field must be of type 'int'",
+        "The 'off' field must be of type 'int'",
+    ]
+    assert lines[-1] == "AssertionError: The 'x' field must be of type 'float'"
+    raised = recording.conduct.raised
+    assert raised is not None
+    assert raised.place == Place("wrong_colours.py", 19, "Controller.drive", "twist.linear.x = 2")
+    assert [end.is_met for end in recording.conduct.ends] == [True]
+
+
+@pytest.mark.records("fields/honest_numbers")
+def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Recorded) -> None:
+    recording = recorded("fields/honest_numbers")
+    assert recording.output == ""
+    assert [command.linear[0] for command in recording.trace.of_kind(CmdVel)] == [1.0]

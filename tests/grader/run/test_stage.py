@@ -56,12 +56,17 @@ def test_nothing_comes_along_but_what_is_named(
         monkeypatch.setenv(name, "secret")
     monkeypatch.setenv("TZ", "Asia/Tokyo")
     env = environment.environment(tmp_path, {})
-    both = env | environment.simulator_environment(env) | environment.student_environment(env)
+    both = env | environment.simulator_environment(env) | environment.virtual_environment(env)
     assert "secret" not in both.values()
     assert env["TZ"] == "Asia/Tokyo"
     assert env["PATH"] == os.environ["PATH"]
     assert Path(env["HOME"]).is_dir()
     assert Path(env["HOME"]).is_relative_to(tmp_path)
+
+
+@pytest.mark.parametrize("of", [environment.student_environment, environment.virtual_environment])
+def test_messages_of_a_submission_look_at_their_fields_whatever_the_user_has_asked_for(of) -> None:  # type: ignore[no-untyped-def]
+    assert of({"ROS_PYTHON_CHECK_FIELDS": "0"})["ROS_PYTHON_CHECK_FIELDS"] == "1"
 
 
 def test_packages_that_the_user_has_installed_for_himself_are_found_in_another_home(
