@@ -6,6 +6,7 @@ mistake that the kernel ends it for. Like all evidence it is the submission's ow
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,6 +31,11 @@ WAITS = {
     ("action/client.py", "_get_result"): "ActionClient.get_result",
     ("action/client.py", "_cancel_goal"): "ActionClient.cancel_goal",
 }
+#: How a loop begins, one that has no condition, and what else is looked no further than.
+LOOP = re.compile(r"\s*(?:async\s+)?(?:while|for)\b")
+ENDLESS = re.compile(r"while\s*\(?(?:True|1)\)?\s*:.*")
+BLOCK = re.compile(r"\s*(?:async\s+)?(?:def|class)\b")
+MOST_INDENT = 10_000
 LONGEST = 300
 MOST_SOURCE_BYTES = 1_000_000
 _FATAL = re.compile(r"Fatal Python error: ([\w\- ]{1,40})")
@@ -133,8 +139,12 @@ def ending(dump: Dump, own: Own, ended_s: float, *, computes: bool) -> dict[str,
     if found is None:
         return {}
     kind, thread, at = found
-    call = _call(thread[at - 1]) if at else ""
-    return {"stop": {"kind": kind, "time_s": ended_s, "call": call, "place": own.place(thread[at])}}
+    frame, call = thread[at], _call(thread[at - 1]) if at else ""
+    if kind == "loop" and (head := _head(thread[at:], own)):
+        frame, call = head, ""
+    return {
+        "stop": {"kind": kind, "time_s": ended_s, "call": call, "place": own.place(frame)},
+    }
 
 
 def _loop(threads: list[Thread], own: Own) -> tuple[str, Thread, int] | None:
@@ -157,6 +167,43 @@ def _standstill(threads: list[Thread], own: Own) -> tuple[str, Thread, int] | No
         if waits and not spinning:
             return "call", thread, at
     return None
+
+
+def _head(thread: Thread, own: Own) -> Frame | None:
+    """Where the loop begins in which a thread is; None where there seems to be none.
+
+    Where in it the thread is, is chance; where it begins, is not. Of several it is the innermost
+    that has no condition, else the outermost.
+    """
+    own_run: list[Frame] = list(itertools.takewhile(own.name, thread))
+    heads = [
+        Frame(frame.file, number, frame.function)
+        for frame in own_run
+        for number in loops(own.text(own.name(frame)), frame.line)
+    ]
+    text = {head: own.text(own.name(head))[head.line - 1].split("#")[0].strip() for head in heads}
+    endless = [head for head in heads if ENDLESS.fullmatch(text[head])]
+    whiles = [head for head in heads if text[head].startswith("while")]
+    return next(iter(endless or whiles[::-1] or heads[::-1]), None)
+
+
+def loops(lines: Sequence[str], number: int) -> list[int]:
+    """The first lines of the loops that a line is in, innermost first, by indentation.
+
+    Nothing is parsed: a file can be made so that Python's parser does not survive it.
+    """
+    found, indent = [], MOST_INDENT
+    for at in range(min(number, len(lines)), 0, -1):
+        text = lines[at - 1].expandtabs()
+        blanks = len(text) - len(text.lstrip())
+        if blanks == len(text) or blanks >= indent or text.lstrip().startswith("#"):
+            continue
+        indent = blanks
+        if LOOP.match(text):
+            found.append(at)
+        elif BLOCK.match(text):
+            break
+    return found
 
 
 def _own(thread: Thread, own: Own) -> int:

@@ -114,12 +114,14 @@ def _conduct(text: str, submission: Submission, ended_s: float, computes: bool) 
         **{"stop": None, "raised": None, "returned_s": None},
     }
     lines = text.splitlines()
-    for line in lines:
-        if line.startswith("{"):
-            _add(told, strict_json.loads(line))
+    dump = dumps.read([line for line in lines if not line.startswith("{")])
+    said = [line for line in lines if line.startswith("{")]
+    if not said and not dump.threads:
+        return Conduct()
+    for line in said:
+        _add(told, strict_json.loads(line))
     own = dumps.Own(submission)
-    if told["stop"] is None and told["raised"] is None and told["returned_s"] is None:
-        dump = dumps.read([line for line in lines if line[:1] != "{"])
+    if all(told[key] is None for key in ("stop", "raised", "returned_s")):
         told.update(dumps.ending(dump, own, ended_s, computes=computes))
     for place in _places(told):
         place["file"] = own.as_handed_in(place["file"])

@@ -1,6 +1,6 @@
 """What happens in the submission's process of a run.
 
-In real time that is `main`, with `looking`, `witness` and `telling`. In virtual time:
+In real time that is `main`, with `looking`, `witness`, `delays` and `telling`. In virtual time:
 
 | module | what it does |
 |---|---|
@@ -13,7 +13,8 @@ In real time that is `main`, with `looking`, `witness` and `telling`. In virtual
 | `graph` | questions about the ROS graph |
 | `simulator_link`, `channel` | this end of the link: asks for time, sends and receives |
 | `remotes` | the simulator's endpoints, and who hears whom |
-| `witness`, `telling` | what is seen of how it uses rclpy; how that is told to the grader |
+| `witness`, `delays` | what is seen of how it uses rclpy, and of how it waits |
+| `telling` | how that is told to the grader |
 | `deadlock`, `refusal` | what waits for ever, and where; what virtual time cannot follow |
 
 Both sides of the link share `grader.run.lockstep`.

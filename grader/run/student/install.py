@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import sys
 from collections.abc import Callable, Sequence
+from types import CodeType
 from typing import Any
 
 import rclpy
@@ -68,8 +69,12 @@ def install(
         "runs Python in a thread that a C extension has started"
     )
     looks_on = witness.Witness(teller, _is_met)
-    link.on_standstill = lambda: _look_for_deadlock(scheduler, link, waiter, looks_on)
+    link.on_standstill = lambda: _look_for_deadlock(
+        scheduler, link, waiter, looks_on, runs_callback
+    )
     link.on_over = looks_on.sum_up
+    scheduler.on_waited = looks_on.callbacks.waited
+    runs_callback = rclpy.task.Task.__call__.__code__
     witness.install(looks_on)
     witness.install_actions(looks_on)
     return link, looks_on
@@ -141,7 +146,11 @@ def _replace_events_executor() -> None:
 
 
 def _look_for_deadlock(
-    scheduler: Scheduler, link: SimulatorLink, waiter: VirtualWaiter, looks_on: witness.Witness
+    scheduler: Scheduler,
+    link: SimulatorLink,
+    waiter: VirtualWaiter,
+    looks_on: witness.Witness,
+    runs_callback: CodeType,
 ) -> None:
     if waiter.is_hopeful():
         return
@@ -153,7 +162,6 @@ def _look_for_deadlock(
         rclpy.action.ActionClient._get_result,
         rclpy.action.ActionClient._cancel_goal,
     ]
-    runs_callback = rclpy.task.Task.__call__.__code__
     found = deadlock.find(scheduler, runs_callback, frozenset(w.__code__ for w in waits))
     if found:
         print(found.text, file=sys.stderr, flush=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import _thread
 import atexit
+import functools
 import time
 import weakref
 from collections.abc import Callable
@@ -44,10 +45,11 @@ class Looking:
         self._is_asking = False
         self._code = -1
         self.calls: dict[str, Callable[[ModuleType], None]] = {
-            "rclpy.node": lambda _: witness.install(self._witness),
+            "rclpy.node": lambda _: self._look_at_rclpy(),
             "rclpy.action.client": lambda _: witness.install_actions(self._witness),
             "rclpy.experimental.events_executor": self._look_at_events,
         }
+        time.sleep = self._timed(time.sleep)
         # registered first, so called last: when all threads have ended that Python waits for
         atexit.register(self._end)
 
@@ -63,6 +65,26 @@ class Looking:
     def _end(self) -> None:
         if self._code >= 0:
             self._witness.returned(self._code)
+
+    def _look_at_rclpy(self) -> None:
+        witness.install(self._witness)
+        import rclpy.clock
+        import rclpy.timer
+
+        for kind, name in ((rclpy.clock.Clock, "sleep_until"), (rclpy.timer.Rate, "sleep")):
+            setattr(kind, name, self._timed(getattr(kind, name)))
+
+    def _timed(self, wait: Callable[..., Any]) -> Callable[..., Any]:
+        """The same function, which tells for how long it has waited."""
+
+        @functools.wraps(wait)
+        def timed(*args: Any, **kwargs: Any) -> Any:
+            before_s = time.monotonic()
+            returned = wait(*args, **kwargs)
+            self._witness.callbacks.waited(time.monotonic() - before_s)
+            return returned
+
+        return timed
 
     def _is_met(self, kind: str, entity: Any) -> Callable[[], bool]:
         """The entity itself is not to live longer for it."""

@@ -66,6 +66,8 @@ class Scheduler:
         self.pollers: list[Callable[[], None]] = []
         #: called where a thread that we did not start wants to block
         self.on_foreign_thread: Callable[[], None] = _no_foreign_threads
+        #: told, in the thread that has waited, for how long [s]
+        self.on_waited: Callable[[float], None] = _nobody_cares
         #: main runner: signals wait until it is out of here
         self.inside = 0
         self.on_leaving: Callable[[], None] | None = None
@@ -120,6 +122,8 @@ class Scheduler:
         """
         started_ns = self.now_ns
         self._block(deadline_ns)
+        if self.now_ns > started_ns:
+            self.on_waited((self.now_ns - started_ns) / 1e9)
         covered = (self.now_ns - started_ns) // UNIT_NS
         self._units = max(0, self._units - covered)
         self._streak = max(0, self._streak - covered)
@@ -150,9 +154,10 @@ class Scheduler:
         self._streak += self._units
         self._units = 0
         factor = next((f for units, f in reversed(COARSER) if self._streak > units), 1)
-        deadline_ns = self.now_ns + PAUSE_NS * factor
+        started_ns, deadline_ns = self.now_ns, self.now_ns + PAUSE_NS * factor
         while self.now_ns < deadline_ns:
             self._block(deadline_ns)
+        self.on_waited((self.now_ns - started_ns) / 1e9)
 
     def set_now(self, now_ns: int) -> None:
         """Move time on, and wake those whose deadline has come."""
@@ -232,6 +237,9 @@ class Scheduler:
         while alarms and alarms[0][2].alarm != alarms[0][1]:
             heapq.heappop(alarms)
         self.time_source.advance(alarms[0][0] if alarms else NEVER)
+
+
+def _nobody_cares(_: float) -> None: ...
 
 
 def _no_foreign_threads() -> None:

@@ -7,6 +7,7 @@ nothing and takes no time of the run, and what goes wrong in here is nobody's bu
 from __future__ import annotations
 
 import functools
+import inspect
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ from typing import Any
 
 from grader.run.lockstep import faults
 from grader.run.student import telling
+from grader.run.student.delays import Callbacks, Waits
 from grader.run.student.telling import Line, Teller
 
 #: So many ends and places are told of: `grader.recording.conduct.MOST`.
@@ -39,11 +41,14 @@ class End:
 
     Attributes:
         number: in the order in which they were made.
+        name, type: as they are told.
         ask: whether somebody has the other end.
         told: how often it was used when that was told last.
     """
 
     number: int
+    name: str
+    type: str
     ask: Callable[[], bool]
     used: int = 0
     is_met: bool = False
@@ -59,6 +64,8 @@ class Witness:
         self._is_met = is_met
         self._ends: list[End] = []
         self._has_ended = False
+        self.waits = Waits(teller)
+        self.callbacks = Callbacks(teller)
 
     # What rclpy's objects do ------------------------------------------------------------------
 
@@ -67,11 +74,12 @@ class Witness:
         frame = _maker(sys._getframe(2))
         if frame is None or len(self._ends) >= MOST:
             return
-        end = End(len(self._ends), self._is_met(kind, entity))
+        name, ros_type = name[: telling.LONGEST], _ros_type(interface)
+        end = End(len(self._ends), name, ros_type, self._is_met(kind, entity))
         entity._witnessed = end
         self._ends.append(end)
         place = self._teller.place(frame)
-        told = {"kind": kind, "name": name[: telling.LONGEST], "type": _ros_type(interface)}
+        told = {"kind": kind, "name": name, "type": ros_type}
         self._teller.tell("end", {**told, "place": place})
 
     def used(self, entity: Any) -> None:
@@ -94,6 +102,7 @@ class Witness:
         for end in list(self._ends):
             if not end.is_met:
                 _quietly(self._tell_of, end)
+        _quietly(self.waits.look)
 
     def spins(self) -> None:
         """An executor is spun for the first time."""
@@ -158,6 +167,8 @@ class Witness:
         """Tell the last figures, where this is the end."""
         for end in self._ends:
             self._tell_of(end, is_last=True)
+        self.waits.look(is_last=True)
+        self.callbacks.sum_up()
 
 
 def install(witness: Witness) -> None:
@@ -166,6 +177,7 @@ def install(witness: Witness) -> None:
     import rclpy.executors
     import rclpy.publisher
     import rclpy.subscription
+    import rclpy.task
 
     publisher, client = rclpy.publisher.Publisher, rclpy.client.Client
     subscription, executor = rclpy.subscription.Subscription, rclpy.executors.Executor
@@ -177,7 +189,12 @@ def install(witness: Witness) -> None:
     _after(client, "__init__", lambda self, _: witness.made(
         "client", self, self.handle.service_name, self.srv_type))  # fmt: skip
     _after(publisher, "publish", lambda self, _: witness.used(self))
-    _after(client, "call_async", lambda self, _: witness.used(self))
+    _after(client, "call_async", lambda self, future: _asked(witness, self, future))
+    _awaits(witness, client, "wait_for_service", lambda self, _: self, lambda _, is_ready: is_ready)
+    # what virtual time has put round it would take time
+    is_done = inspect.unwrap(rclpy.task.Future.done)
+    _awaits(witness, executor, "spin_until_future_complete", _first, lambda it, _: is_done(it))
+    _watch_callbacks(witness, rclpy.task.Task)
 
     take, look = executor._take_subscription, executor.wait_for_ready_callbacks
 
@@ -206,6 +223,7 @@ def install_actions(witness: Witness) -> None:
         *("action_client", self, self._node.resolve_service_name(self._action_name)),
         self._action_type))  # fmt: skip
     _after(ActionClient, "send_goal_async", lambda self, _: witness.used(self))
+    _awaits(witness, ActionClient, "wait_for_server", lambda self, _: self, lambda _, there: there)
 
 
 def _after(owner: Any, name: str, look: Callable[[Any, Any], None]) -> None:
@@ -221,12 +239,68 @@ def _after(owner: Any, name: str, look: Callable[[Any, Any], None]) -> None:
     setattr(owner, name, called)
 
 
-def _quietly(look: Callable[..., None], *args: Any) -> None:
+def _asked(witness: Witness, client: Any, future: Any) -> None:
+    """A request was sent; whoever waits for this future waits for the service."""
+    witness.used(client)
+    future._witnessed = client._witnessed
+
+
+def _first(_: Any, args: tuple[Any, ...]) -> Any:
+    return args[0]
+
+
+def _awaits(
+    witness: Witness,
+    owner: Any,
+    name: str,
+    whose: Callable[[Any, tuple[Any, ...]], Any],
+    has_come: Callable[[Any, Any], bool],
+) -> None:
+    """Have a method tell for how long it waits.
+
+    Args:
+        whose: of its object and arguments, what knows the end that is waited for.
+        has_come: of that and what the method returns, whether it has waited with success.
+    """
+    method = getattr(owner, name)
+
+    @functools.wraps(method)
+    def awaited(self: Any, *args: Any, **kwargs: Any) -> Any:
+        waiter = _quietly(whose, self, args or tuple(kwargs.values()))
+        end: End | None = getattr(waiter, "_witnessed", None)
+        if end is None:
+            return method(self, *args, **kwargs)
+        wait = _quietly(witness.waits.since, end.name, end.type)
+        returned = method(self, *args, **kwargs)
+        _quietly(lambda: witness.waits.over(wait, has_come=bool(has_come(waiter, returned))))
+        return returned
+
+    setattr(owner, name, awaited)
+
+
+def _watch_callbacks(witness: Witness, task: Any) -> None:
+    """Have the tasks that an executor runs tell when they begin and end."""
+    run, callbacks = task.__call__, witness.callbacks
+
+    @functools.wraps(run)
+    def call(self: Any) -> Any:
+        lines = callbacks.begin()
+        if lines is None:
+            return run(self)
+        try:
+            return run(self)
+        finally:
+            _quietly(callbacks.end, lines)
+
+    task.__call__ = call
+
+
+def _quietly(look: Callable[..., Any], *args: Any) -> Any:
     """What goes wrong here is not the program's concern."""
     try:
-        look(*args)
+        return look(*args)
     except Exception:
-        return
+        return None
 
 
 def _maker(frame: FrameType | None) -> FrameType | None:

@@ -23,6 +23,7 @@ LONGER = Limits(first_motion_s=3, rest_s=5, total_s=60)
 #: Whose limits or patience are shorter: what they do goes on for ever.
 SHORTER = {
     "busy_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
+    "loops_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
     "blocks_in_c": (Limits(0.5, 0.5, 5), Patience(asleep_s=1.0)),
     "starts_a_program": (Limits(3, 0.2, 10), Patience()),
     "breaks_the_grader": (Limits(3, 0.2, 10), Patience()),

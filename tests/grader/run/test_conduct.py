@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from grader.recording.conduct import Conduct, End, Place, Stop
+from grader.recording.conduct import Conduct, End, Place, Slow, Stop, Wait
 from grader.recording.recording import Recording
 from grader.run import real_time
 from grader.run.plan import Plan
@@ -130,6 +130,48 @@ def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
     assert found == Stop("loop", 0.096, "", Place("busy_for_ever.py", 13, "", "while True:"))
 
 
+@pytest.mark.parametrize(
+    ("name", "line", "function", "text"),
+    [
+        pytest.param(name, *place, marks=pytest.mark.records(f"conduct/{name}"))
+        for name, *place in (
+            ("waits_in_vain", 14, "Controller.__init__",
+             "while not self.pen.wait_for_service(timeout_sec=1.0):"),
+            ("waits_for_an_answer", 10, "",
+             "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"),
+        )
+    ],
+)  # fmt: skip
+def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
+    recorded: Recorded, name: str, line: int, function: str, text: str
+) -> None:
+    conduct = recorded(f"conduct/{name}").conduct
+    place = Place(f"{name}.py", line, function, text)
+    assert conduct.waits == (Wait("/set_pen", "turtlesim/srv/SetPen", 0.0, None, place),)
+
+
+@pytest.mark.records("conduct/sleeps_in_callback")
+def test_a_callback_that_sleeps_is_told_by_its_longest_line(recorded: Recorded) -> None:
+    conduct = recorded("conduct/sleeps_in_callback").conduct
+    place = Place("sleeps_in_callback.py", 12, "pause", "time.sleep(0.15)")
+    assert conduct.slow == (Slow(place, 0.2, 10),)
+
+
+@pytest.mark.records("styles/timer")
+def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(
+    recorded: Recorded,
+) -> None:
+    conduct = recorded("styles/timer").conduct
+    assert [(end.kind, end.name, end.is_met) for end in conduct.ends] == [
+        ("publisher", "/turtle1/cmd_vel", True),
+        ("client", "/turtle1/set_pen", True),
+        ("subscription", "/turtle1/pose", True),
+    ]
+    assert all(end.used for end in conduct.ends)
+    rest = (conduct.waits, conduct.slow, conduct.stop, conduct.raised, conduct.returned_s)
+    assert rest == ((), (), None, None, None)
+
+
 # In real time ---------------------------------------------------------------------------------
 
 
@@ -192,3 +234,14 @@ def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Record
     recording = recorded("fields/honest_numbers")
     assert recording.output == ""
     assert [command.linear[0] for command in recording.trace.of_kind(CmdVel)] == [1.0]
+
+
+# Loops ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.records("conduct/loops_for_ever", times=2)
+def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded: Recorded) -> None:
+    place = Place("loops_for_ever.py", 21, "work", "while add(numbers) > 0:")
+    for number in (1, 2):
+        stop = recorded("conduct/loops_for_ever", number).conduct.stop
+        assert stop == Stop("loop", 0.096, "", place)

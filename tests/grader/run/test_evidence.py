@@ -1,0 +1,137 @@
+"""What comes from a submission's process is believed by its form, or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from grader.recording.conduct import Conduct
+from grader.run import dumps
+from grader.run.evidence import MOST_BYTES, open_evidence
+from grader.submission.opening import Submission, open_submission
+
+PLACE = {"file": "a.py", "line": 2, "function": "", "text": "pass"}
+END = {"kind": "publisher", "name": "/a", "type": "a/msg/B", "place": PLACE}
+
+
+@pytest.fixture(scope="module")
+def submission(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Submission]:
+    folder = tmp_path_factory.mktemp("alice")
+    (folder / "a.py").write_text("while True:\n    pass\n")
+    with open_submission(folder) as opened:
+        yield opened
+
+
+def told(submission: Submission, *lines: bytes) -> Conduct:
+    with open_evidence() as evidence:
+        for line in lines:
+            os.write(evidence.descriptor, line + b"\n")
+    return evidence.conduct(submission, 1.5, computes=True)
+
+
+def say(**what: object) -> bytes:
+    return json.dumps(what).encode()
+
+
+def test_what_was_told_line_by_line_is_put_together(submission: Submission) -> None:
+    conduct = told(submission, say(end=END), say(used=[0, 4, True]), say(spun=0.5), say(returned=1))
+    assert conduct.is_told
+    assert [(end.name, end.used, end.is_met) for end in conduct.ends] == [("/a", 4, True)]
+    assert (conduct.spun_s, conduct.returned_s) == (0.5, 1.0)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        *(b"{", b'{"spun": NaN}', b'{"spun": 1e999}', b'{"spun": true}', b'{"spun": -1}', b"\xff"),
+        *(
+            b"{}",
+            b'{"spun": 1, "returned": 2}',
+            b'{"unheard of": 1}',
+            b'{"end": {}}',
+            b'{"end": 3}',
+        ),
+        *(say(used=[7, 1, True]), say(used=[0]), say(used=None), say(stop={"place": None})),
+        *(say(end={**END, "kind": "friend"}), say(end={**END, "name": "x" * 301})),
+        *(say(end={**END, "place": {**PLACE, "line": "2"}}), say(wait=[-3, {}]), say(slow=[0, 1])),
+        *(b'{"end": ' + b"[" * 5000 + b"]" * 5000 + b"}", b'{"is_told": false}'),
+    ],
+)
+def test_of_a_process_that_tells_nonsense_nothing_is_told(
+    submission: Submission, line: bytes
+) -> None:
+    assert told(submission, say(end=END), line) == Conduct()
+    assert told(submission, line) == Conduct()
+
+
+def test_of_a_process_that_tells_nothing_nothing_is_told(submission: Submission) -> None:
+    assert told(submission) == Conduct()
+
+
+def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None:
+    chance = random.Random(12)
+    whole = b"\n".join((say(end=END), say(used=[0, 4, True]), say(spun=0.5), say(returned=1)))
+    for _ in range(300):
+        data = bytearray(whole)
+        for _ in range(chance.randint(1, 6)):
+            data[chance.randrange(len(data))] = chance.randrange(256)
+        told(submission, bytes(data))
+
+
+def test_the_pipe_holds_so_much_and_no_more(submission: Submission) -> None:
+    with open_evidence() as evidence:
+        os.set_blocking(evidence.descriptor, False)
+        sent = 0
+        with pytest.raises(BlockingIOError):
+            while True:
+                sent += os.write(evidence.descriptor, b"x" * 1000)
+        assert sent <= MOST_BYTES
+    assert evidence.conduct(submission, 0.0, computes=True) == Conduct()
+
+
+def dump(submission: Submission, *frames: tuple[str, int, str]) -> list[bytes]:
+    head = b"Current thread 0x00007f (most recent call first):"
+    return [head, *(f'  File "{file}", line {n} in {name}'.encode() for file, n, name in frames)]
+
+
+def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
+    file = str(submission.root / "a.py")
+    for line in (1, 2):
+        conduct = told(submission, *dump(submission, (file, line, "<module>")))
+        assert conduct.stop is not None
+        assert conduct.stop.place is not None
+        assert (conduct.stop.place.line, conduct.stop.place.text) == (1, "while True:")
+        assert conduct.stop.time_s == 1.5
+
+
+def test_no_file_is_read_but_the_submissions_own(submission: Submission, tmp_path: Path) -> None:
+    (tmp_path / "secret.py").write_text("while SECRET:\n    pass\n")
+    way = os.path.relpath(tmp_path / "secret.py", submission.root)
+    conduct = told(submission, *dump(submission, (f"{submission.root}/{way}", 1, "f")))
+    assert conduct.stop is not None
+    assert conduct.stop.place is not None
+    assert conduct.stop.place.text == ""
+
+
+NESTED = """\
+def drive():
+    for turn in range(4):
+        while True:
+            if turn:
+
+    # a comment
+                step(turn)
+    return 1
+
+x = 2
+""".splitlines()
+
+
+@pytest.mark.parametrize(("line", "found"), [(7, [3, 2]), (3, [3, 2]), (2, [2]), (8, []), (10, [])])
+def test_the_loops_round_a_line_are_found_by_indentation(line: int, found: list[int]) -> None:
+    assert dumps.loops(NESTED, line) == found
