@@ -107,7 +107,7 @@ class Stop:
 
 @dataclass(frozen=True)
 class Raised:
-    """The exception that ended the program, or a signal that it has brought upon itself.
+    """The exception that ended the program or its thread that spun; or a signal for a mistake in C.
 
     Attributes:
         type: as 'ZeroDivisionError'; 'SIGABRT' for a signal.
@@ -131,7 +131,7 @@ class Conduct:
         waits: services and the like that were waited for longer than a second, or in vain.
         slow: callbacks that let time pass.
         stop: where it got stuck.
-        raised: what ended it.
+        raised: what ended it; of a thread that spun, the program may have gone on without it.
         returned_s: when its program came to its end by itself, without an error.
     """
 

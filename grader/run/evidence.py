@@ -143,6 +143,8 @@ def _add(told: dict[str, Any], line: Any) -> None:
                 entries.append(value)
             else:
                 entries[number] = value
+        case "begun":  # it has started, whatever becomes of it
+            pass
         case "spun":
             told["spun_s"] = value
         case "returned":

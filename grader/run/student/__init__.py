@@ -1,6 +1,7 @@
 """What happens in the submission's process of a run.
 
-In real time that is `main`, with `looking`, `witness`, `delays` and `telling`. In virtual time:
+In real time that is `main`, and `looking`, which stands on `hooks` and what is named beside it. In
+virtual time:
 
 | module | what it does |
 |---|---|
@@ -13,7 +14,7 @@ In real time that is `main`, with `looking`, `witness`, `delays` and `telling`. 
 | `graph` | questions about the ROS graph |
 | `simulator_link`, `channel` | this end of the link: asks for time, sends and receives |
 | `remotes` | the simulator's endpoints, and who hears whom |
-| `witness`, `delays` | what is seen of how it uses rclpy, and of how it waits |
+| `hooks`, `witness`, `delays` | what is seen of how it uses rclpy, and of how it waits |
 | `telling` | how that is told to the grader |
 | `deadlock`, `refusal` | what waits for ever, and where; what virtual time cannot follow |
 

@@ -20,7 +20,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader.run.lockstep import actions, endpoints, events, faults, rclpy_clocks, waitsets
 from grader.run.lockstep.protocol import Kind
-from grader.run.student import chance, deadlock, executor, graph, witness
+from grader.run.student import chance, deadlock, executor, graph, hooks, threads, witness
 from grader.run.student.scheduler import Scheduler
 from grader.run.student.simulator_link import SimulatorLink
 from grader.run.student.telling import Teller
@@ -73,10 +73,11 @@ def install(
         scheduler, link, waiter, looks_on, runs_callback
     )
     link.on_over = looks_on.sum_up
+    threads.ON_ERROR = looks_on.thread_raised
     scheduler.on_waited = looks_on.callbacks.waited
     runs_callback = rclpy.task.Task.__call__.__code__
-    witness.install(looks_on)
-    witness.install_actions(looks_on)
+    hooks.install(looks_on)
+    hooks.install_actions(looks_on)
     return link, looks_on
 
 

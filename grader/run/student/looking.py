@@ -9,6 +9,7 @@ from __future__ import annotations
 import _thread
 import atexit
 import functools
+import threading
 import time
 import weakref
 from collections.abc import Callable
@@ -16,7 +17,7 @@ from types import ModuleType
 from typing import Any
 
 from grader.run.lockstep import faults
-from grader.run.student import witness
+from grader.run.student import hooks, witness
 from grader.run.student.telling import Teller
 
 #: How often it is asked who is there [s].
@@ -46,10 +47,11 @@ class Looking:
         self._code = -1
         self.calls: dict[str, Callable[[ModuleType], None]] = {
             "rclpy.node": lambda _: self._look_at_rclpy(),
-            "rclpy.action.client": lambda _: witness.install_actions(self._witness),
+            "rclpy.action.client": lambda _: hooks.install_actions(self._witness),
             "rclpy.experimental.events_executor": self._look_at_events,
         }
         time.sleep = self._timed(time.sleep)
+        threading.excepthook = self._thread_raised
         # registered first, so called last: when all threads have ended that Python waits for
         atexit.register(self._end)
 
@@ -57,6 +59,14 @@ class Looking:
         """An exception has ended the main thread."""
         self._witness.raised(error)
         faults.hide_our_frames(error)
+
+    def _thread_raised(self, args: threading.ExceptHookArgs) -> None:
+        if args.exc_value is not None:
+            self._witness.thread_raised(args.exc_value)
+            faults.hide_our_frames(args.exc_value)
+            traceback = args.exc_value.__traceback__
+            args = threading.ExceptHookArgs((args.exc_type, args.exc_value, traceback, args.thread))
+        threading.__excepthook__(args)
 
     def returns(self, code: int) -> None:
         """The main thread is through; others may go on."""
@@ -67,7 +77,7 @@ class Looking:
             self._witness.returned(self._code)
 
     def _look_at_rclpy(self) -> None:
-        witness.install(self._witness)
+        hooks.install(self._witness)
         import rclpy.clock
         import rclpy.timer
 

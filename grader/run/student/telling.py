@@ -52,6 +52,7 @@ class Teller:
             os.set_inheritable(descriptor, False)
             os.set_blocking(descriptor, False)
             _tell_when_asked(descriptor)
+            self.tell("begun", 0.0)
 
     def tell(self, what: str, value: object, *, is_last: bool = False) -> None:
         """Tell something.

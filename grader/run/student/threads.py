@@ -20,6 +20,8 @@ from grader.run.student.refusal import Unsupported
 from grader.run.student.scheduler import Runner, Scheduler
 
 SCHEDULER: Scheduler
+#: Told of an exception that has ended a thread, before its traceback is printed.
+ON_ERROR: Callable[[BaseException], object] = bool
 
 
 class Lock:
@@ -214,6 +216,7 @@ def _excepthook(args: threading.ExceptHookArgs) -> None:
     """As Python's: a thread ends with a traceback, the others go on."""
     if args.exc_value is not None:
         report(args.exc_value)
+        ON_ERROR(args.exc_value)
         hide_our_frames(args.exc_value)
         traceback = args.exc_value.__traceback__
         args = threading.ExceptHookArgs((args.exc_type, args.exc_value, traceback, args.thread))

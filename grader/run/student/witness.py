@@ -1,13 +1,11 @@
 """Looks on while a submission uses rclpy, and tells what a diagnosis wants to know.
 
-For both clocks. What it puts round rclpy's methods calls them as they were called; it waits for
-nothing and takes no time of the run, and what goes wrong in here is nobody's business.
+For both clocks; `hooks` has rclpy's objects call it. It waits for nothing and takes no time of the
+run, and what goes wrong in here is nobody's business.
 """
 
 from __future__ import annotations
 
-import functools
-import inspect
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -64,6 +62,7 @@ class Witness:
         self._is_met = is_met
         self._ends: list[End] = []
         self._has_ended = False
+        self._told: set[str] = set()
         self.waits = Waits(teller)
         self.callbacks = Callbacks(teller)
 
@@ -101,8 +100,8 @@ class Witness:
         """Ask of each end whether somebody has the other one, now that something may have come."""
         for end in list(self._ends):
             if not end.is_met:
-                _quietly(self._tell_of, end)
-        _quietly(self.waits.look)
+                quietly(self._tell_of, end)
+        quietly(self.waits.look)
 
     def spins(self) -> None:
         """An executor is spun for the first time."""
@@ -122,11 +121,18 @@ class Witness:
         told = {"kind": kind, "time_s": self._teller.now_s(), "call": call, "place": place}
         self._end("stop", told)
 
+    def thread_raised(self, error: BaseException) -> None:
+        """An exception has ended a thread: the program goes on, but not what that thread spun."""
+        lines = telling.trace(error)
+        if any(frame.f_globals.get("__name__") == "rclpy.executors" for frame, _ in lines):
+            self._tell_once("raised", self._of_error(error, lines))
+
     def raised(self, error: BaseException) -> None:
         """An exception has ended the program, before our frames are taken out of its traceback."""
-        if isinstance(error, SystemExit) and not error.code:
-            return
-        lines = telling.trace(error)
+        if not isinstance(error, SystemExit) or error.code:
+            self._end("raised", self._of_error(error, telling.trace(error)))
+
+    def _of_error(self, error: BaseException, lines: list[Line]) -> dict[str, Any]:
         at = self._teller.own(lines)
         place = self._teller.line(lines[at][0].f_code, lines[at][1]) if at >= 0 else None
         if at < 0 and isinstance(error, SyntaxError):
@@ -134,7 +140,7 @@ class Witness:
         text = str(error.code) if isinstance(error, SystemExit) else _text(error)
         kind = type(error).__name__[: telling.LONGEST]
         told = {"type": kind, "text": text[: telling.LONGEST], "time_s": self._teller.now_s()}
-        self._end("raised", {**told, "place": place})
+        return {**told, "place": place}
 
     def _of_syntax(self, error: SyntaxError) -> dict[str, Any] | None:
         if not error.filename or not self._teller.is_own(error.filename):
@@ -160,8 +166,13 @@ class Witness:
         """The first of these is how it has ended."""
         if not self._has_ended:
             self._has_ended = True
-            self._teller.tell(what, value, is_last=True)
+            self._tell_once(what, value)
         self.sum_up()
+
+    def _tell_once(self, what: str, value: object) -> None:
+        if what not in self._told:
+            self._told.add(what)
+            self._teller.tell(what, value, is_last=True)
 
     def sum_up(self) -> None:
         """Tell the last figures, where this is the end."""
@@ -171,131 +182,7 @@ class Witness:
         self.callbacks.sum_up()
 
 
-def install(witness: Witness) -> None:
-    """Have rclpy's objects tell; rclpy is imported by now, or will be with `rclpy.node`."""
-    import rclpy.client
-    import rclpy.executors
-    import rclpy.publisher
-    import rclpy.subscription
-    import rclpy.task
-
-    publisher, client = rclpy.publisher.Publisher, rclpy.client.Client
-    subscription, executor = rclpy.subscription.Subscription, rclpy.executors.Executor
-
-    _after(publisher, "__init__", lambda self, _: witness.made(
-        "publisher", self, self.topic_name, self.msg_type))  # fmt: skip
-    _after(subscription, "__init__", lambda self, _: witness.made(
-        "subscription", self, self.topic_name, self.msg_type))  # fmt: skip
-    _after(client, "__init__", lambda self, _: witness.made(
-        "client", self, self.handle.service_name, self.srv_type))  # fmt: skip
-    _after(publisher, "publish", lambda self, _: witness.used(self))
-    _after(client, "call_async", lambda self, future: _asked(witness, self, future))
-    _awaits(witness, client, "wait_for_service", lambda self, _: self, lambda _, is_ready: is_ready)
-    # what virtual time has put round it would take time
-    is_done = inspect.unwrap(rclpy.task.Future.done)
-    _awaits(witness, executor, "spin_until_future_complete", _first, lambda it, _: is_done(it))
-    _watch_callbacks(witness, rclpy.task.Task)
-
-    take, look = executor._take_subscription, executor.wait_for_ready_callbacks
-
-    @functools.wraps(take)
-    def taken(self: Any, subscription: Any) -> Any:
-        found = take(self, subscription)
-        if found is not None:
-            _quietly(witness.used, subscription)
-        return found
-
-    @functools.wraps(look)
-    def first_look(self: Any, *args: Any, **kwargs: Any) -> Any:
-        executor.wait_for_ready_callbacks = look
-        _quietly(witness.spins)
-        return look(self, *args, **kwargs)
-
-    executor._take_subscription = taken
-    executor.wait_for_ready_callbacks = first_look
-
-
-def install_actions(witness: Witness) -> None:
-    """The same for action clients; `rclpy.action.client` is imported by now."""
-    from rclpy.action.client import ActionClient
-
-    _after(ActionClient, "__init__", lambda self, _: witness.made(
-        *("action_client", self, self._node.resolve_service_name(self._action_name)),
-        self._action_type))  # fmt: skip
-    _after(ActionClient, "send_goal_async", lambda self, _: witness.used(self))
-    _awaits(witness, ActionClient, "wait_for_server", lambda self, _: self, lambda _, there: there)
-
-
-def _after(owner: Any, name: str, look: Callable[[Any, Any], None]) -> None:
-    """Have somebody look after each call of a method, at whose it is and what it has returned."""
-    method = getattr(owner, name)
-
-    @functools.wraps(method)
-    def called(self: Any, *args: Any, **kwargs: Any) -> Any:
-        returned = method(self, *args, **kwargs)
-        _quietly(look, self, returned)
-        return returned
-
-    setattr(owner, name, called)
-
-
-def _asked(witness: Witness, client: Any, future: Any) -> None:
-    """A request was sent; whoever waits for this future waits for the service."""
-    witness.used(client)
-    future._witnessed = client._witnessed
-
-
-def _first(_: Any, args: tuple[Any, ...]) -> Any:
-    return args[0]
-
-
-def _awaits(
-    witness: Witness,
-    owner: Any,
-    name: str,
-    whose: Callable[[Any, tuple[Any, ...]], Any],
-    has_come: Callable[[Any, Any], bool],
-) -> None:
-    """Have a method tell for how long it waits.
-
-    Args:
-        whose: of its object and arguments, what knows the end that is waited for.
-        has_come: of that and what the method returns, whether it has waited with success.
-    """
-    method = getattr(owner, name)
-
-    @functools.wraps(method)
-    def awaited(self: Any, *args: Any, **kwargs: Any) -> Any:
-        waiter = _quietly(whose, self, args or tuple(kwargs.values()))
-        end: End | None = getattr(waiter, "_witnessed", None)
-        if end is None:
-            return method(self, *args, **kwargs)
-        wait = _quietly(witness.waits.since, end.name, end.type)
-        returned = method(self, *args, **kwargs)
-        _quietly(lambda: witness.waits.over(wait, has_come=bool(has_come(waiter, returned))))
-        return returned
-
-    setattr(owner, name, awaited)
-
-
-def _watch_callbacks(witness: Witness, task: Any) -> None:
-    """Have the tasks that an executor runs tell when they begin and end."""
-    run, callbacks = task.__call__, witness.callbacks
-
-    @functools.wraps(run)
-    def call(self: Any) -> Any:
-        lines = callbacks.begin()
-        if lines is None:
-            return run(self)
-        try:
-            return run(self)
-        finally:
-            _quietly(callbacks.end, lines)
-
-    task.__call__ = call
-
-
-def _quietly(look: Callable[..., Any], *args: Any) -> Any:
+def quietly(look: Callable[..., Any], *args: Any) -> Any:
     """What goes wrong here is not the program's concern."""
     try:
         return look(*args)

@@ -245,3 +245,20 @@ def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded: R
     for number in (1, 2):
         stop = recorded("conduct/loops_for_ever", number).conduct.stop
         assert stop == Stop("loop", 0.096, "", place)
+
+
+@pytest.mark.records("conduct/thread_dies")
+def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_on(
+    recorded: Recorded,
+) -> None:
+    conduct = recorded("conduct/thread_dies").conduct
+    assert conduct.raised is not None
+    assert conduct.raised.place == Place("thread_dies.py", 11, "on_pose", "print(pose.z)")
+    assert conduct.raised.time_s < 0.1
+    assert conduct.returned_s == 1.0
+    assert recorded("conduct/thread_dies").run.exit_code == 0
+
+
+@pytest.mark.records("conduct/leaves_without_a_word")
+def test_a_program_that_ends_without_a_word_has_told_that_it_was_there(recorded: Recorded) -> None:
+    assert recorded("conduct/leaves_without_a_word").conduct == Conduct(is_told=True)
