@@ -13,6 +13,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Literal, Self, get_args
 
+from grader.text import one_line, without_controls
+
 #: So many of a kind are kept; what comes later is not.
 MOST = 100
 #: So many characters of a text.
@@ -227,10 +229,11 @@ def _list(data: Any) -> list[Any]:
 
 
 def _text(data: Any) -> str:
+    """In one line, and without what a terminal, a log or XML would stumble over."""
     text: str = _is(data, str)
     if len(text) > LONGEST:
         raise ValueError(f"expected {LONGEST} characters at most, found {len(text)}")
-    return text
+    return without_controls(one_line(text), "?")
 
 
 def _one_of(data: Any, kinds: Any) -> Any:

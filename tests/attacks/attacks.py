@@ -139,6 +139,7 @@ ATTACKS = {
     ),
     "prints_escapes": Attack(READING, ALL),
     "imitates_results": Attack(READING, ALL),
+    "lies_about_itself": Attack(READING, ALL),
     "fakes_a_traceback": Attack(READING, ALL),
     "does_not_parse": Attack(READING, ALL, handed_in.does_not_parse),
     "is_nested": Attack(READING, ALL, handed_in.is_nested, codes=READ),

@@ -69,6 +69,14 @@ def test_of_a_process_that_tells_nonsense_nothing_is_told(
     assert told(submission, line) == Conduct()
 
 
+def test_texts_are_told_in_one_line_that_can_be_shown(submission: Submission) -> None:
+    text = "red \x1b[31m\nand\ud800\u202e"
+    raised = {"type": "Error", "text": text, "time_s": 1, "place": None}
+    found = told(submission, say(raised=raised)).raised
+    assert found is not None
+    assert found.text == "red ?[31m and??"
+
+
 def test_of_a_process_that_tells_nothing_nothing_is_told(submission: Submission) -> None:
     assert told(submission) == Conduct()
 
