@@ -212,7 +212,10 @@ def _perhaps_place(data: Any) -> Place | None:
 def _place(data: Any) -> Place:
     data = _object(data, Place)
     line, function = _count(data["line"]), _text(data["function"])
-    return Place(_text(data["file"]), line, function, _text(data["text"]))
+    file = _text(data["file"])
+    if file.startswith("/") or ".." in file.split("/"):
+        raise ValueError(f"expected a file of the submission's own, found {file!r:.80}")
+    return Place(file, line, function, _text(data["text"]))
 
 
 def _object(data: Any, kind: type[Any]) -> Mapping[str, Any]:

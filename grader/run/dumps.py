@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from grader.run.student.telling import FOREIGN
 from grader.submission.opening import Submission
 
 #: How a dump begins for a mistake in C, and which signal ended the process then.
@@ -70,7 +71,7 @@ class Own:
     def name(self, frame: Frame) -> str:
         """A frame's file below the submission's root; '' for others."""
         name = frame.file.removeprefix(f"{self._root}/")
-        is_own = name != frame.file and "/site-packages/" not in name
+        is_own = name != frame.file and not any(each in f"/{name}" for each in FOREIGN)
         return name if is_own else ""
 
     def text(self, name: str) -> list[str]:

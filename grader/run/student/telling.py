@@ -25,8 +25,8 @@ MOST_LINE_BYTES = 4000
 LONGEST = 300
 #: A larger file is no source that somebody reads [bytes].
 MOST_SOURCE_BYTES = 1_000_000
-#: What is installed into a submission's own folder is not the student's.
-_INSTALLED = ("/site-packages/", "/dist-packages/")
+#: What is installed into a submission's own folder is not the student's; nor what lies beside it.
+FOREIGN = ("/site-packages/", "/dist-packages/", "/../")
 #: A frame and its line.
 Line = tuple[FrameType, int]
 
@@ -76,7 +76,7 @@ class Teller:
 
     def is_own(self, file: str) -> bool:
         """Whether a file is one of the submission's own."""
-        return file.startswith(self.root) and not any(each in file for each in _INSTALLED)
+        return file.startswith(self.root) and not any(each in file for each in FOREIGN)
 
     def own(self, lines: list[Line]) -> int:
         """Which of these, outermost first, is the last of the submission's own; -1: none."""

@@ -6,7 +6,6 @@ import json
 import os
 import random
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
@@ -117,13 +116,12 @@ def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
         assert conduct.stop.time_s == 1.5
 
 
-def test_no_file_is_read_but_the_submissions_own(submission: Submission, tmp_path: Path) -> None:
-    (tmp_path / "secret.py").write_text("while SECRET:\n    pass\n")
-    way = os.path.relpath(tmp_path / "secret.py", submission.root)
-    conduct = told(submission, *dump(submission, (f"{submission.root}/{way}", 1, "f")))
-    assert conduct.stop is not None
-    assert conduct.stop.place is not None
-    assert conduct.stop.place.text == ""
+def test_what_lies_beside_a_submission_is_none_of_its_own(submission: Submission) -> None:
+    file = f"{submission.root}/../secret.py"
+    assert told(submission, *dump(submission, (file, 1, "f"))) == Conduct(is_told=True)
+    for name in ("../secret.py", "/etc/passwd", "a/../../b.py"):
+        place = {**PLACE, "file": name}
+        assert told(submission, say(end={**END, "place": place})) == Conduct()
 
 
 NESTED = """\
