@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Protocol
 
 from grader import content, versions
+from grader.diagnosis.diagnose import diagnose
 from grader.errors import GraderFailure, UsageError
 from grader.exercise import DEFAULT, check, early
 from grader.exercise.loading import Exercise, load_exercise
@@ -116,7 +117,7 @@ def judge(
     """
     asked = _loaded(exercise)
     verdicts = check.judge(recordings, asked.checks, asked.points, asked.tolerances)
-    return build(submission, asked, recordings, verdicts, {})
+    return build(submission, asked, recordings, verdicts, {}, diagnose(recordings, verdicts))
 
 
 def load_recordings(folder: AnyPath) -> Recordings:
@@ -256,7 +257,8 @@ def gather(runs: Iterable[Finished]) -> Recordings:
 def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "") -> Result:
     """What the nominal run alone decides, as a result that lacks all other verdicts."""
     verdicts = early.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
-    return build(submission, exercise, Recordings(nominal), verdicts, {})
+    alone = Recordings(nominal)
+    return build(submission, exercise, alone, verdicts, {}, diagnose(alone, verdicts))
 
 
 def _record(

@@ -35,6 +35,7 @@ STATIONS = below(
     "recording",
     "scenes",
     "run",
+    "diagnosis",
     "exercise",
     "exercises",
     "result",
@@ -77,8 +78,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes", "exercise")
     | {"turtlesim_py"},
-    "grader.result": GROUND | below("grader", "recording", "scenes", "exercise"),
-    "grader.reports": GROUND | below("grader", "recording", "scenes", "exercise.verdict", "result"),
+    "grader.diagnosis": GROUND | below("grader", "recording", "scenes", "exercise.verdict"),
+    "grader.result": GROUND
+    | below("grader", "recording", "scenes", "exercise", "diagnosis.diagnosis"),
+    "grader.reports": GROUND
+    | below("grader", "recording", "scenes", "exercise.verdict", "result", "diagnosis.diagnosis"),
     "grader.grading": GROUND | STATIONS - below("grader", "reports"),
     "grader.__init__": GROUND | STATIONS | {"grader.grading"},
     "grader.testing": GROUND | STATIONS | {"grader.__init__", "grader.grading", "turtlesim_py"},

@@ -20,7 +20,7 @@ def render(report: Report) -> str:
         {
             verdict.check: {"passed": True}
             if verdict.passed
-            else {"passed": False, "hint": _hint(word(verdict), report.lines(verdict))}
+            else {"passed": False, "hint": _hint(word(verdict), report.led_lines(verdict))}
             for verdict in report.verdicts
         },
         {verdict.check: text.number(verdict.score) for verdict in report.verdicts},
@@ -51,4 +51,4 @@ def _lines(checks: dict[str, Any], scores: dict[str, Any]) -> str:
 
 
 def _hint(word: str, lines: list[str]) -> str:
-    return " ".join([f"{word.capitalize()}.", *lines])
+    return " ".join([f"{word.capitalize()}.", *filter(None, lines)])

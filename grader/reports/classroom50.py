@@ -34,7 +34,7 @@ def render(report: Report) -> str:
             "max-score": max_score,
             "status": verdict.status,
             "exact-score": text.number(verdict.score),
-            "message": "\n".join(report.lines(verdict)),
+            "message": "\n".join(report.led_lines(verdict)),
         }
         for verdict, score, max_score in zip(
             report.verdicts, points.scores, points.max_scores, strict=True

@@ -64,11 +64,11 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
     for name in checks:
         verdict = verdicts.get(name)
         row += [text.number(verdict.score), word(verdict)] if verdict else ["", ""]
-    first = report.first_to_mend
+    first = report.first_key
     return [
         *row,
         report.run.outcome,
-        _cell(text.clip(f"{first.check}: {report.headline}", 300) if first else ""),
+        _cell(text.clip(f"{first}: {report.headline}", 300) if first else ""),
         _cell("; ".join(report.run.flags)),
         _cell(report.run.trace_sha256),
         _cell(str(report.folder)),

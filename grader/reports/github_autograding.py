@@ -20,7 +20,7 @@ def render(report: Report) -> str:
             f"{verdict.check}: {verdict.title}",
             "pass" if verdict.passed else "fail",
             verdict.score,
-            report.lines(verdict),
+            report.led_lines(verdict),
         )
         for verdict in report.verdicts
     ]

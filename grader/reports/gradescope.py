@@ -64,6 +64,7 @@ def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
 
 def _overview(report: Report) -> str:
     parts = [f"<p><strong>{html.escape(report.headline)}</strong></p>"]
+    parts += [f"<p>{html.escape(line)}</p>" for line in report.advice]
     picture = pictures.canvas_uri(report)
     if picture:
         parts.append(f'<p><img src="{picture}" width="500" alt="The window at the end"></p>')

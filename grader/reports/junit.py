@@ -20,6 +20,8 @@ def render(report: Report) -> str:
         "max_score": text.points(report.max_score),
         "outcome": report.run.outcome,
     }
+    if report.diagnosis is not None:
+        properties["diagnosis"] = report.headline
     cases = [_case(report, verdict) for verdict in report.verdicts]
     return _document(report.exercise, max(report.run.wall_s, 0), properties, cases)
 
@@ -69,7 +71,7 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
         {"classname": report.exercise, "name": f"{verdict.check}: {verdict.title}", "time": "0"},
     )
     message = {"message": text.one_line(verdict.rationale)}
-    lines = report.lines(verdict)
+    lines = report.led_lines(verdict)
     if verdict.status == "failed":
         failure = ElementTree.SubElement(case, "failure", {**message, "type": "failed"})
         failure.text = "\n".join(lines)

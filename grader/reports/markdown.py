@@ -47,10 +47,13 @@ def _quote(value: str) -> str:
 
 
 def _first(report: Report) -> str:
-    first = report.first_to_mend
-    if first is None:
+    found, first = report.diagnosis, report.first_to_mend
+    if found is None and first is None:
         return f"**{_quote(report.headline)}**"
-    return f"**First to mend, {_quote(first.check)}:** {_quote(report.headline)}"
+    named = found.check if found is not None else first.check if first is not None else ""
+    about = f", {_quote(named)}" if named else ""
+    line = f"**First to mend{about}:** {_quote(report.headline)}"
+    return "\n\n".join([line, *map(_quote, report.advice)])
 
 
 def _table(report: Report) -> str:

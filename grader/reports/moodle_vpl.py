@@ -12,6 +12,7 @@ from grader.reports.wording import score_text, word
 def render(report: Report) -> str:
     """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
     lines = ["<|--", "-What to do", f"Now: {_quote(report.headline)}"]
+    lines += map(_quote, report.advice)
     for verdict in report.verdicts:
         lines += _verdict(report, verdict)
     lines += ["--|>", f"Grade :=>> {text.points(report.score)}"]

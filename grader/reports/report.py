@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Self
 
 from grader import text
+from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
@@ -65,6 +66,7 @@ class Report:
         verdicts: those of the result, in its order, as they are shown: no text is longer than
             anybody reads, and no two checks have the same name.
         origin: sentences about where the result comes from; none where it does not tell.
+        diagnosis: that of the result, with no text longer than anybody reads; None for none.
         beside: as above.
     """
 
@@ -80,6 +82,7 @@ class Report:
         self.origin = origin.sentences(shown.provenance) if shown.provenance else []
         names = _distinct([text.one_line(verdict.check) for verdict in shown.verdicts])
         self.verdicts = tuple(map(_shown, shown.verdicts, names))
+        self.diagnosis = None if shown.diagnosis is None else _readable(shown.diagnosis)
         self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))
 
     @classmethod
@@ -132,21 +135,65 @@ class Report:
             lines.append(f"Look at: {text.one_line(verdict.help)}")
         return [line for line in lines if line]
 
+    def led_lines(self, verdict: Verdict) -> list[str]:
+        """The same, led by the diagnosis: for formats with no place for that but the checks.
+
+        It leads the first that did not pass, unless that one says it itself.
+        """
+        lines, found = self.lines(verdict), self.diagnosis
+        first = next((each for each in self.verdicts if not each.passed), None)
+        if found is None or verdict is not first or found.check == verdict.check:
+            return lines
+        return [f"First to mend: {self.headline}", *self.advice, "", *lines]
+
     @property
     def first_to_mend(self) -> Verdict | None:
-        """The first verdict that failed or, failing that, could not be given; None without any."""
-        return next(
+        """The verdict that the diagnosis repeats; else the first that failed.
+
+        Failing that, the first that could not be given; None without any.
+        """
+        named = self.diagnosis.check if self.diagnosis is not None else ""
+        of_diagnosis = next((v for v in self.verdicts if named and v.check == named), None)
+        return of_diagnosis or next(
             (v for status in ("failed", "not_judged") for v in self.verdicts if v.status == status),
             None,
         )
 
     @property
     def headline(self) -> str:
-        """One line: what to mend first."""
+        """One line: the cause of lost points, or what to mend first."""
+        if self.diagnosis is not None:
+            return self.diagnosis.cause
         first = self.first_to_mend
         if first is not None:
             return text.one_line(first.rationale) or f"{first.check}: {word(first)}"
         return f"Nothing to mend: {all_passed(len(self.verdicts))}"
+
+    @property
+    def first_key(self) -> str:
+        """In a word what the headline is about: a check's name, or the diagnosis's key."""
+        if self.diagnosis is not None:
+            return self.diagnosis.check or self.diagnosis.key
+        return self.first_to_mend.check if self.first_to_mend is not None else ""
+
+    @property
+    def advice(self) -> list[str]:
+        """What belongs to the diagnosis, below the headline: what to do, and where."""
+        found = self.diagnosis
+        if found is None:
+            return []
+        lines = [f"What to do: {found.help}"] if found.help else []
+        return [*lines, *([f"Where: {self.where_first}"] if self.where_first else [])]
+
+    @property
+    def where_first(self) -> str:
+        """Where the diagnosis points to: 'drive.py, line 39, in on_pose: time.sleep(0.2)'."""
+        place = self.diagnosis.place if self.diagnosis is not None else None
+        if place is None:
+            return ""
+        function = f", in {place.function}" if place.function else ""
+        line = f": {place.text}" if place.text else ""
+        return text.one_line(f"{place.file}, line {place.line}{function}{line}")
 
     @cached_property
     def recordings(self) -> dict[int, Recording]:
@@ -192,6 +239,25 @@ def _shown(verdict: Verdict, name: str) -> Verdict:
             replace(item, note=text.clip(text.one_line(item.note), _TEXT_LIMIT))
             for item in verdict.evidence[:_POINTS_LIMIT]
         ),
+    )
+
+
+def _readable(found: Diagnosis) -> Diagnosis:
+    def line(value: str) -> str:
+        return text.clip(text.one_line(value), _TEXT_LIMIT)
+
+    key, cause = line(found.key), line(found.cause)
+    place = found.place
+    if place is not None:
+        file, function, said = map(line, (place.file, place.function, place.text))
+        place = replace(place, file=file, function=function, text=said)
+    return replace(
+        found,
+        key=key,
+        cause=cause or key or "(no cause)",
+        help=line(found.help),
+        place=place,
+        check=line(found.check),
     )
 
 

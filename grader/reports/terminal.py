@@ -55,6 +55,8 @@ def _captured(print_to: Callable[[Console], None]) -> str:
 def show(report: Report, console: Console) -> None:
     """Print the report."""
     console.print(_text(report.headline, "bold"), soft_wrap=True)
+    for line in report.advice:
+        console.print(_text(line), soft_wrap=True)
     console.print()
     console.print(_text(f"{report.submission}: {report.exercise}", "bold"), soft_wrap=True)
     console.print(_table(report, console.width))
@@ -79,6 +81,10 @@ def show_nominal(report: Report, console: Console) -> None:
     console.print(_text("The nominal run is over, the others still go.", "bold"))
     if report.verdicts:
         console.print(_table(report, console.width))
+    if report.diagnosis is not None and not report.diagnosis.check:
+        console.print(_text(report.headline, "bold"), soft_wrap=True)
+        for line in report.advice:
+            console.print(_text(line), soft_wrap=True)
     first = report.first_to_mend
     if first is not None and not report.waited_for(first):
         console.print(_explanation(report, first))

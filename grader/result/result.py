@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from grader import files
+from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.loading import Exercise
 from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
@@ -81,6 +82,8 @@ class Result:
         varied_runs: those that start elsewhere.
         artifacts: what lies beside the result file: name -> relative path.
         provenance: where it comes from; equal results need not come from the same.
+        diagnosis: the earliest cause of lost points; None where none is lost or, in older files,
+            where nobody has looked.
     """
 
     exercise: str
@@ -92,16 +95,19 @@ class Result:
     varied_runs: tuple[RunSummary, ...] = ()
     artifacts: Mapping[str, str] = field(default_factory=dict)
     provenance: Origin | None = field(default=None, compare=False)
+    diagnosis: Diagnosis | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The result as its file holds it."""
         origin = {} if self.provenance is None else {"provenance": self.provenance.to_json()}
+        diagnosis = {} if self.diagnosis is None else {"diagnosis": self.diagnosis.to_json()}
         return {
             "schema": SCHEMA,
             "exercise": self.exercise,
             "submission": self.submission,
             "score": self.score,
             "max_score": self.max_score,
+            **diagnosis,
             "verdicts": [verdict.to_json() for verdict in self.verdicts],
             "run": self.run.to_json(),
             "varied_runs": [run.to_json() for run in self.varied_runs],
@@ -117,6 +123,7 @@ class Result:
             ValueError: it does not follow the schema.
         """
         json_file.validate(data, "result", SCHEMA)
+        diagnosis = data.get("diagnosis")
         return cls(
             data["exercise"],
             data["submission"],
@@ -127,6 +134,7 @@ class Result:
             tuple(RunSummary.from_json(run) for run in data.get("varied_runs", ())),
             data["artifacts"],
             provenance=Origin.from_json(data["provenance"]) if "provenance" in data else None,
+            diagnosis=None if diagnosis is None else Diagnosis.from_json(diagnosis),
         )
 
     @classmethod
@@ -182,6 +190,7 @@ def build(
     recordings: Recordings,
     verdicts: Sequence[Verdict],
     artifacts: Mapping[str, str],
+    diagnosis: Diagnosis | None = None,
 ) -> Result:
     """Put a result together; `artifacts` are paths relative to the result file."""
     return Result(
@@ -194,6 +203,7 @@ def build(
         tuple(RunSummary.of(recording) for recording in recordings.varied),
         dict(artifacts),
         provenance=Origin.of(recordings, exercise),
+        diagnosis=diagnosis,
     )
 
 

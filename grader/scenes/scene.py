@@ -74,6 +74,22 @@ class Introduction:
     services: tuple[str, ...]
 
 
+EndpointKind = Literal["publisher", "subscription", "service", "action"]
+
+
+class Endpoint(NamedTuple):
+    """What a scene's node has itself: an end of a topic, or the server of a service or action.
+
+    Attributes:
+        name: with its namespace.
+        type: as 'geometry_msgs/msg/Twist'.
+    """
+
+    kind: EndpointKind
+    name: str
+    type: str
+
+
 @dataclass(frozen=True)
 class Hooks:
     """How a run takes part in a simulation.
@@ -265,7 +281,14 @@ class Scene(Protocol):
     def scenario(self, trace: Trace) -> dict[str, Any]:
         """The inputs, to be replayed without ROS."""
 
-    # Reports ----------------------------------------------------------------------------------
+    # Diagnosis and reports --------------------------------------------------------------------
+
+    def endpoints(self, trace: Trace, interfaces: str) -> Sequence[Endpoint]:
+        """What of the scene a submission could have met in a run; the usual ones first.
+
+        Args:
+            interfaces: with which the scene was run.
+        """
 
     def pictures(self, trace: Trace) -> Pictures:
         """What it looked like at the end."""

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from grader.scenes.scene import (
+    Endpoint,
     Hooks,
     Introduction,
     Limits,
@@ -15,7 +16,7 @@ from grader.scenes.scene import (
     Start,
     Trace,
 )
-from grader.scenes.turtlesim import interfaces, remarks, starts, trace, trying, view
+from grader.scenes.turtlesim import endpoints, interfaces, remarks, starts, trace, trying, view
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.scenes.view import Pictures, View
 from turtlesim_py.world import sprites
@@ -122,6 +123,10 @@ class Turtlesim:
         events = TurtleTrace.of(made).events
         within = [to_json(event) for event in events if 1 <= event.tick <= made.ticks]
         return {"ticks": made.ticks, "events": within}
+
+    def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
+        """Those of the node and of each turtle."""
+        return endpoints.endpoints(TurtleTrace.of(made), interfaces)
 
     def pictures(self, made: Trace) -> Pictures:
         """The original's window, and the path alone."""

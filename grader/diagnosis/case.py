@@ -1,0 +1,107 @@
+"""A run as the rules see it, and how they put a place, a time and a foreign text into words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from grader.diagnosis import printed
+from grader.recording.conduct import Conduct, End, EndKind, Place, Raised, Stop
+from grader.recording.recording import Recording, Run
+from grader.scenes import load_scene
+from grader.scenes.scene import Endpoint, EndpointKind
+from grader.text import clip, one_line, plain
+
+#: What an end of the submission's has to meet, to be of any use.
+OPPOSITE: dict[EndKind, EndpointKind] = {
+    "subscription": "publisher",
+    "publisher": "subscription",
+    "client": "service",
+    "action_client": "action",
+}
+_LONGEST = 200
+
+
+@dataclass(frozen=True)
+class Case:
+    """All that is known of one run."""
+
+    recording: Recording
+
+    @property
+    def run(self) -> Run:
+        """How it went."""
+        return self.recording.run
+
+    @property
+    def conduct(self) -> Conduct:
+        """What its process has told of itself."""
+        return self.recording.conduct
+
+    @cached_property
+    def raised(self) -> Raised | None:
+        """The exception or signal that ended it; only for a run that ended so."""
+        if self.run.outcome not in ("crashed", "killed"):
+            return None
+        if self.conduct.is_told and self.conduct.raised is not None:
+            return self.conduct.raised
+        if self.run.outcome == "killed":
+            return printed.fatal_signal(self.recording.output)
+        return printed.last_exception(self.recording.output)
+
+    @cached_property
+    def stop(self) -> Stop | None:
+        """Where it got stuck."""
+        if self.conduct.is_told and self.conduct.stop is not None:
+            return self.conduct.stop
+        return printed.stuck(self.recording.output) if self.run.outcome == "stalled" else None
+
+    @property
+    def knows_when(self) -> bool:
+        """Whether times are known; in an output they are not."""
+        return self.conduct.is_told
+
+    @cached_property
+    def ends(self) -> tuple[End, ...]:
+        """The submission's ends of topics, services and actions, as far as they are known."""
+        if self.conduct.is_told:
+            return self.conduct.ends
+        listened = {e.name for e in self.scene_has if e.kind == "subscription"}
+        return tuple(
+            End("publisher", topic.topic, topic.type, topic.topic in listened, 1)
+            for topic in self.recording.topics
+        )
+
+    @cached_property
+    def scene_has(self) -> Sequence[Endpoint]:
+        """What the scene publishes, listens to and serves."""
+        scene = load_scene(self.recording.scene)
+        return scene.endpoints(self.recording.trace, self.run.interfaces)
+
+    @cached_property
+    def thing(self) -> str:
+        """What is driven, in a word."""
+        return load_scene(self.recording.scene).thing
+
+
+def told(text: str) -> str:
+    """A text of the submission's as it may stand in a line of ours."""
+    return clip(one_line(plain(text[: 4 * _LONGEST])), _LONGEST)
+
+
+def line(place: Place | None) -> str:
+    """' (drive.py, line 39)', with a space before it; '' for no place."""
+    return f" ({told(place.file)}, line {place.line})" if place is not None else ""
+
+
+def code(place: Place | None) -> str:
+    """' (drive.py, line 39: `time.sleep(0.2)`)'; '' for no place."""
+    if place is None or not place.text:
+        return line(place)
+    return f" ({told(place.file)}, line {place.line}: `{clip(told(place.text), 80)}`)"
+
+
+def at(time_s: float | None) -> str:
+    """' at 6.0 s'; '' for no time."""
+    return "" if time_s is None else f" at {time_s:.1f} s"

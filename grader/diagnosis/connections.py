@@ -1,0 +1,171 @@
+"""Rules about names and types: what the submission publishes, hears and calls, and who is there.
+
+A rule speaks only where it can name what was meant: something of the scene's that nearly has this
+name, or has this type. A program that has the right end as well tries several, and is let be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from difflib import SequenceMatcher
+
+from grader.diagnosis.case import OPPOSITE, Case, code, told
+from grader.diagnosis.crash import misses_message
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.recording.conduct import End, EndKind
+from grader.scenes.scene import Endpoint
+
+#: So alike two names have to be, 0 to 1, for one to be meant by the other.
+_ALIKE = 0.75
+#: A longer name is nobody's mistake.
+_LONGEST_NAME = 100
+
+
+def waits_in_vain(case: Case) -> Diagnosis | None:
+    """It waits to the end for a service or an action that nobody offers."""
+    for wait in case.conduct.waits:
+        if wait.lasted_s is not None or "/msg/" in wait.type:
+            continue
+        there = [e for e in case.scene_has if e.kind in ("service", "action")]
+        kind: EndKind = "action_client" if "/action/" in wait.type else "client"
+        near = nearest(End(kind, wait.name, wait.type, False, 0), case)
+        what = "action" if kind == "action_client" else "service"
+        if near is not None and near.name == wait.name:
+            if near.type == wait.type:
+                continue
+            rest = f" as {told(wait.type)}, but it is of type {near.type}"
+        elif any(e.name == wait.name for e in there):
+            continue
+        elif near is not None:
+            rest = f", which nobody offers; there is {near.name}"
+        else:
+            rest = ", which nobody offers"
+        return Diagnosis(
+            "waits_in_vain",
+            f"You wait for the {what} {told(wait.name)} from {wait.since_s:.1f} s on{rest}"
+            f"{code(wait.place)}.",
+            _named(near) if near else "Compare the name with `ros2 service list`.",
+            time_s=wait.since_s,
+            place=wait.place,
+        )
+    return None
+
+
+def publishes_to_nobody(case: Case) -> Diagnosis | None:
+    """It publishes under a name or with a type that the scene does not listen to."""
+
+    def told_of(end: End, near: Endpoint) -> str:
+        if end.name == near.name:
+            return (
+                f"You publish {told(end.type)} on {near.name}, but the {case.thing} listens to "
+                f"{near.type} there"
+            )
+        return (
+            f"You publish {told(end.type)} on {told(end.name)}, where nobody listens; the "
+            f"{case.thing} listens to {near.name}{_unlike(end, near)}"
+        )
+
+    return _first(case, "publisher", "publishes_to_nobody", told_of)
+
+
+def hears_nobody(case: Case) -> Diagnosis | None:
+    """It subscribes under a name or with a type that nobody publishes."""
+
+    def told_of(end: End, near: Endpoint) -> str:
+        if end.name == near.name:
+            return (
+                f"You subscribe to {near.name} as {told(end.type)}, but {near.type} is published "
+                "there, so no message reaches you"
+            )
+        return (
+            f"You subscribe to {told(end.name)}, which nobody publishes; there is {near.name}"
+            f"{_unlike(end, near)}"
+        )
+
+    return _first(case, "subscription", "hears_nobody", told_of)
+
+
+def misses_what_it_hears(case: Case) -> Diagnosis | None:
+    """It crashed for want of a message, and subscribes to what nobody publishes."""
+    return hears_nobody(case) if misses_message(case) else None
+
+
+def calls_nobody(case: Case) -> Diagnosis | None:
+    """It calls a service or an action under a name or with a type that nobody offers."""
+
+    def told_of(end: End, near: Endpoint) -> str:
+        verb = "You call" if end.used else "You have a client for"
+        what = "action" if end.kind == "action_client" else "service"
+        if end.name == near.name:
+            return f"{verb} the {what} {near.name} as {told(end.type)}, but it is {near.type}"
+        return (
+            f"{verb} the {what} {told(end.name)}, which nobody offers; there is {near.name}"
+            f"{_unlike(end, near)}"
+        )
+
+    return _first(case, "client", "calls_nobody", told_of) or _first(
+        case, "action_client", "calls_nobody", told_of
+    )
+
+
+def _first(
+    case: Case, kind: EndKind, key: str, told_of: Callable[[End, Endpoint], str]
+) -> Diagnosis | None:
+    """About the first end of a kind that meets nobody, and is near to what the scene has."""
+    for end in case.ends:
+        if end.kind != kind:
+            continue
+        near = nearest(end, case)
+        if near is None or _has_right_one(case, kind, near):
+            continue
+        if end.name != near.name and (end.is_met or _meets_itself(case, end)):
+            continue
+        cause = f"{told_of(end, near)}{code(end.place)}."
+        return Diagnosis(key, cause, _named(near), place=end.place)
+    return None
+
+
+def nearest(end: End, case: Case) -> Endpoint | None:
+    """What of the scene's was meant; None where that is right as it is, or cannot be told."""
+    there = [each for each in case.scene_has if each.kind == OPPOSITE[end.kind]]
+    same = next((each for each in there if each.name == end.name), None)
+    if same is not None:
+        return same if same.type != end.type else None
+    if len(end.name) > _LONGEST_NAME:
+        return None
+    by_name = [(_likeness(end, each), each) for each in there]
+    best = max(by_name, key=lambda found: found[0], default=None)
+    if best is not None and best[0] >= _ALIKE:
+        return best[1]
+    of_type = [each for each in there if each.type == end.type]
+    return of_type[0] if of_type and len({_last(e.name) for e in of_type}) == 1 else None
+
+
+def _likeness(end: End, other: Endpoint) -> float:
+    """From 0 to 2: how alike the names are; more where only what stands before is different."""
+    a, b = end.name.lower(), other.name.lower()
+    alike = SequenceMatcher(None, a, b).ratio()
+    return 1 + alike if _last(a) == _last(b) else alike
+
+
+def _last(name: str) -> str:
+    return name.rpartition("/")[2]
+
+
+def _has_right_one(case: Case, kind: EndKind, near: Endpoint) -> bool:
+    return any(e.kind == kind and (e.name, e.type) == near[1:] for e in case.ends)
+
+
+def _meets_itself(case: Case, end: End) -> bool:
+    """Whether the submission has the other end of a topic itself."""
+    other = {"publisher": "subscription", "subscription": "publisher"}.get(end.kind)
+    return any(each.kind == other and each.name == end.name for each in case.ends)
+
+
+def _unlike(end: End, near: Endpoint) -> str:
+    return "" if end.type == near.type else f" of type {near.type}"
+
+
+def _named(near: Endpoint) -> str:
+    package, kind, name = near.type.split("/")
+    return f"Write '{near.name}', with the type of `from {package}.{kind} import {name}`."

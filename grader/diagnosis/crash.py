@@ -1,0 +1,223 @@
+"""Rules about programs that ended with an error: what Python, a message or a signal says of it."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from signal import Signals
+
+from grader.diagnosis.case import Case, at, code, line, told
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.recording.conduct import Raised
+
+#: What generated messages say of a value that they refuse.
+_FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>.{1,200})", re.DOTALL)
+_RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
+_ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
+_NOT_READ = ("SyntaxError", "IndentationError", "TabError")
+_NONE = "'NoneType'"
+#: For people who do not know the kernel's words.
+_SIGNALS = {
+    "SIGABRT": "a library gave up on a value that it cannot take",
+    "SIGSEGV": "it reached into memory that is not its own",
+    "SIGXCPU": "it used more processor time than a run may",
+    "SIGXFSZ": "it wrote a larger file than a run may",
+    "SIGKILL": "somebody killed it, or it took too much",
+}
+
+
+def unreadable(case: Case) -> Diagnosis | None:
+    """Python cannot read the file: its encoding, or its syntax."""
+    raised = case.raised
+    if raised is None:
+        return None
+    text = told(raised.text)
+    if "null bytes" in text and raised.type in (*_NOT_READ, "ValueError"):
+        cause = f"Python cannot read your file{line(raised.place)}: it holds NUL bytes, as text "
+        return _saved_wrongly(f"{cause}in UTF-16 does.", raised)
+    if raised.type in (*_NOT_READ, "UnicodeDecodeError") and any(e in text for e in _ENCODING):
+        if raised.type == "UnicodeDecodeError" and case.conduct.ends:
+            return None  # it read something else while it ran
+        cause = f"Python cannot read your file{line(raised.place)}: it is not UTF-8 text"
+        return _saved_wrongly(f"{cause} ({text}).", raised)
+    if raised.type in _NOT_READ:
+        cause = f"Python cannot read your file: {raised.type}: {text}{code(raised.place)}."
+        help_ = (
+            "Mend that line, or the one above it: a bracket, quote or colon that is missing is "
+            "noticed only where something else begins."
+        )
+        return Diagnosis("unreadable", cause, help_, place=raised.place)
+    return None
+
+
+def _saved_wrongly(cause: str, raised: Raised) -> Diagnosis:
+    return Diagnosis(
+        "unreadable",
+        cause,
+        "Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'.",
+        place=raised.place,
+    )
+
+
+def not_importable(case: Case) -> Diagnosis | None:
+    """It imports what is not there."""
+    raised = case.raised
+    if raised is None or raised.type not in ("ModuleNotFoundError", "ImportError"):
+        return None
+    cause = f"Your program cannot import what it needs: {raised.type}: {told(raised.text)}"
+    help_ = (
+        "Compare the name with the one in the exercise or in ROS's documentation. A module of your "
+        "own has to be in what you hand in, beside the file or in its package."
+    )
+    return Diagnosis("not_importable", f"{cause}{code(raised.place)}.", help_, place=raised.place)
+
+
+def wrong_value(case: Case) -> Diagnosis | None:
+    """It gives a field of a message a value of the wrong type, or out of its range."""
+    raised = case.raised
+    found = _FIELD.search(raised.text) if raised is not None else None
+    if raised is None or found is None:
+        return None
+    what, help_ = _wanted(found["field"], told(found["what"]), raised)
+    cause = f"The field {found['field']} of a message must be {what}; it got something else"
+    return Diagnosis(
+        "wrong_value",
+        f"{cause}{at(_when(case, raised))}{code(raised.place)}.",
+        help_,
+        time_s=_when(case, raised),
+        place=raised.place,
+    )
+
+
+def _wanted(field: str, what: str, raised: Raised) -> tuple[str, str]:
+    """What a field must be, and how to make it so."""
+    text = raised.place.text if raised.place is not None else ""
+    literal = re.search(rf"\b{field}\s*=\s*([-+]?\d{{1,20}}(?:\.\d{{0,20}})?)(?![\w.])", text)
+    number = literal[1] if literal else ""
+    if limits := _RANGE.search(what):
+        low, high = limits.groups()
+        wrong = f"{number} is not. " if number else ""
+        return (
+            f"a whole number from {low} to {high}",
+            f"{wrong}Give it one from {low} to {high}: min() and max() keep what is calculated "
+            "within.",
+        )
+    if "'float'" in what:
+        instead = f"Write {number}.0 instead of {number}" if number else "Write 2.0 instead of 2"
+        return "a float", f"{instead}, and float(...) round what is calculated."
+    if "'int'" in what:
+        whole = number.partition(".")[0]
+        instead = f"Write {whole} instead of {number}" if number else "Write 255 instead of 255.0"
+        return "an int", f"{instead}, and int(...) round what is calculated."
+    if "sub message" in what:
+        kind = re.search(r"'(\w+)'", what)
+        name = kind[1] if kind else "message"
+        return f"a {name}", f"Set the parts of {field} one by one, as in msg.{field}.x = 2.0."
+    return what.rstrip("."), "`ros2 interface show TYPE` lists the fields of a message."
+
+
+def ended_itself(case: Case) -> Diagnosis | None:
+    """It left by sys.exit() with a text or a number."""
+    if case.run.outcome != "crashed":
+        return None
+    raised = case.raised
+    help_ = (
+        "Look for sys.exit(), exit() or a return code of main(): a node that is to go on stays in "
+        "rclpy.spin(node)."
+    )
+    if raised is not None and raised.type == "SystemExit":
+        when = _when(case, raised)
+        said = f": {told(raised.text)!r}" if raised.text else ""
+        cause = f"Your program ended itself{at(when)} with sys.exit(){said}{line(raised.place)}."
+        return Diagnosis("ended_itself", cause, help_, time_s=when, place=raised.place)
+    if raised is not None:
+        return None
+    last = next((x for x in reversed(case.recording.output[-2000:].splitlines()) if x.strip()), "")
+    said = f"; the last that it printed is: {told(last)!r}" if last else ""
+    cause = f"Your program ended with exit code {case.run.exit_code}, by no exception{said}."
+    return Diagnosis("ended_itself", cause, help_)
+
+
+def crashed(case: Case) -> Diagnosis | None:
+    """An exception that nobody caught."""
+    raised = case.raised
+    if case.run.outcome != "crashed" or raised is None:
+        return None
+    when, text = _when(case, raised), told(raised.text).rstrip(".")
+    error = f"{told(raised.type)}: {text}" if text else told(raised.type)
+    cause = f"Your node crashed{at(when)}: {error}{code(raised.place)}.{_limit(case)}"
+    return Diagnosis("crashed", cause, _mending(raised), time_s=when, place=raised.place)
+
+
+def misses_message(case: Case) -> bool:
+    """Whether it crashed because something was not there yet, as what a message brings."""
+    raised = case.raised
+    return raised is not None and (
+        _NONE in raised.text
+        or "NoneType" in raised.text
+        or (raised.type == "AttributeError" and "has no attribute" in raised.text)
+    )
+
+
+def _mending(raised: Raised) -> str:
+    whole = "The whole traceback is in output.txt."
+    if _NONE in raised.text or "NoneType" in raised.text:
+        return (
+            "Something there is still None: a message that has not come yet, or a function that "
+            f"returns nothing. Return early as long as it is None. {whole}"
+        )
+    if "has no attribute" in raised.text:
+        return (
+            "Compare the name; `ros2 interface show TYPE` lists the fields of a message. An "
+            "attribute of your own (self. ...) has to be set in __init__, before the first "
+            f"callback. {whole}"
+        )
+    if raised.place is None:
+        return f"None of its lines is in your own files. {whole}"
+    return f"Mend that line. {whole}"
+
+
+def killed(case: Case) -> Diagnosis | None:
+    """A signal ended it: from itself, from a library, from the kernel."""
+    run = case.run
+    if run.outcome != "killed":
+        return None
+    raised = case.raised
+    name = told(raised.type) if raised is not None else _signal(-(run.exit_code or 0))
+    when = None if raised is None else _when(case, raised)
+    place = None if raised is None else raised.place
+    why = _SIGNALS.get(name, "")
+    cause = f"Your program was killed{at(when)} by the signal {name}{code(place)}"
+    cause += f": {why}." if why else "."
+    return Diagnosis("killed", f"{cause}{_limit(case)}", _after(name), time_s=when, place=place)
+
+
+def _signal(number: int) -> str:
+    with suppress(ValueError):
+        return Signals(number).name
+    return str(number)
+
+
+def _after(signal: str) -> str:
+    if signal == "SIGABRT":
+        return (
+            "Look at the values that this line gives to a message: 2.0 for a float, 255 for an "
+            "int, and nothing beyond the range of its type."
+        )
+    if signal in ("SIGKILL", "SIGTERM"):
+        return "Look for os.kill() and for lists that grow without end; output.txt may tell more."
+    return "output.txt may tell more, and the remarks on the run below."
+
+
+def _limit(case: Case) -> str:
+    """A sentence of the run's remarks on what it was refused; '' for none."""
+    for flag in case.run.flags:
+        if flag.startswith("the node ended with "):
+            return f" {told(flag.partition(': ')[2]).capitalize()}."
+        if case.run.outcome == "killed" and flag.startswith("the node "):
+            return f" {told(flag).capitalize()}."
+    return ""
+
+
+def _when(case: Case, raised: Raised) -> float | None:
+    return raised.time_s if case.knows_when and raised is case.conduct.raised else None

@@ -1,0 +1,102 @@
+"""Puts the earliest cause first: asks one rule after another, each about one kind of mistake.
+
+The rules stand in the order in which things happen in the life of a program: Python reads it, it
+imports, it finds the others, it spins, it waits. A crash says by itself what it is, and comes
+before what may or may not have led to it; only one for want of a message waits for the question
+whether any could come. A rule is silent when it is not sure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Final
+
+from grader.diagnosis import connections, crash, standstill
+from grader.diagnosis.case import Case
+from grader.diagnosis.diagnosis import CHECK, Diagnosis
+from grader.exercise.verdict import Verdict
+from grader.recording.recording import Recordings
+from grader.text import one_line
+
+Rule = Callable[[Case], Diagnosis | None]
+#: What keeps a run from going on.
+RULES: Final[tuple[Rule, ...]] = (
+    crash.unreadable,
+    crash.not_importable,
+    crash.wrong_value,
+    connections.misses_what_it_hears,
+    crash.crashed,
+    crash.ended_itself,
+    crash.killed,
+    connections.waits_in_vain,
+    connections.publishes_to_nobody,
+    connections.hears_nobody,
+    connections.calls_nobody,
+    standstill.does_nothing,
+    standstill.stuck_in_callback,
+    standstill.stuck_in_call,
+    standstill.endless_loop,
+    standstill.never_spins,
+    standstill.ends_early,
+)
+#: What only disturbs it; asked when nothing keeps any run from going on.
+DISTURBING: Final[tuple[Rule, ...]] = (standstill.slow_callback,)
+
+
+def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagnosis | None:
+    """The earliest cause of lost points; it changes none of them.
+
+    Args:
+        recordings: of all runs; what is wrong in the nominal one comes before the others.
+        verdicts: of the exercise's checks; without any, only what the runs show is looked at.
+
+    Returns: None where no point is lost, or no verdict is known and the runs show nothing.
+    """
+    if verdicts and all(verdict.passed for verdict in verdicts):
+        return None
+    cases = [Case(recording) for recording in recordings]
+    for rules in (RULES, DISTURBING):
+        for number, case in enumerate(cases):
+            found = _ask(rules, case)
+            if found is not None:
+                return _in_run(found, number)
+    return _of_check(verdicts)
+
+
+def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
+    return next((found for rule in rules if (found := rule(case)) is not None), None)
+
+
+def _in_run(found: Diagnosis, number: int) -> Diagnosis:
+    if number == 0:
+        return found
+    return replace(found, run=number, cause=f"In varied run {number}: {found.cause}")
+
+
+def _of_check(verdicts: Sequence[Verdict]) -> Diagnosis | None:
+    """The finding of the check that costs most, with those that wait for it."""
+    failed = [verdict for verdict in verdicts if verdict.status == "failed"]
+    failed = failed or [verdict for verdict in verdicts if not verdict.passed]
+    if not failed:
+        return None
+    worst = max(failed, key=lambda verdict: _cost(verdict, verdicts))  # the first of equals
+    first = worst.evidence[0] if worst.evidence else None
+    return Diagnosis(
+        CHECK,
+        one_line(worst.rationale) or f"{worst.title}: not as asked for.",
+        one_line(worst.help),
+        run=first.run if first is not None else 0,
+        time_s=first.time_s if first is not None else None,
+        check=worst.check,
+    )
+
+
+def _cost(failed: Verdict, verdicts: Sequence[Verdict]) -> float:
+    """What it costs, and all that is not judged because of it [points]."""
+    lost = {failed.check: failed.max_score - failed.score}
+    for _ in verdicts:  # one that waits may be waited for
+        for verdict in verdicts:
+            if verdict.status == "not_judged" and not lost.keys().isdisjoint(verdict.depends_on):
+                lost.setdefault(verdict.check, verdict.max_score)
+    return sum(lost.values())

@@ -1,0 +1,159 @@
+"""Rules about programs that go no further, or end before anything happens."""
+
+from __future__ import annotations
+
+from grader.diagnosis.case import Case, at, code, line, told
+from grader.diagnosis.diagnosis import Diagnosis
+
+#: A program that comes to its end by itself before this has hardly spun [s].
+_SOON_S = 5.0
+#: A callback that lets so much time pass, so often, has no good reason.
+_SLOW_S, _SLOW_TIMES = 0.04, 3
+#: What a run's remarks say of a program that computes without end.
+_WITHOUT_WAITING = "without waiting for ROS"
+_SPIN = (
+    "Make the node and then call rclpy.spin(node): it hands out messages and timers until the node "
+    "ends."
+)
+
+
+def stuck_in_callback(case: Case) -> Diagnosis | None:
+    """It waits in a callback for what only another callback could bring."""
+    stop = case.stop
+    if stop is None or stop.kind != "callback":
+        return None
+    where = f" in {told(stop.place.function)}()" if stop.place and stop.place.function else ""
+    cause = (
+        f"Your node is stuck{at(stop.time_s)} in a callback{where}{code(stop.place)}: it waits "
+        f"there{_for(stop.call)}, and while it waits no answer, message or timer is handed out."
+    )
+    help_ = (
+        "Do not wait in a callback: use call_async() and add_done_callback(), or an `async def` "
+        "callback that awaits the future; a timer instead of a sleep."
+    )
+    return Diagnosis("stuck_in_callback", cause, help_, time_s=stop.time_s, place=stop.place)
+
+
+def stuck_in_call(case: Case) -> Diagnosis | None:
+    """It waits in a call while nobody spins."""
+    stop = case.stop
+    if stop is None or stop.kind != "call":
+        return None
+    cause = (
+        f"Your program is stuck{at(stop.time_s)}{code(stop.place)}: it waits"
+        f"{_for(stop.call)} while nobody spins the node, so nothing can reach it."
+    )
+    if "Rate" in stop.call or "sleep" in stop.call:
+        help_ = (
+            "A Rate needs somebody who spins: use create_timer() with a callback and "
+            "rclpy.spin(node), or spin in another thread."
+        )
+    else:
+        help_ = (
+            "Use call_async() and rclpy.spin_until_future_complete(node, future), or spin in "
+            "another thread."
+        )
+    return Diagnosis("stuck_in_call", cause, help_, time_s=stop.time_s, place=stop.place)
+
+
+def endless_loop(case: Case) -> Diagnosis | None:
+    """It computes without end."""
+    stop = case.stop
+    help_ = (
+        "Nothing else of your node can happen while a loop runs. Let a timer (create_timer) call "
+        "you again and again, or call rclpy.spin_once(node) in the loop."
+    )
+    if stop is not None and stop.kind == "loop":
+        where = f" in {told(stop.place.function)}()" if stop.place and stop.place.function else ""
+        cause = (
+            f"Your program never comes out of a loop{where}{code(stop.place)}: it went on "
+            f"computing from {stop.time_s:.1f} s on, without waiting for anything."
+        )
+        return Diagnosis("endless_loop", cause, help_, time_s=stop.time_s, place=stop.place)
+    if case.run.outcome == "stalled" and any(_WITHOUT_WAITING in f for f in case.run.flags):
+        cause = (
+            "Your program computes without end: it used processor time, and never waited for ROS."
+        )
+        return Diagnosis("endless_loop", cause, help_)
+    return None
+
+
+def does_nothing(case: Case) -> Diagnosis | None:
+    """It came to its end without having made anything of ROS."""
+    conduct = case.conduct
+    if not conduct.is_told or conduct.ends or conduct.returned_s is None:
+        return None
+    if conduct.spun_s is not None or conduct.raised is not None:
+        return None
+    cause = (
+        f"Your program came to its end{at(conduct.returned_s)} without a publisher, a subscription "
+        "or a client: is main() ever called?"
+    )
+    help_ = "Let the file end with:  if __name__ == '__main__': main()"
+    return Diagnosis("does_nothing", cause, help_, time_s=conduct.returned_s)
+
+
+def never_spins(case: Case) -> Diagnosis | None:
+    """Nobody ever spins its node, and something of it waits for that."""
+    conduct = case.conduct
+    if not conduct.is_told or conduct.spun_s is not None or conduct.raised is not None:
+        return None
+    deaf = [end for end in conduct.ends if end.kind == "subscription" and not end.used]
+    sends = [end for end in conduct.ends if end.kind == "publisher" and end.used]
+    if not conduct.ends or (sends and not deaf):
+        return None
+    what = "its subscriptions and timers are never called"
+    place = deaf[0].place if deaf else None
+    if conduct.returned_s is None:
+        cause = f"Your node never spins, so {what}{line(place)}."
+    else:
+        cause = (
+            f"Your program came to its end{at(conduct.returned_s)} and never spun its node, so "
+            f"{what}."
+        )
+    return Diagnosis("never_spins", cause, _SPIN, time_s=conduct.returned_s)
+
+
+def ends_early(case: Case) -> Diagnosis | None:
+    """It came to its end when it had hardly begun."""
+    conduct = case.conduct
+    if not conduct.is_told or conduct.returned_s is None or conduct.returned_s > _SOON_S:
+        return None
+    if conduct.spun_s is None or case.run.outcome not in ("exited", "finished"):
+        return None
+    sent = sum(end.used for end in conduct.ends if end.kind == "publisher")
+    what = {0: "it had published nothing", 1: "it had published one message"}.get(
+        sent, f"it had published {sent} messages"
+    )
+    cause = f"Your program came to its end by itself{at(conduct.returned_s)}; until then {what}."
+    help_ = (
+        "rclpy.spin_once(node) handles one message and returns: rclpy.spin(node) goes on. If it "
+        "does spin, look for what ends it: shutdown(), sys.exit(), a loop that is left too soon."
+    )
+    return Diagnosis("ends_early", cause, help_, time_s=conduct.returned_s)
+
+
+def slow_callback(case: Case) -> Diagnosis | None:
+    """A callback lets time pass, again and again."""
+    slow = max(
+        (s for s in case.conduct.slow if s.longest_s >= _SLOW_S and s.times >= _SLOW_TIMES),
+        key=lambda s: s.longest_s * s.times,
+        default=None,
+    )
+    if slow is None:
+        return None
+    who = f"{told(slow.place.function)}()" if slow.place.function else "A callback"
+    cause = (
+        f"{who} lets up to {slow.longest_s:.2g} s pass each time ({slow.times} times)"
+        f"{code(slow.place)}, and meanwhile your node hears no message and no timer."
+    )
+    help_ = (
+        "Do not sleep or wait in a callback: do what is to be done now, and return. The next "
+        "message comes by itself, and create_timer() calls you later."
+    )
+    return Diagnosis("slow_callback", cause, help_, place=slow.place)
+
+
+def _for(call: str) -> str:
+    """' in Client.call()'; '' where that is not known."""
+    return f" in {told(call)}()" if call else ""
