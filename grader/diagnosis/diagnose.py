@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Final
 
 from grader.diagnosis import connections, crash, standstill
-from grader.diagnosis.case import Case
+from grader.diagnosis.case import Case, told
 from grader.diagnosis.diagnosis import CHECK, Diagnosis
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recordings
@@ -26,8 +26,8 @@ RULES: Final[tuple[Rule, ...]] = (
     crash.not_importable,
     crash.wrong_value,
     connections.misses_what_it_hears,
-    crash.crashed,
     crash.ended_itself,
+    crash.crashed,
     crash.killed,
     connections.waits_in_vain,
     connections.publishes_to_nobody,
@@ -69,9 +69,15 @@ def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
 
 
 def _in_run(found: Diagnosis, number: int) -> Diagnosis:
-    if number == 0:
-        return found
-    return replace(found, run=number, cause=f"In varied run {number}: {found.cause}")
+    """What was found in a run, fit to be shown."""
+    place = found.place
+    if place is not None:
+        place = replace(
+            place, file=told(place.file), function=told(place.function), text=told(place.text)
+        )
+    where = f"In varied run {number}: " if number else ""
+    cause, help_ = one_line(f"{where}{found.cause}"), one_line(found.help)
+    return replace(found, run=number, cause=cause, help=help_, place=place)
 
 
 def _of_check(verdicts: Sequence[Verdict]) -> Diagnosis | None:

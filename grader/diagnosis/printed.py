@@ -15,7 +15,8 @@ _LOOKED_AT = 65_536
 # blanks of one line only: lines of nothing would be gone through again from each of them
 _FRAME = re.compile(
     r'^[^\S\n]*File "(?P<file>[^"\n]{1,1000})", line (?P<line>\d{1,9})'
-    r"(?:,? in (?P<function>[^\n]{1,200}))?[^\S\n]*\n?(?P<text>[^\n]{0,1000})",
+    r"(?:,? in (?P<function>[^\n]{1,200}))?"
+    r'(?:\n[^\S\n]{3,40}(?!\s|File ")(?P<text>[^\n]{0,1000}))?',
     re.MULTILINE,
 )
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]{0,200})(?:: (?P<text>.*))?$")
@@ -76,7 +77,6 @@ def _own_place(frames: list[re.Match[str]]) -> Place | None:
     frame = next(own, None)
     if frame is None:
         return None
-    function, text = (frame["function"] or "").strip(), frame["text"].strip()
-    is_code = not text.startswith(("File ", "^", "Traceback"))
+    function, text = (frame["function"] or "").strip(), (frame["text"] or "").strip()
     function = "" if function.startswith("<") else function
-    return Place(PurePath(frame["file"]).name, int(frame["line"]), function, text * is_code)
+    return Place(PurePath(frame["file"]).name, int(frame["line"]), function, text)

@@ -70,8 +70,8 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
         # GitLab shows the class as the suite.
         {"classname": report.exercise, "name": f"{verdict.check}: {verdict.title}", "time": "0"},
     )
-    message = {"message": text.one_line(verdict.rationale)}
     lines = report.led_lines(verdict)
+    message = {"message": text.one_line(lines[0] if lines else "")}
     if verdict.status == "failed":
         failure = ElementTree.SubElement(case, "failure", {**message, "type": "failed"})
         failure.text = "\n".join(lines)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
@@ -119,6 +120,19 @@ def verdicts(draw):
 
 
 @st.composite
+def diagnoses(draw):
+    found = {"key": draw(TEXTS), "cause": draw(TEXTS), "help": draw(TEXTS), "run": 0}
+    if draw(st.booleans()):
+        found["time_s"] = draw(st.floats(0, 1000))
+    if draw(st.booleans()):
+        place = {"file": draw(TEXTS), "line": 39, "function": draw(TEXTS), "text": draw(TEXTS)}
+        found["place"] = place
+    if check := draw(TEXTS):
+        found["check"] = check
+    return found
+
+
+@st.composite
 def any_results(draw):
     flags = draw(st.lists(TEXTS, max_size=2))
     facts = samples.run(
@@ -131,7 +145,8 @@ def any_results(draw):
     made = samples.result(
         *listed, submission=draw(TEXTS), exercise=draw(TEXTS), run=facts, varied_runs=[facts]
     )
-    return made
+    diagnosis = draw(st.none() | diagnoses())
+    return made if diagnosis is None else made | {"diagnosis": diagnosis}
 
 
 @pytest.fixture
@@ -184,11 +199,24 @@ def test_what_is_not_judged_never_looks_passed(name, classroom):
 def test_every_format_says_what_was_seen_and_what_to_look_at(name, classroom):
     content = render(name, [samples.report()])
     if name == "github-autograding":
-        import base64
-
         content = base64.b64decode(content).decode()
     for words in ("Rationale of draws.", "Help for draws.", "20.00 s", "(5.50, 7.25)", "a gap"):
         assert words in content.replace("\\", ""), words
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_says_the_cause_before_anything_that_was_seen(name, classroom):
+    content = render(name, [samples.report(diagnosis=samples.diagnosis())])
+    if name == "github-autograding":
+        content = base64.b64decode(content).decode()
+    if name == "html":
+        content = content.partition("<body>")[2]
+    content = content.replace("\\", "")
+    cause = content.index("You crashed at 6.0 s (drive.py, line 39).")
+    assert cause < content.find("Rationale of draws.") or name == "csv"
+    if name != "csv":
+        assert cause < content.index("Mend that line.") < content.find("Rationale of draws.")
+        assert "drive.py, line 39, in on_pose: 1 / 0" in content
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -27,6 +27,14 @@ def test_the_first_thing_to_mend_is_the_first_failed_check():
     assert samples.report().headline == "Rationale of draws."
 
 
+def test_a_diagnosis_comes_first_and_leads_to_the_check_that_it_repeats():
+    report = samples.report(diagnosis=samples.diagnosis(check="stops"))
+    assert report.headline == "You crashed at 6.0 s (drive.py, line 39)."
+    assert report.first_to_mend.check == "stops"
+    led = [report.led_lines(verdict)[0] for verdict in report.verdicts]
+    assert [line.startswith("First to mend: ") for line in led] == [False, True, False, False]
+
+
 def test_without_a_failed_check_it_is_the_first_that_was_not_judged():
     report = samples.report(verdict("a"), verdict("b", "not_judged", 0))
     assert report.first_to_mend.check == "b"

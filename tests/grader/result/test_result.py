@@ -7,9 +7,11 @@ import pytest
 from hypothesis import given, settings
 
 from grader import reports
+from grader.diagnosis.diagnosis import Diagnosis
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Evidence, Verdict
+from grader.recording.conduct import Place
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings, Run, Start
 from grader.result.provenance import Judged, Origin
@@ -53,9 +55,18 @@ def test_everything_comes_back_as_it_was(tmp_path):
     verdict = Verdict("a", "A", "failed", 1.5, 4.0, "seen", "help", seen, ("b",))
     run = RunSummary(exit_code=-9, outcome="killed", ticks=3, flags=("x",), seed=5)
     varied = replace(run, seed=None, start=Start(1.0, 2.0, 3.0))
-    result = Result("e", "größe 🐢", 1.5, 4.0, (verdict,), run, (varied,), {"canvas": "c.png"})
+    cause = Diagnosis("k", "cause", "help", 1, 0.0, Place("d.py", 3, "f", "x = 1"), "a")
+    parts = ((verdict,), run, (varied,), {"canvas": "c.png"}, cause)
+    result = Result("e", "größe 🐢", 1.5, 4.0, *parts)
     result.write(tmp_path / "new" / "result.json")
     assert Result.read(tmp_path / "new" / "result.json") == result
+
+
+def test_an_older_result_has_no_diagnosis_and_one_of_another_form_is_refused():
+    assert Result.from_json(samples.result()).diagnosis is None
+    for wrong in ({"cause": 3}, {"run": -1}, {"place": {"file": "a"}}, {"time_s": -1.0}, {"x": 1}):
+        with pytest.raises(ValueError, match="is no result"):
+            Result.from_json(samples.result(diagnosis=samples.diagnosis(**wrong)))
 
 
 def test_a_path_may_be_given_as_a_text(tmp_path):

@@ -1,0 +1,41 @@
+"""Recordings of runs that never were, for one rule each."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from grader.recording.conduct import Conduct, End, Place
+from grader.recording.recording import PublishedTopic, Recording, Run
+from tests.grader.driving import Spiral, drive
+
+LINE = Place("drive.py", 39, "on_pose", "self.step(2)")
+POSE, TWIST, SET_PEN = "turtlesim/msg/Pose", "geometry_msgs/msg/Twist", "turtlesim/srv/SetPen"
+#: What a right controller has.
+VELOCITY = End("publisher", "/turtle1/cmd_vel", TWIST, True, 100)
+POSES = End("subscription", "/turtle1/pose", POSE, True, 100)
+PEN = End("client", "/turtle1/set_pen", SET_PEN, True, 10)
+
+
+def said(*ends: End, **more: Any) -> Conduct:
+    """What a program has told: the ends of a right one, if none are given, which it spins."""
+    parts: dict[str, Any] = {"ends": ends or (VELOCITY, POSES, PEN), "spun_s": 0.2}
+    return Conduct(is_told=True, **(parts | more))
+
+
+def run_of(
+    conduct: Conduct | None = None,
+    outcome: Any = "finished",
+    *,
+    output: str = "",
+    topics: tuple[PublishedTopic, ...] = (),
+    exit_code: int | None = None,
+    flags: tuple[str, ...] = (),
+) -> Recording:
+    run = Run("virtual", outcome, exit_code, 2, 0.032, flags=flags, interfaces="turtlesim")
+    return Recording(_trace(), run, topics, output, conduct=conduct or Conduct())
+
+
+@cache
+def _trace() -> Any:
+    return drive(Spiral(), ticks=2).trace

@@ -1,0 +1,111 @@
+"""Which cause comes first, and what is said where no run shows one."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.diagnosis.diagnose import diagnose
+from grader.diagnosis.diagnosis import CHECK
+from grader.exercise.verdict import Evidence, Verdict
+from grader.recording.conduct import Conduct, Place, Raised, Slow, Stop
+from grader.recording.recording import Recordings
+from grader.text import one_line
+from tests.grader.diagnosis.cases import LINE, run_of, said
+
+CRASH = run_of(said(raised=Raised("KeyError", "4", 6.0, LINE)), "crashed", exit_code=1)
+SLOW = run_of(said(slow=(Slow(LINE, 0.2, 50),)))
+RIGHT = run_of(said())
+
+
+def verdict(check, status="failed", score=0.0, most=10.0, **more):
+    return Verdict(check, check, status, score, most, f"{check} was seen.", f"{check} help", **more)
+
+
+def test_there_is_none_at_full_marks():
+    assert diagnose(Recordings(CRASH), [verdict("a", "passed", 10.0)]) is None
+
+
+def test_a_crash_in_a_varied_run_comes_before_what_only_disturbs_the_nominal_one():
+    found = diagnose(Recordings(SLOW, (RIGHT, CRASH)), [verdict("a")])
+    assert (found.key, found.run, found.time_s, found.place) == ("crashed", 2, 6.0, LINE)
+    assert found.cause.startswith("In varied run 2: Your node crashed at 6.0 s: KeyError: 4")
+
+
+def test_the_nominal_run_comes_before_the_varied_ones():
+    assert diagnose(Recordings(CRASH, (CRASH,)), [verdict("a")]).run == 0
+
+
+def test_where_no_run_shows_a_cause_it_is_the_check_that_costs_most_with_all_that_wait_for_it():
+    seen = (Evidence(100, 1.6, 2.0, 3.0, "here", 1),)
+    verdicts = [
+        verdict("dear", "failed", 5.0, 30.0),
+        verdict("moves", most=10.0, evidence=seen),
+        verdict("waits", "not_judged", most=20.0, depends_on=("moves",)),
+    ]
+    found = diagnose(Recordings(RIGHT, (RIGHT,)), verdicts)
+    assert (found.key, found.check) == (CHECK, "moves")
+    assert (found.cause, found.help) == ("moves was seen.", "moves help")
+    assert (found.run, found.time_s) == (1, 1.6)
+
+
+def test_of_equally_dear_ones_it_is_the_first_and_of_none_failed_the_one_not_judged():
+    assert diagnose(Recordings(RIGHT), [verdict("a"), verdict("b")]).check == "a"
+    found = diagnose(Recordings(RIGHT), [verdict("a", "passed", 10.0), verdict("b", "not_judged")])
+    assert found.check == "b"
+
+
+HARD = ["\x1b[31m", "\u202e", "\n::error::x", "'NoneType'", "The 'x' field must be of type 'int'"]
+HARD += ["The '' field", "SyntaxError", "AttributeError", "has no attribute", "/", "//", "a" * 300]
+TEXTS = st.text(max_size=20) | st.sampled_from(HARD)
+PLACES = st.none() | st.builds(Place, TEXTS, st.integers(0, 2**53), TEXTS, TEXTS)
+FORMS = {
+    "Place | None": PLACES,
+    "Place": PLACES.filter(bool),
+    "str": TEXTS | st.sampled_from(["/turtle1/cmd_vel", "/pose", "a/msg/B", "turtlesim/msg/Pose"]),
+    "int": st.integers(0, 100),
+    "bool": st.booleans(),
+    "float": st.floats(0, 1e9),
+    "float | None": st.none() | st.floats(0, 1e9),
+    "EndKind": st.sampled_from(["subscription", "publisher", "client", "action_client"]),
+    "StopKind": st.sampled_from(["callback", "call", "loop"]),
+}
+
+
+def anything(kind):
+    return st.builds(kind, **{field.name: form(field.type) for field in fields(kind)})
+
+
+def form(name):
+    from grader.recording import conduct
+
+    if name.startswith("tuple["):
+        return st.lists(anything(getattr(conduct, name[6:-6])), max_size=3).map(tuple)
+    if name in FORMS:
+        return FORMS[name]
+    return st.none() | anything(getattr(conduct, name.removesuffix(" | None")))
+
+
+@settings(deadline=None, max_examples=200)
+@given(
+    conduct=anything(Conduct),
+    outcome=st.sampled_from(["finished", "exited", "crashed", "stalled", "time_limit", "killed"]),
+    code=st.none() | st.integers(-70, 255),
+    output=TEXTS,
+)
+def test_whatever_a_program_tells_the_diagnosis_is_one_plain_line(conduct, outcome, code, output):
+    recording = run_of(conduct, outcome, exit_code=code, output=output)
+    found = diagnose(Recordings(recording))
+    if found is not None:
+        for text in (found.cause, found.help):
+            assert text
+            assert text == one_line(text)
+            assert not {"\x1b", "\u202e"} & set(text)
+            assert len(text) < 1500
+
+
+def test_the_stuck_place_of_a_stop_without_a_line_is_left_out():
+    found = diagnose(Recordings(run_of(said(stop=Stop("call", 1.0)), "stalled")))
+    assert found.cause.startswith("Your program is stuck at 1.0 s: it waits while nobody spins")

@@ -1,0 +1,255 @@
+"""One recording a cause: a rule names it, with its place, and is silent where nothing is sure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from grader.diagnosis.diagnose import diagnose
+from grader.recording.conduct import End, Place, Raised, Slow, Stop, Wait
+from grader.recording.recording import PublishedTopic, Recordings
+from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
+
+
+def end(kind, name, type_, used=1, is_met=False):
+    return End(kind, name, type_, is_met, used, LINE)
+
+
+def raising(type_, text="", place=LINE, **more):
+    return run_of(said(raised=Raised(type_, text, 6.0, place), **more), "crashed", exit_code=1)
+
+
+def field(said_, text):
+    return raising("AssertionError", said_, replace(LINE, text=text))
+
+
+TRACEBACK = """Traceback (most recent call last):
+  File "/home/ada/drive.py", line 50, in <module>
+    rclpy.spin(node)
+  File "/usr/lib/python3.11/site-packages/rclpy/publisher.py", line 70, in publish
+    self.__publisher.publish(msg)
+AttributeError: 'float' object has no attribute 'x'
+"""
+STUCK = """
+Your node is stuck here, at 1.25 s: it waits for something that can no longer happen.
+  File "/home/ada/drive.py", line 15, in on_timer
+    self.pen.call(request)
+  File "/usr/lib/python3.11/threading.py", line 629, in wait
+    waiter.acquire()
+This is a callback. While it waits, ...
+"""
+FATAL = """Fatal Python error: Aborted
+
+Current thread 0x00007f (most recent call first):
+  File "/x/site-packages/rclpy/client.py", line 150 in call_async
+  File "/home/ada/drive.py", line 31 in colour
+  File "/home/ada/drive.py", line 44 in <module>
+"""
+STAMPED = end("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped")
+NOT_A_POSE = end("subscription", "/pose", "geometry_msgs/msg/Pose", used=0)
+FLAG = "the node used 6 s of processor time without waiting for ROS"
+
+CAUSES = {
+    "an exception": (
+        raising("ZeroDivisionError", "division by zero"),
+        "crashed",
+        "Your node crashed at 6.0 s: ZeroDivisionError: division by zero "
+        "(drive.py, line 39: `self.step(2)`).",
+    ),
+    "an exception, known from the output alone": (
+        run_of(outcome="crashed", output=TRACEBACK),
+        "crashed",
+        "Your node crashed: AttributeError: 'float' object has no attribute 'x' "
+        "(drive.py, line 50: `rclpy.spin(node)`).",
+    ),
+    "a syntax error": (
+        raising("SyntaxError", "expected ':'", Place("drive.py", 12, "", "def drive(self)")),
+        "unreadable",
+        "Python cannot read your file: SyntaxError: expected ':' "
+        "(drive.py, line 12: `def drive(self)`).",
+    ),
+    "UTF-16": (
+        raising("SyntaxError", "source code string cannot contain null bytes", None),
+        "unreadable",
+        "Python cannot read your file: it holds NUL bytes, as text in UTF-16 does.",
+    ),
+    "an import": (
+        raising("ModuleNotFoundError", "No module named 'turtle_lib'"),
+        "not_importable",
+        "ModuleNotFoundError: No module named 'turtle_lib' (drive.py, line 39",
+    ),
+    "an int in a float field": (
+        field("The 'x' field must be of type 'float'", "twist.linear.x = 2"),
+        "wrong_value",
+        "The field x of a message must be a float; it got something else at 6.0 s "
+        "(drive.py, line 39: `twist.linear.x = 2`). Write 2.0 instead of 2",
+    ),
+    "a float in an int field": (
+        field("The 'r' field must be of type 'int'", "SetPen.Request(r=255.0, g=0)"),
+        "wrong_value",
+        "must be an int; .* Write 255 instead of 255.0",
+    ),
+    "256": (
+        field("The 'r' field must be an unsigned integer in [0, 255]", "request.r = 256"),
+        "wrong_value",
+        "The field r of a message must be a whole number from 0 to 255; .* 256 is not.",
+    ),
+    "None for want of a message": (
+        raising("AttributeError", "'NoneType' object has no attribute 'x'", ends=(NOT_A_POSE,)),
+        "hears_nobody",
+        "You subscribe to /pose, which nobody publishes; there is /turtle1/pose of type "
+        "turtlesim/msg/Pose",
+    ),
+    "exit with a text": (
+        raising("SystemExit", "bye"),
+        "ended_itself",
+        "Your program ended itself at 6.0 s with sys.exit(): 'bye' (drive.py, line 39).",
+    ),
+    "an exit code": (
+        run_of(outcome="crashed", exit_code=3, output="hello\nbye\n"),
+        "ended_itself",
+        "exit code 3, by no exception; the last that it printed is: 'bye'.",
+    ),
+    "an abort": (
+        run_of(outcome="killed", exit_code=-6, output=FATAL),
+        "killed",
+        "by the signal SIGABRT (drive.py, line 31): a library gave up on a value",
+    ),
+    "another type on the right topic": (
+        run_of(said(STAMPED, POSES), "time_limit"),
+        "publishes_to_nobody",
+        "You publish geometry_msgs/msg/TwistStamped on /turtle1/cmd_vel, but the turtle listens "
+        "to geometry_msgs/msg/Twist there (drive.py, line 39",
+    ),
+    "the same, known from the topics alone": (
+        run_of(topics=(PublishedTopic("/turtle1/cmd_vel", STAMPED.type),)),
+        "publishes_to_nobody",
+        "You publish geometry_msgs/msg/TwistStamped on /turtle1/cmd_vel, but",
+    ),
+    "another topic": (
+        run_of(said(end("publisher", "/turtle/cmd_vel", TWIST), POSES)),
+        "publishes_to_nobody",
+        "on /turtle/cmd_vel, where nobody listens; the turtle listens to /turtle1/cmd_vel",
+    ),
+    "a topic known by its type": (
+        run_of(said(end("publisher", "/speed", TWIST))),
+        "publishes_to_nobody",
+        "on /speed, where nobody listens; the turtle listens to /turtle1/cmd_vel",
+    ),
+    "a capital letter": (
+        run_of(said(VELOCITY, end("subscription", "/turtle1/Pose", POSE, 0))),
+        "hears_nobody",
+        "You subscribe to /turtle1/Pose, which nobody publishes; there is /turtle1/pose (drive",
+    ),
+    "the wrong Pose": (
+        run_of(
+            said(VELOCITY, end("subscription", "/turtle1/pose", "geometry_msgs/msg/Pose", 0, True))
+        ),
+        "hears_nobody",
+        "You subscribe to /turtle1/pose as geometry_msgs/msg/Pose, but turtlesim/msg/Pose is "
+        "published there, so no message reaches you",
+    ),
+    "a service waited for": (
+        run_of(said(waits=(Wait("/set_pen", PEN.type, 0.2, None, LINE),)), "stalled"),
+        "waits_in_vain",
+        "You wait for the service /set_pen from 0.2 s on, which nobody offers; there is "
+        "/turtle1/set_pen",
+    ),
+    "a service called": (
+        run_of(said(VELOCITY, POSES, end("client", "/set_pen", PEN.type))),
+        "calls_nobody",
+        "You call the service /set_pen, which nobody offers; there is /turtle1/set_pen",
+    ),
+    "a service of another type": (
+        run_of(said(end("client", "/turtle1/set_pen", "std_srvs/srv/Empty", is_met=True))),
+        "calls_nobody",
+        "You call the service /turtle1/set_pen as std_srvs/srv/Empty, but it is turtlesim/srv/Set",
+    ),
+    "a wait in a callback": (
+        run_of(said(stop=Stop("callback", 1.5, "Client.call", LINE)), "stalled"),
+        "stuck_in_callback",
+        "Your node is stuck at 1.5 s in a callback in on_pose() (drive.py, line 39: .* use "
+        "call_async()",
+    ),
+    "the same, known from the output alone": (
+        run_of(outcome="stalled", output=STUCK),
+        "stuck_in_callback",
+        "in on_timer() (drive.py, line 15: `self.pen.call(request)`)",
+    ),
+    "a rate that nobody spins": (
+        run_of(said(stop=Stop("call", 1.5, "Rate.sleep", LINE), spun_s=None), "stalled"),
+        "stuck_in_call",
+        "it waits in Rate.sleep() while nobody spins the node, .* A Rate needs somebody who spins",
+    ),
+    "an endless loop": (
+        run_of(said(stop=Stop("loop", 0.5, "", replace(LINE, text="while True:"))), "stalled"),
+        "endless_loop",
+        "never comes out of a loop in on_pose() (drive.py, line 39: `while True:`)",
+    ),
+    "an endless loop somewhere": (
+        run_of(said(), "stalled", flags=(FLAG,)),
+        "endless_loop",
+        "computes without end",
+    ),
+    "main is never called": (
+        run_of(replace(said(spun_s=None, returned_s=0.1), ends=()), "exited"),
+        "does_nothing",
+        "came to its end at 0.1 s without a publisher, .* is main() ever called?",
+    ),
+    "no spin": (
+        run_of(said(replace(VELOCITY, used=0), spun_s=None, returned_s=0.5), "exited"),
+        "never_spins",
+        "Your program came to its end at 0.5 s and never spun its node, .* rclpy.spin(node)",
+    ),
+    "one spin": (
+        run_of(said(replace(VELOCITY, used=1), POSES, returned_s=0.6), "exited"),
+        "ends_early",
+        "came to its end by itself at 0.6 s; until then it had published one message. "
+        "rclpy.spin_once(node) handles one message and returns",
+    ),
+    "a sleep in a callback": (
+        run_of(said(slow=(Slow(replace(LINE, text="time.sleep(0.2)"), 0.2, 50),)), "time_limit"),
+        "slow_callback",
+        "on_pose() lets up to 0.2 s pass each time (50 times) (drive.py, line 39: "
+        "`time.sleep(0.2)`)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CAUSES)
+def test_the_cause_is_named_with_its_place_and_with_what_to_do(name):
+    recording, key, words = CAUSES[name]
+    found = diagnose(Recordings(recording))
+    assert found is not None
+    assert found.key == key
+    whole = f"{found.cause} {found.help}"
+    first, *rest = words.split(" .* ")
+    assert first.strip() in whole
+    assert all(part in whole for part in rest), whole
+    assert found.help
+    assert found.run == 0
+
+
+SILENT = {
+    "a right program": run_of(said()),
+    "nothing is told": run_of(),
+    "the right topic as well": run_of(said(VELOCITY, end("publisher", "/turtle2/cmd_vel", TWIST))),
+    "a topic of its own": run_of(
+        said(end("publisher", "/my_pose", POSE), end("subscription", "/my_pose", POSE))
+    ),
+    "something that nobody can guess": run_of(said(VELOCITY, end("client", "/go", "a/srv/B"))),
+    "somebody else is there": run_of(
+        said(VELOCITY, end("subscription", "/poses", POSE, is_met=True))
+    ),
+    "a wait that has ended": run_of(said(waits=(Wait("/turtle1/set_pen", PEN.type, 0, 3.0),))),
+    "a last pause": run_of(said(slow=(Slow(LINE, 2.0, 1),))),
+    "no spin, and none is needed": run_of(said(VELOCITY, spun_s=None, returned_s=40.0)),
+    "the end of a long run": run_of(said(returned_s=40.0)),
+    "a program in another language": run_of(outcome="exited"),
+}
+
+
+@pytest.mark.parametrize("name", SILENT)
+def test_a_rule_that_is_not_sure_is_silent(name):
+    assert diagnose(Recordings(SILENT[name])) is None
