@@ -21,6 +21,8 @@ OPPOSITE: dict[EndKind, EndpointKind] = {
     "action_client": "action",
 }
 _LONGEST = 200
+#: Shown as 0.0 [s].
+_AT_ONCE_S = 0.05
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,14 @@ class Case:
         if self.conduct.is_told and self.conduct.stop is not None:
             return self.conduct.stop
         return printed.stuck(self.recording.output) if self.run.outcome == "stalled" else None
+
+    @property
+    def ended_s(self) -> float | None:
+        """When the program came to its end by itself, without an error; None if it did not."""
+        conduct = self.conduct
+        if conduct.is_told and conduct.raised is not None and self.run.outcome == "exited":
+            return conduct.raised.time_s  # sys.exit()
+        return conduct.returned_s if conduct.is_told else None
 
     @property
     def knows_when(self) -> bool:
@@ -95,13 +105,24 @@ def line(place: Place | None) -> str:
     return f" ({told(place.file)}, line {place.line})" if place is not None else ""
 
 
-def code(place: Place | None) -> str:
-    """' (drive.py, line 39: `time.sleep(0.2)`)'; '' for no place."""
-    if place is None or not place.text:
-        return line(place)
-    return f" ({told(place.file)}, line {place.line}: `{clip(told(place.text), 80)}`)"
+def function(place: Place | None) -> str:
+    """'on_pose()'; '' for no function."""
+    name = told(place.function).rpartition(".")[2] if place is not None else ""
+    return f"{name}()" if name else ""
 
 
 def at(time_s: float | None) -> str:
     """' at 6.0 s'; '' for no time."""
-    return "" if time_s is None else f" at {time_s:.1f} s"
+    if time_s is None:
+        return ""
+    return f" at {time_s:.1f} s" if time_s >= _AT_ONCE_S else " at its start"
+
+
+def after(time_s: float) -> str:
+    """'after 6.0 s'."""
+    return f"after {time_s:.1f} s" if time_s >= _AT_ONCE_S else "at once"
+
+
+def since(time_s: float) -> str:
+    """' from 1.5 s on'."""
+    return f"{at(time_s).replace(' at ', ' from ', 1)} on"

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from difflib import SequenceMatcher
 
-from grader.diagnosis.case import OPPOSITE, Case, code, told
+from grader.diagnosis.case import OPPOSITE, Case, line, since, told
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.recording.conduct import End, EndKind
@@ -28,7 +28,8 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
             continue
         there = [e for e in case.scene_has if e.kind in ("service", "action")]
         kind: EndKind = "action_client" if "/action/" in wait.type else "client"
-        near = nearest(End(kind, wait.name, wait.type, False, 0), case)
+        end = End(kind, wait.name, wait.type, False, 0)
+        near = nearest(end, case)
         what = "action" if kind == "action_client" else "service"
         if near is not None and near.name == wait.name:
             if near.type == wait.type:
@@ -42,9 +43,9 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
             rest = ", which nobody offers"
         return Diagnosis(
             "waits_in_vain",
-            f"You wait for the {what} {told(wait.name)} from {wait.since_s:.1f} s on{rest}"
-            f"{code(wait.place)}.",
-            _named(near) if near else "Compare the name with `ros2 service list`.",
+            f"You wait for the {what} {told(wait.name)}{since(wait.since_s)}{rest}"
+            f"{line(wait.place)}.",
+            _mending(end, near) if near else "Compare the name with `ros2 service list`.",
             time_s=wait.since_s,
             place=wait.place,
         )
@@ -120,8 +121,8 @@ def _first(
             continue
         if end.name != near.name and (end.is_met or _meets_itself(case, end)):
             continue
-        cause = f"{told_of(end, near)}{code(end.place)}."
-        return Diagnosis(key, cause, _named(near), place=end.place)
+        cause = f"{told_of(end, near)}{line(end.place)}."
+        return Diagnosis(key, cause, _mending(end, near), place=end.place)
     return None
 
 
@@ -166,6 +167,12 @@ def _unlike(end: End, near: Endpoint) -> str:
     return "" if end.type == near.type else f" of type {near.type}"
 
 
-def _named(near: Endpoint) -> str:
+def _mending(end: End, near: Endpoint) -> str:
+    """What to write instead."""
     package, kind, name = near.type.split("/")
-    return f"Write '{near.name}', with the type of `from {package}.{kind} import {name}`."
+    imported = f"`from {package}.{kind} import {name}`"
+    if end.type == near.type:
+        return f"Write '{near.name}' there."
+    if end.name == near.name:
+        return f"Make it with {name}: {imported}."
+    return f"Write '{near.name}' there, and make it with {name}: {imported}."

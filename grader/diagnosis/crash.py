@@ -6,7 +6,7 @@ import re
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis.case import Case, at, code, line, told
+from grader.diagnosis.case import Case, at, line, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.recording.conduct import Raised
 
@@ -14,6 +14,11 @@ from grader.recording.conduct import Raised
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>.{1,200})", re.DOTALL)
 _RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
 _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
+#: What Python adds to some texts, and what is said in other words here.
+_PLACE, _PATH = (
+    re.compile(r" \([^()]*, line \d+\)$"),
+    re.compile(r" \((/[^()]*|unknown location)\)$"),
+)
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 _NONE = "'NoneType'"
 #: For people who do not know the kernel's words.
@@ -41,7 +46,8 @@ def unreadable(case: Case) -> Diagnosis | None:
         cause = f"Python cannot read your file{line(raised.place)}: it is not UTF-8 text"
         return _saved_wrongly(f"{cause} ({text}).", raised)
     if raised.type in _NOT_READ:
-        cause = f"Python cannot read your file: {raised.type}: {text}{code(raised.place)}."
+        text = _PLACE.sub("", text)
+        cause = f"Python cannot read your file: {raised.type}: {text}{line(raised.place)}."
         help_ = (
             "Mend that line, or the one above it: a bracket, quote or colon that is missing is "
             "noticed only where something else begins."
@@ -64,12 +70,13 @@ def not_importable(case: Case) -> Diagnosis | None:
     raised = case.raised
     if raised is None or raised.type not in ("ModuleNotFoundError", "ImportError"):
         return None
-    cause = f"Your program cannot import what it needs: {raised.type}: {told(raised.text)}"
+    text = _PATH.sub("", told(raised.text))
+    cause = f"Your program cannot import what it needs: {raised.type}: {text}"
     help_ = (
         "Compare the name with the one in the exercise or in ROS's documentation. A module of your "
         "own has to be in what you hand in, beside the file or in its package."
     )
-    return Diagnosis("not_importable", f"{cause}{code(raised.place)}.", help_, place=raised.place)
+    return Diagnosis("not_importable", f"{cause}{line(raised.place)}.", help_, place=raised.place)
 
 
 def wrong_value(case: Case) -> Diagnosis | None:
@@ -82,7 +89,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
     cause = f"The field {found['field']} of a message must be {what}; it got something else"
     return Diagnosis(
         "wrong_value",
-        f"{cause}{at(_when(case, raised))}{code(raised.place)}.",
+        f"{cause}{at(_when(case, raised))}{line(raised.place)}.",
         help_,
         time_s=_when(case, raised),
         place=raised.place,
@@ -127,8 +134,9 @@ def ended_itself(case: Case) -> Diagnosis | None:
     )
     if raised is not None and raised.type == "SystemExit":
         when = _when(case, raised)
-        said = f": {told(raised.text)!r}" if raised.text else ""
-        cause = f"Your program ended itself{at(when)} with sys.exit(){said}{line(raised.place)}."
+        said = told(raised.text)
+        value = said if said.isdecimal() else repr(said)
+        cause = f"Your program ended itself{at(when)} by sys.exit({value}){line(raised.place)}."
         return Diagnosis("ended_itself", cause, help_, time_s=when, place=raised.place)
     if raised is not None:
         return None
@@ -145,7 +153,7 @@ def crashed(case: Case) -> Diagnosis | None:
         return None
     when, text = _when(case, raised), told(raised.text).rstrip(".")
     error = f"{told(raised.type)}: {text}" if text else told(raised.type)
-    cause = f"Your node crashed{at(when)}: {error}{code(raised.place)}.{_limit(case)}"
+    cause = f"Your node crashed{at(when)}: {error}{line(raised.place)}.{_limit(case)}"
     return Diagnosis("crashed", cause, _mending(raised), time_s=when, place=raised.place)
 
 
@@ -187,7 +195,7 @@ def killed(case: Case) -> Diagnosis | None:
     when = None if raised is None else _when(case, raised)
     place = None if raised is None else raised.place
     why = _SIGNALS.get(name, "")
-    cause = f"Your program was killed{at(when)} by the signal {name}{code(place)}"
+    cause = f"Your program was killed{at(when)} by the signal {name}{line(place)}"
     cause += f": {why}." if why else "."
     return Diagnosis("killed", f"{cause}{_limit(case)}", _after(name), time_s=when, place=place)
 

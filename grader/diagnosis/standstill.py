@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.diagnosis.case import Case, at, code, line, told
+from grader.diagnosis.case import Case, after, function, line, since, told
 from grader.diagnosis.diagnosis import Diagnosis
 
 #: A program that comes to its end by itself before this has hardly spun [s].
@@ -22,10 +22,10 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
     stop = case.stop
     if stop is None or stop.kind != "callback":
         return None
-    where = f" in {told(stop.place.function)}()" if stop.place and stop.place.function else ""
+    who = function(stop.place) or "a callback"
     cause = (
-        f"Your node is stuck{at(stop.time_s)} in a callback{where}{code(stop.place)}: it waits "
-        f"there{_for(stop.call)}, and while it waits no answer, message or timer is handed out."
+        f"Your node is stuck{since(stop.time_s)} in {who}{line(stop.place)}: it waits in this "
+        f"callback{_for(stop.call)}, and while it waits no answer, message or timer is handed out."
     )
     help_ = (
         "Do not wait in a callback: use call_async() and add_done_callback(), or an `async def` "
@@ -40,7 +40,7 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
     if stop is None or stop.kind != "call":
         return None
     cause = (
-        f"Your program is stuck{at(stop.time_s)}{code(stop.place)}: it waits"
+        f"Your program is stuck{since(stop.time_s)}{line(stop.place)}: it waits"
         f"{_for(stop.call)} while nobody spins the node, so nothing can reach it."
     )
     if "Rate" in stop.call or "sleep" in stop.call:
@@ -48,11 +48,13 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
             "A Rate needs somebody who spins: use create_timer() with a callback and "
             "rclpy.spin(node), or spin in another thread."
         )
-    else:
+    elif stop.call.startswith("Client."):
         help_ = (
             "Use call_async() and rclpy.spin_until_future_complete(node, future), or spin in "
             "another thread."
         )
+    else:
+        help_ = _SPIN
     return Diagnosis("stuck_in_call", cause, help_, time_s=stop.time_s, place=stop.place)
 
 
@@ -64,10 +66,10 @@ def endless_loop(case: Case) -> Diagnosis | None:
         "you again and again, or call rclpy.spin_once(node) in the loop."
     )
     if stop is not None and stop.kind == "loop":
-        where = f" in {told(stop.place.function)}()" if stop.place and stop.place.function else ""
+        where = f" in {name}" if (name := function(stop.place)) else ""
         cause = (
-            f"Your program never comes out of a loop{where}{code(stop.place)}: it went on "
-            f"computing from {stop.time_s:.1f} s on, without waiting for anything."
+            f"Your program never comes out of a loop{where}{line(stop.place)}: it goes round "
+            f"without waiting for anything{since(stop.time_s)}."
         )
         return Diagnosis("endless_loop", cause, help_, time_s=stop.time_s, place=stop.place)
     if case.run.outcome == "stalled" and any(_WITHOUT_WAITING in f for f in case.run.flags):
@@ -80,57 +82,53 @@ def endless_loop(case: Case) -> Diagnosis | None:
 
 def does_nothing(case: Case) -> Diagnosis | None:
     """It came to its end without having made anything of ROS."""
-    conduct = case.conduct
-    if not conduct.is_told or conduct.ends or conduct.returned_s is None:
-        return None
-    if conduct.spun_s is not None or conduct.raised is not None:
+    if case.ended_s is None or case.conduct.ends or case.conduct.spun_s is not None:
         return None
     cause = (
-        f"Your program came to its end{at(conduct.returned_s)} without a publisher, a subscription "
-        "or a client: is main() ever called?"
+        f"Your program ended {after(case.ended_s)} without a publisher, a subscription or a "
+        "client: is main() ever called?"
     )
     help_ = "Let the file end with:  if __name__ == '__main__': main()"
-    return Diagnosis("does_nothing", cause, help_, time_s=conduct.returned_s)
+    return Diagnosis("does_nothing", cause, help_, time_s=case.ended_s)
 
 
 def never_spins(case: Case) -> Diagnosis | None:
     """Nobody ever spins its node, and something of it waits for that."""
     conduct = case.conduct
-    if not conduct.is_told or conduct.spun_s is not None or conduct.raised is not None:
+    if not conduct.is_told or conduct.spun_s is not None:
         return None
     deaf = [end for end in conduct.ends if end.kind == "subscription" and not end.used]
     sends = [end for end in conduct.ends if end.kind == "publisher" and end.used]
     if not conduct.ends or (sends and not deaf):
         return None
-    what = "its subscriptions and timers are never called"
-    place = deaf[0].place if deaf else None
-    if conduct.returned_s is None:
-        cause = f"Your node never spins, so {what}{line(place)}."
-    else:
+    none = "none of its subscriptions and timers is ever called"
+    if case.ended_s is None:
         cause = (
-            f"Your program came to its end{at(conduct.returned_s)} and never spun its node, so "
-            f"{what}."
+            f"Your program never spins its node, so {none}{line(deaf[0].place if deaf else None)}."
         )
-    return Diagnosis("never_spins", cause, _SPIN, time_s=conduct.returned_s)
+    else:
+        cause = f"Your program ended {after(case.ended_s)} and never spun its node, so {none}."
+    return Diagnosis("never_spins", cause, _SPIN, time_s=case.ended_s)
 
 
 def ends_early(case: Case) -> Diagnosis | None:
     """It came to its end when it had hardly begun."""
-    conduct = case.conduct
-    if not conduct.is_told or conduct.returned_s is None or conduct.returned_s > _SOON_S:
+    ended_s = case.ended_s
+    if ended_s is None or ended_s > _SOON_S or case.run.outcome not in ("exited", "finished"):
         return None
-    if conduct.spun_s is None or case.run.outcome not in ("exited", "finished"):
-        return None
-    sent = sum(end.used for end in conduct.ends if end.kind == "publisher")
-    what = {0: "it had published nothing", 1: "it had published one message"}.get(
-        sent, f"it had published {sent} messages"
+    sent = sum(end.used for end in case.conduct.ends if end.kind == "publisher")
+    what = {0: "nothing", 1: "one message"}.get(sent, f"{sent} messages")
+    raised = case.conduct.raised
+    place = raised.place if raised is not None else None
+    cause = (
+        f"Your program ended {after(ended_s)}, by itself{line(place)}; until then it had published "
+        f"{what}."
     )
-    cause = f"Your program came to its end by itself{at(conduct.returned_s)}; until then {what}."
     help_ = (
         "rclpy.spin_once(node) handles one message and returns: rclpy.spin(node) goes on. If it "
         "does spin, look for what ends it: shutdown(), sys.exit(), a loop that is left too soon."
     )
-    return Diagnosis("ends_early", cause, help_, time_s=conduct.returned_s)
+    return Diagnosis("ends_early", cause, help_, time_s=ended_s, place=place)
 
 
 def slow_callback(case: Case) -> Diagnosis | None:
@@ -142,10 +140,10 @@ def slow_callback(case: Case) -> Diagnosis | None:
     )
     if slow is None:
         return None
-    who = f"{told(slow.place.function)}()" if slow.place.function else "A callback"
+    who = function(slow.place) or "A callback"
     cause = (
-        f"{who} lets up to {slow.longest_s:.2g} s pass each time ({slow.times} times)"
-        f"{code(slow.place)}, and meanwhile your node hears no message and no timer."
+        f"{who} lets up to {slow.longest_s:.2g} s pass each time that it is called"
+        f"{line(slow.place)}; meanwhile your node hears no message and no timer."
     )
     help_ = (
         "Do not sleep or wait in a callback: do what is to be done now, and return. The next "

@@ -178,12 +178,12 @@ class Report:
 
     @property
     def advice(self) -> list[str]:
-        """What belongs to the diagnosis, below the headline: what to do, and where."""
+        """What belongs to the diagnosis, below the headline: where, and what to do."""
         found = self.diagnosis
         if found is None:
             return []
-        lines = [f"What to do: {found.help}"] if found.help else []
-        return [*lines, *([f"Where: {self.where_first}"] if self.where_first else [])]
+        lines = [f"Where: {self.where_first}"] if self.where_first else []
+        return [*lines, *([f"What to do: {found.help}"] if found.help else [])]
 
     @property
     def where_first(self) -> str:

@@ -108,4 +108,6 @@ def test_whatever_a_program_tells_the_diagnosis_is_one_plain_line(conduct, outco
 
 def test_the_stuck_place_of_a_stop_without_a_line_is_left_out():
     found = diagnose(Recordings(run_of(said(stop=Stop("call", 1.0)), "stalled")))
-    assert found.cause.startswith("Your program is stuck at 1.0 s: it waits while nobody spins")
+    assert found.cause.startswith(
+        "Your program is stuck from 1.0 s on: it waits while nobody spins"
+    )
