@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from difflib import SequenceMatcher
 
+from grader.diagnosis import standstill
 from grader.diagnosis.case import OPPOSITE, Case, line, since, told
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
@@ -87,8 +88,10 @@ def hears_nobody(case: Case) -> Diagnosis | None:
 
 
 def misses_what_it_hears(case: Case) -> Diagnosis | None:
-    """It crashed for want of a message, and subscribes to what nobody publishes."""
-    return hears_nobody(case) if misses_message(case) else None
+    """It crashed for want of a message, and none could come: nobody sends any, or it never spins."""
+    if not misses_message(case):
+        return None
+    return hears_nobody(case) or standstill.is_deaf(case)
 
 
 def calls_nobody(case: Case) -> Diagnosis | None:

@@ -21,6 +21,21 @@ _PLACE, _PATH = (
 )
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 _NONE = "'NoneType'"
+#: What Python says of usual mistakes -> what to do.
+_USUAL = {
+    "'NoneType' object is not callable": (
+        "A callback is handed over by its name, without brackets: self.on_timer, not "
+        "self.on_timer(), which calls it at once and hands over the None that it returns."
+    ),
+    "were given": (
+        "A method takes self before all else, and a callback of a subscription the message: "
+        "def on_pose(self, pose)."
+    ),
+    "is not defined": "Import it, define it above, or write self. before it.",
+    "Executor is already spinning": (
+        "Do not spin in a callback: use call_async() and add_done_callback()."
+    ),
+}
 #: For people who do not know the kernel's words.
 _SIGNALS = {
     "SIGABRT": "a library gave up on a value that it cannot take",
@@ -169,6 +184,9 @@ def misses_message(case: Case) -> bool:
 
 def _mending(raised: Raised) -> str:
     whole = "The whole traceback is in output.txt."
+    for said, help_ in _USUAL.items():
+        if said in raised.text:
+            return f"{help_} {whole}"
     if _NONE in raised.text or "NoneType" in raised.text:
         return (
             "Something there is still None: a message that has not come yet, or a function that "

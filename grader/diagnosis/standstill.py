@@ -92,6 +92,12 @@ def does_nothing(case: Case) -> Diagnosis | None:
     return Diagnosis("does_nothing", cause, help_, time_s=case.ended_s)
 
 
+def is_deaf(case: Case) -> Diagnosis | None:
+    """Nobody ever spins its node, and it has a subscription."""
+    has_subscription = any(end.kind == "subscription" for end in case.conduct.ends)
+    return never_spins(case) if has_subscription else None
+
+
 def never_spins(case: Case) -> Diagnosis | None:
     """Nobody ever spins its node, and something of it waits for that."""
     conduct = case.conduct

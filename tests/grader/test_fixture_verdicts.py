@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.diagnosis.diagnose import diagnose
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.grading import run_all
@@ -37,13 +38,21 @@ RIGHT = {
 }
 #: The reference as it is written for ROS 2 from Kilted on.
 NEWER = "reference_for_lyrical"
+#: Mutants whose runs show what is wrong, whatever was asked for.
+SHOWS_BY_ITSELF = {
+    "wrong_topic": "publishes_to_nobody",
+    "wrong_type": "publishes_to_nobody",
+    "wrong_turtle": "publishes_to_nobody",
+    "crashes_after_ten_seconds": "crashed",
+    "never_spins": "never_spins",
+}
 #: Graded a second time, to see that nothing changes.
 TWICE = ("reference", "rate_with_spin_thread", "random_colours", "draws_by_teleport")
 
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory):
-    """Name of a submission -> its verdicts and hashes, once for each grading."""
+    """Name of a submission -> its verdicts, hashes, and diagnosis, once for each grading."""
     folder = tmp_path_factory.mktemp("mutants")
     paths = dict(RIGHT)
     texts = {name: mutant.text() for name, mutant in MUTANTS.items()}
@@ -61,7 +70,7 @@ def graded(tmp_path_factory):
         verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
         hashes = [recording.run.trace_sha256 for recording in recordings]
         assert all(recording.run.time == "virtual" for recording in recordings)
-        return verdicts, hashes
+        return verdicts, hashes, diagnose(recordings)
 
     with ThreadPoolExecutor(2) as pool:
         tasks = {name: [pool.submit(grade_one, name)] for name in paths}
@@ -77,7 +86,7 @@ def scores(verdicts):
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("name", RIGHT)
 def test_a_right_solution_gets_every_point(graded, name):
-    verdicts, _ = graded[name][0]
+    verdicts, *_ = graded[name][0]
     assert [(v.check, v.rationale) for v in verdicts if v.status != "passed"] == []
 
 
@@ -91,7 +100,7 @@ def test_the_reference_for_newer_releases_of_ros_is_as_good_and_makes_the_same_t
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("name", MUTANTS)
 def test_a_mutant_loses_what_it_spoils_and_nothing_else(graded, name):
-    verdicts, _ = graded[name][0]
+    verdicts, *_ = graded[name][0]
     lost = MUTANTS[name].lost
     for verdict in verdicts:
         expected = lost.get(verdict.check, verdict.max_score)
@@ -103,10 +112,17 @@ def test_a_mutant_loses_what_it_spoils_and_nothing_else(graded, name):
 
 @pytest.mark.parametrize("name", MUTANTS)
 def test_a_failed_verdict_explains_itself(graded, name):
-    verdicts, _ = graded[name][0]
+    verdicts, *_ = graded[name][0]
     for verdict in verdicts:
         assert verdict.rationale
         assert verdict.help or verdict.status == "passed"
+
+
+@pytest.mark.parametrize("name", [*RIGHT, *MUTANTS])
+def test_a_run_is_diagnosed_only_where_it_shows_a_cause_by_itself(graded, name):
+    """It comes before the findings of all checks: it must be sure."""
+    _, _, found = graded[name][0]
+    assert (found and found.key) == SHOWS_BY_ITSELF.get(name), found
 
 
 @pytest.mark.parametrize("name", TWICE)

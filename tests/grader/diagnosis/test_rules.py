@@ -99,6 +99,22 @@ CAUSES = {
         "You subscribe to /pose, which nobody publishes; there is /turtle1/pose of type "
         "turtlesim/msg/Pose",
     ),
+    "None for want of a spin": (
+        raising(
+            "AttributeError",
+            "'NoneType' object has no attribute 'x'",
+            spun_s=None,
+            ends=(VELOCITY, replace(POSES, used=0, place=LINE)),
+        ),
+        "never_spins",
+        "Your program never spins its node, so none of its subscriptions and timers is ever "
+        "called (drive.py, line 39).",
+    ),
+    "a callback with brackets": (
+        raising("TypeError", "'NoneType' object is not callable"),
+        "crashed",
+        "is not callable (drive.py, line 39). .* self.on_timer, not self.on_timer()",
+    ),
     "exit with a text": (
         raising("SystemExit", "bye"),
         "ended_itself",
