@@ -88,7 +88,7 @@ def hears_nobody(case: Case) -> Diagnosis | None:
 
 
 def misses_what_it_hears(case: Case) -> Diagnosis | None:
-    """It crashed for want of a message, and none could come: nobody sends any, or it never spins."""
+    """It crashed for want of a message that could not come: nobody sends it, or it never spins."""
     if not misses_message(case):
         return None
     return hears_nobody(case) or standstill.is_deaf(case)
