@@ -6,12 +6,13 @@ import re
 from contextlib import suppress
 from signal import Signals
 
+from grader.diagnosis import printed
 from grader.diagnosis.case import Case, at, line, told
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.recording.conduct import Raised
+from grader.recording.conduct import Place, Raised
 
 #: What generated messages say of a value that they refuse.
-_FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>.{1,200})", re.DOTALL)
+_FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
 _RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
 _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
 #: What Python adds to some texts, and what is said in other words here.
@@ -21,16 +22,18 @@ _PLACE, _PATH = (
 )
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 _NONE = "'NoneType'"
+_PARAMETERS = (
+    "A method takes self before all else, and a callback of a subscription the message: "
+    "def on_pose(self, pose)."
+)
 #: What Python says of usual mistakes -> what to do.
 _USUAL = {
     "'NoneType' object is not callable": (
         "A callback is handed over by its name, without brackets: self.on_timer, not "
         "self.on_timer(), which calls it at once and hands over the None that it returns."
     ),
-    "were given": (
-        "A method takes self before all else, and a callback of a subscription the message: "
-        "def on_pose(self, pose)."
-    ),
+    "callback should be": _PARAMETERS,
+    "were given": _PARAMETERS,
     "is not defined": "Import it, define it above, or write self. before it.",
     "Executor is already spinning": (
         "Do not spin in a callback: use call_async() and add_done_callback()."
@@ -97,23 +100,20 @@ def not_importable(case: Case) -> Diagnosis | None:
 def wrong_value(case: Case) -> Diagnosis | None:
     """It gives a field of a message a value of the wrong type, or out of its range."""
     raised = case.raised
-    found = _FIELD.search(raised.text) if raised is not None else None
-    if raised is None or found is None:
+    # a program may have caught the exception, and printed what it says
+    found = _FIELD.search(printed.end(case.recording.output) if raised is None else raised.text)
+    if found is None:
         return None
-    what, help_ = _wanted(found["field"], told(found["what"]), raised)
+    when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
+    what, help_ = _wanted(found["field"], told(found["what"]), place)
     cause = f"The field {found['field']} of a message must be {what}; it got something else"
-    return Diagnosis(
-        "wrong_value",
-        f"{cause}{at(_when(case, raised))}{line(raised.place)}.",
-        help_,
-        time_s=_when(case, raised),
-        place=raised.place,
-    )
+    cause = f"{cause}{at(when)}{line(place)}."
+    return Diagnosis("wrong_value", cause, help_, time_s=when, place=place)
 
 
-def _wanted(field: str, what: str, raised: Raised) -> tuple[str, str]:
+def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
     """What a field must be, and how to make it so."""
-    text = raised.place.text if raised.place is not None else ""
+    text = place.text if place is not None else ""
     literal = re.search(rf"\b{field}\s*=\s*([-+]?\d{{1,20}}(?:\.\d{{0,20}})?)(?![\w.])", text)
     number = literal[1] if literal else ""
     if limits := _RANGE.search(what):
@@ -126,7 +126,7 @@ def _wanted(field: str, what: str, raised: Raised) -> tuple[str, str]:
         )
     if "'float'" in what:
         instead = f"Write {number}.0 instead of {number}" if number else "Write 2.0 instead of 2"
-        return "a float", f"{instead}, and float(...) round what is calculated."
+        return "a float", f"{instead}, and float(...) round what may be an int."
     if "'int'" in what:
         whole = number.partition(".")[0]
         instead = f"Write {whole} instead of {number}" if number else "Write 255 instead of 255.0"
@@ -155,7 +155,7 @@ def ended_itself(case: Case) -> Diagnosis | None:
         return Diagnosis("ended_itself", cause, help_, time_s=when, place=raised.place)
     if raised is not None:
         return None
-    last = next((x for x in reversed(case.recording.output[-2000:].splitlines()) if x.strip()), "")
+    last = printed.last_line(case.recording.output)
     said = f"; the last that it printed is: {told(last)!r}" if last else ""
     cause = f"Your program ended with exit code {case.run.exit_code}, by no exception{said}."
     return Diagnosis("ended_itself", cause, help_)
@@ -170,6 +170,17 @@ def crashed(case: Case) -> Diagnosis | None:
     error = f"{told(raised.type)}: {text}" if text else told(raised.type)
     cause = f"Your node crashed{at(when)}: {error}{line(raised.place)}.{_limit(case)}"
     return Diagnosis("crashed", cause, _mending(raised), time_s=when, place=raised.place)
+
+
+def thread_crashed(case: Case) -> Diagnosis | None:
+    """An exception ended one of its threads, and the rest went on."""
+    raised = case.raised or printed.in_thread(case.recording.output)
+    if raised is None or case.raised is not None:
+        return None
+    text = told(raised.text).rstrip(".")
+    error = f"{told(raised.type)}: {text}" if text else told(raised.type)
+    cause = f"A thread of your program crashed: {error}{line(raised.place)}."
+    return Diagnosis("crashed", cause, _mending(raised), place=raised.place)
 
 
 def misses_message(case: Case) -> bool:

@@ -29,6 +29,7 @@ RULES: Final[tuple[Rule, ...]] = (
     crash.ended_itself,
     crash.crashed,
     crash.killed,
+    crash.thread_crashed,
     connections.waits_in_vain,
     connections.publishes_to_nobody,
     connections.hears_nobody,

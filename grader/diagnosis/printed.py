@@ -22,6 +22,11 @@ _FRAME = re.compile(
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]{0,200})(?:: (?P<text>.*))?$")
 _STUCK = re.compile(r"^Your node is stuck here, at (?P<time>\d{1,9}\.\d\d) s:", re.MULTILINE)
 _FATAL = re.compile(r"^Fatal Python error: (?P<what>[^\n]{1,100})", re.MULTILINE)
+#: As far as the line that begins with the exception's name.
+_IN_THREAD = re.compile(
+    r"^Exception in thread [^\n]{0,200}:\n(Traceback [^\n]*\n(?:[ \t][^\n]*\n)+[^\n]*)",
+    re.MULTILINE,
+)
 #: Of Python's, of ROS's and of our own files; no submission's.
 _LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run/", "<frozen ")
 #: Python's words for the signals that end a program.
@@ -33,12 +38,28 @@ _SIGNALS = {
 }
 
 
+def end(output: str) -> str:
+    """The part of it that is looked at."""
+    return output[-_LOOKED_AT:]
+
+
+def last_line(output: str) -> str:
+    """The last line with anything in it; '' for none."""
+    return next((line for line in reversed(end(output).splitlines()) if line.strip()), "")
+
+
+def in_thread(output: str) -> Raised | None:
+    """The first exception that ended a thread, as Python tells of it."""
+    found = _IN_THREAD.search(end(output))
+    return last_exception(found[0]) if found else None
+
+
 def last_exception(output: str) -> Raised | None:
     """The exception of the last traceback, with the last line of the submission's own in it."""
-    end = output[-_LOOKED_AT:]
-    start = end.rfind("Traceback (most recent call last)")
+    text = end(output)
+    start = text.rfind("Traceback (most recent call last)")
     # a SyntaxError in the file that was started has no traceback of its own
-    part = end[max(start, 0) :]
+    part = text[max(start, 0) :]
     frames = list(_FRAME.finditer(part))
     if not frames:
         return None
@@ -51,22 +72,22 @@ def last_exception(output: str) -> Raised | None:
 
 def fatal_signal(output: str) -> Raised | None:
     """The signal by which the program ended itself, as Python's fault handler has told it."""
-    end = output[-_LOOKED_AT:]
-    found = list(_FATAL.finditer(end))
+    text = end(output)
+    found = list(_FATAL.finditer(text))
     if not found:
         return None
-    frames = list(_FRAME.finditer(end, found[-1].end()))
+    frames = list(_FRAME.finditer(text, found[-1].end()))
     signal = _SIGNALS.get(found[-1]["what"].strip(), "")
     return Raised(signal, "", 0.0, _own_place(frames[::-1])) if signal else None
 
 
 def stuck(output: str) -> Stop | None:
     """Where a node waited for what could no longer happen."""
-    end = output[-_LOOKED_AT:]
-    found = list(_STUCK.finditer(end))
+    text = end(output)
+    found = list(_STUCK.finditer(text))
     if not found:
         return None
-    part = end[found[-1].end() :]
+    part = text[found[-1].end() :]
     kind: StopKind = "callback" if "\nThis is a callback." in part else "call"
     return Stop(kind, float(found[-1]["time"]), "", _own_place(list(_FRAME.finditer(part))))
 

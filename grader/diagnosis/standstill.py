@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from grader.diagnosis import printed
 from grader.diagnosis.case import Case, after, function, line, since, told
 from grader.diagnosis.diagnosis import Diagnosis
 
@@ -108,13 +109,12 @@ def never_spins(case: Case) -> Diagnosis | None:
     if not conduct.ends or (sends and not deaf):
         return None
     none = "none of its subscriptions and timers is ever called"
+    place = deaf[0].place if deaf else None
     if case.ended_s is None:
-        cause = (
-            f"Your program never spins its node, so {none}{line(deaf[0].place if deaf else None)}."
-        )
+        cause = f"Your program never spins its node, so {none}{line(place)}."
     else:
         cause = f"Your program ended {after(case.ended_s)} and never spun its node, so {none}."
-    return Diagnosis("never_spins", cause, _SPIN, time_s=case.ended_s)
+    return Diagnosis("never_spins", cause, _SPIN, time_s=case.ended_s, place=place)
 
 
 def ends_early(case: Case) -> Diagnosis | None:
@@ -124,6 +124,8 @@ def ends_early(case: Case) -> Diagnosis | None:
         return None
     sent = sum(end.used for end in case.conduct.ends if end.kind == "publisher")
     what = {0: "nothing", 1: "one message"}.get(sent, f"{sent} messages")
+    if last := printed.last_line(case.recording.output):
+        what = f"{what}, and the last that it printed is: {told(last)!r}"
     raised = case.conduct.raised
     place = raised.place if raised is not None else None
     cause = (

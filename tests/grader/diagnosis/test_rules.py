@@ -88,6 +88,19 @@ CAUSES = {
         "wrong_value",
         "must be an int; .* Write 255 instead of 255.0",
     ),
+    "a field's refusal that the program has caught and printed": (
+        run_of(
+            said(returned_s=0.5), "exited", output="oh: The 'x' field must be of type 'float'\n"
+        ),
+        "wrong_value",
+        "The field x of a message must be a float; it got something else.",
+    ),
+    "an exception in a thread": (
+        run_of(said(), output=f"Exception in thread Thread-1 (go):\n{TRACEBACK}[INFO] on\n"),
+        "crashed",
+        "A thread of your program crashed: AttributeError: 'float' object has no attribute 'x' "
+        "(drive.py, line 50).",
+    ),
     "256": (
         field("The 'r' field must be an unsigned integer in [0, 255]", "request.r = 256"),
         "wrong_value",
@@ -216,9 +229,10 @@ CAUSES = {
         "Your program ended after 0.5 s and never spun its node, .* rclpy.spin(node)",
     ),
     "one spin": (
-        run_of(said(replace(VELOCITY, used=1), POSES, returned_s=0.6), "exited"),
+        run_of(said(replace(VELOCITY, used=1), POSES, returned_s=0.6), "exited", output="hello\n"),
         "ends_early",
-        "Your program ended after 0.6 s, by itself; until then it had published one message. "
+        "Your program ended after 0.6 s, by itself; until then it had published one message, and "
+        "the last that it printed is: 'hello'. "
         "rclpy.spin_once(node) handles one message and returns",
     ),
     "a sleep in a callback": (

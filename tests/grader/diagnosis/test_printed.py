@@ -1,0 +1,36 @@
+"""What a node has printed may be made to be hard to read."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.limited import printed_by
+
+
+@pytest.mark.parametrize(
+    "hard",
+    [
+        *(
+            "'\\n' * 65_000",
+            "' ' * 65_000",
+            "' File \"' * 10_000",
+            "'\\n  File \"a\", line ' * 4_000",
+        ),
+        *("'\\n  File \"a\", line 1' * 4_000", "'Fatal Python error: a\\n' * 3_000"),
+        *(
+            "'Exception in thread a:\\nTraceback \\n a\\n' * 1_500",
+            "'The \\'a\\' field must' * 3_000",
+        ),
+    ],
+)
+def test_an_output_is_gone_through_once(hard):
+    code = f"""
+from grader.diagnosis import crash, printed
+limit(2, 4_000_000_000)
+text = "Traceback (most recent call last)" + {hard}
+for look in (printed.last_exception, printed.in_thread, printed.fatal_signal, printed.stuck):
+    look(text)
+crash._FIELD.search(text)
+print("done")
+"""
+    assert printed_by(code) == "done\n"
