@@ -42,13 +42,14 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
             rest = f", which nobody offers; there is {near.name}"
         else:
             rest = ", which nobody offers"
+        named = (each.place for each in case.ends if (each.kind, each.name) == (kind, wait.name))
+        place = next(named, None) or wait.place  # where the name stands is what is to be mended
         return Diagnosis(
             "waits_in_vain",
-            f"You wait for the {what} {told(wait.name)}{since(wait.since_s)}{rest}"
-            f"{line(wait.place)}.",
+            f"You wait for the {what} {told(wait.name)}{since(wait.since_s)}{rest}{line(place)}.",
             _mending(end, near) if near else "Compare the name with `ros2 service list`.",
             time_s=wait.since_s,
-            place=wait.place,
+            place=place,
         )
     return None
 

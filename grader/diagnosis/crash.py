@@ -166,20 +166,17 @@ def crashed(case: Case) -> Diagnosis | None:
     raised = case.raised
     if case.run.outcome != "crashed" or raised is None:
         return None
-    when, text = _when(case, raised), told(raised.text).rstrip(".")
-    error = f"{told(raised.type)}: {text}" if text else told(raised.type)
-    cause = f"Your node crashed{at(when)}: {error}{line(raised.place)}.{_limit(case)}"
+    when = _when(case, raised)
+    cause = f"Your node crashed{at(when)}: {_error(raised)}{line(raised.place)}.{_limit(case)}"
     return Diagnosis("crashed", cause, _mending(raised), time_s=when, place=raised.place)
 
 
 def thread_crashed(case: Case) -> Diagnosis | None:
     """An exception ended one of its threads, and the rest went on."""
     raised = case.raised or printed.in_thread(case.recording.output)
-    if raised is None or case.raised is not None:
-        return None
-    text = told(raised.text).rstrip(".")
-    error = f"{told(raised.type)}: {text}" if text else told(raised.type)
-    cause = f"A thread of your program crashed: {error}{line(raised.place)}."
+    if raised is None or case.raised is not None or raised.place is None:
+        return None  # without a place: libraries' threads when the program ends
+    cause = f"A thread of your program crashed: {_error(raised)}{line(raised.place)}."
     return Diagnosis("crashed", cause, _mending(raised), place=raised.place)
 
 
@@ -191,6 +188,11 @@ def misses_message(case: Case) -> bool:
         or "NoneType" in raised.text
         or (raised.type == "AttributeError" and "has no attribute" in raised.text)
     )
+
+
+def _error(raised: Raised) -> str:
+    name, text = told(raised.type).rpartition(".")[2], told(raised.text).rstrip(".")
+    return f"{name}: {text}" if text else name
 
 
 def _mending(raised: Raised) -> str:
@@ -220,19 +222,24 @@ def killed(case: Case) -> Diagnosis | None:
     if run.outcome != "killed":
         return None
     raised = case.raised
-    name = told(raised.type) if raised is not None else _signal(-(run.exit_code or 0))
+    name = told(raised.type) if raised is not None else _signal(run.exit_code)
     when = None if raised is None else _when(case, raised)
     place = None if raised is None else raised.place
     why = _SIGNALS.get(name, "")
-    cause = f"Your program was killed{at(when)} by the signal {name}{line(place)}"
+    cause = (
+        f"Your program was killed{at(when)}{f' by the signal {name}' if name else ''}{line(place)}"
+    )
     cause += f": {why}." if why else "."
     return Diagnosis("killed", f"{cause}{_limit(case)}", _after(name), time_s=when, place=place)
 
 
-def _signal(number: int) -> str:
+def _signal(exit_code: int | None) -> str:
+    """By its name; '' where the grader itself ended the program."""
+    if exit_code is None:
+        return ""
     with suppress(ValueError):
-        return Signals(number).name
-    return str(number)
+        return Signals(-exit_code).name
+    return str(-exit_code)
 
 
 def _after(signal: str) -> str:

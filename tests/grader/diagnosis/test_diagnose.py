@@ -11,6 +11,7 @@ from grader.diagnosis.diagnose import diagnose
 from grader.diagnosis.diagnosis import CHECK
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.conduct import Conduct, Place, Raised, Slow, Stop
+from grader.recording.folder import load_all, save_all
 from grader.recording.recording import Recordings
 from grader.text import one_line
 from tests.grader.diagnosis.cases import LINE, run_of, said
@@ -36,6 +37,13 @@ def test_a_crash_in_a_varied_run_comes_before_what_only_disturbs_the_nominal_one
 
 def test_the_nominal_run_comes_before_the_varied_ones():
     assert diagnose(Recordings(CRASH, (CRASH,)), [verdict("a")]).run == 0
+
+
+def test_a_recording_that_is_judged_again_has_the_same_diagnosis(tmp_path):
+    recordings = Recordings(SLOW, (RIGHT, CRASH))
+    save_all(recordings, tmp_path)
+    verdicts = [verdict("a")]
+    assert diagnose(load_all(tmp_path), verdicts) == diagnose(recordings, verdicts)
 
 
 def test_where_no_run_shows_a_cause_it_is_the_check_that_costs_most_with_all_that_wait_for_it():
