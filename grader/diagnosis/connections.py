@@ -125,6 +125,8 @@ def _first(
             continue
         if end.name != near.name and (end.is_met or _meets_itself(case, end)):
             continue
+        if end.kind == "subscription" and end.used:
+            continue  # somebody has published
         cause = f"{told_of(end, near)}{line(end.place)}."
         return Diagnosis(key, cause, _mending(end, near), place=end.place)
     return None

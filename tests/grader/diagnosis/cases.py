@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -32,8 +33,10 @@ def run_of(
     exit_code: int | None = None,
     flags: tuple[str, ...] = (),
 ) -> Recording:
-    run = Run("virtual", outcome, exit_code, 2, 0.032, flags=flags, interfaces="turtlesim")
-    return Recording(_trace(), run, topics, output, conduct=conduct or Conduct())
+    trace = _trace()
+    run = Run("virtual", outcome, exit_code, trace.ticks, trace.simulated_s, flags=flags)
+    run = replace(run, interfaces="turtlesim", trace_sha256=trace.sha256())
+    return Recording(trace, run, topics, output, conduct=conduct or Conduct())
 
 
 @cache
