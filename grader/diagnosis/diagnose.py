@@ -42,7 +42,11 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.ends_early,
 )
 #: What only disturbs it; asked when nothing keeps any run from going on.
-DISTURBING: Final[tuple[Rule, ...]] = (standstill.slow_callback,)
+DISTURBING: Final[tuple[Rule, ...]] = (
+    standstill.publishes_without_waiting,
+    standstill.slow_callback,
+    standstill.hears_once,
+)
 
 
 def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagnosis | None:

@@ -13,6 +13,10 @@ _SOON_S = 5.0
 _SLOW_S, _SLOW_REAL_S, _SLOW_TIMES = 0.04, 0.15, 3
 #: What a run's remarks say of a program that computes without end.
 _WITHOUT_WAITING = "without waiting for ROS"
+#: Messages a second that no program sends that waits between them.
+_FLOOD_PER_S = 500.0
+#: Of a run so long [s], so few messages are hardly any.
+_LONG_S, _ONCE = 5.0, 2
 _SPIN = (
     "Make the node and then call rclpy.spin(node): it hands out messages and timers until the node "
     "ends."
@@ -160,6 +164,47 @@ def slow_callback(case: Case) -> Diagnosis | None:
         "message comes by itself, and create_timer() calls you later."
     )
     return Diagnosis("slow_callback", cause, help_, place=slow.place)
+
+
+def publishes_without_waiting(case: Case) -> Diagnosis | None:
+    """A loop publishes as fast as it can."""
+    run_s = case.run.simulated_s
+    for end in case.ends:
+        rate = end.used / max(run_s, 1.0)
+        if end.kind != "publisher" or not case.conduct.is_told or rate < _FLOOD_PER_S:
+            continue
+        cause = (
+            f"You published {end.used} messages on {told(end.name)} in {run_s:.0f} s"
+            f"{line(end.place)}: nothing in that loop waits."
+        )
+        help_ = (
+            "A few commands a second are enough: publish in the callback of create_timer(), and "
+            "let rclpy.spin(node) call it."
+        )
+        return Diagnosis("publishes_without_waiting", cause, help_, place=end.place)
+    return None
+
+
+def hears_once(case: Case) -> Diagnosis | None:
+    """A topic that the scene publishes all the time has reached it once, and then no more."""
+    run_s = case.run.simulated_s
+    if not case.conduct.is_told or case.ended_s is not None or run_s < _LONG_S:
+        return None
+    published = {(e.name, e.type) for e in case.scene_has if e.kind == "publisher"}
+    heard = [end for end in case.ends if end.kind == "subscription"]
+    for end in heard:
+        is_alone = sum(each.name == end.name for each in heard) == 1  # not one for each message
+        if (end.name, end.type) in published and 0 < end.used <= _ONCE and is_alone:
+            cause = (
+                f"Your node has heard {told(end.name)} hardly more than once in {run_s:.0f} s"
+                f"{line(end.place)}, though it is published all the time."
+            )
+            help_ = (
+                "The next message is handed out when the callback has returned: no loop may wait "
+                "in it; let create_timer() call you. And rclpy.spin(node) has to go on meanwhile."
+            )
+            return Diagnosis("hears_once", cause, help_, place=end.place)
+    return None
 
 
 def _for(call: str) -> str:

@@ -41,4 +41,4 @@ def run_of(
 
 @cache
 def _trace() -> Any:
-    return drive(Spiral(), ticks=2).trace
+    return drive(Spiral(), ticks=625).trace

@@ -235,6 +235,16 @@ CAUSES = {
         "the last that it printed is: 'hello'. "
         "rclpy.spin_once(node) handles one message and returns",
     ),
+    "a loop that publishes": (
+        run_of(said(replace(VELOCITY, used=190_000, place=LINE))),
+        "publishes_without_waiting",
+        "You published 190000 messages on /turtle1/cmd_vel in 10 s (drive.py, line 39): nothing",
+    ),
+    "a callback that does not return": (
+        run_of(said(VELOCITY, replace(POSES, used=1, place=LINE))),
+        "hears_once",
+        "has heard /turtle1/pose hardly more than once in 10 s (drive.py, line 39), .* returned",
+    ),
     "a sleep in a callback": (
         run_of(said(slow=(Slow(replace(LINE, text="time.sleep(0.2)"), 0.2, 50),)), "time_limit"),
         "slow_callback",
@@ -269,6 +279,7 @@ SILENT = {
         said(VELOCITY, end("subscription", "/poses", POSE, is_met=True))
     ),
     "a wait that has ended": run_of(said(waits=(Wait("/turtle1/set_pen", PEN.type, 0, 3.0),))),
+    "a subscription for each message": run_of(said(*[replace(POSES, used=1)] * 9)),
     "a last pause": run_of(said(slow=(Slow(LINE, 2.0, 1),))),
     "no spin, and none is needed": run_of(said(VELOCITY, spun_s=None, returned_s=40.0)),
     "the end of a long run": run_of(said(returned_s=40.0)),
