@@ -50,8 +50,8 @@ def _first(report: Report) -> str:
     found, first = report.diagnosis, report.first_to_mend
     if found is None and first is None:
         return f"**{_quote(report.headline)}**"
-    named = found.check if found is not None else first.check if first is not None else ""
-    about = f", {_quote(named)}" if named else ""
+    is_of_check = found is None or found.check
+    about = f", {_quote(title_of(first))}" if is_of_check and first is not None else ""
     line = f"**First to mend{about}:** {_quote(report.headline)}"
     return "\n\n".join([line, *map(_quote, report.advice)])
 

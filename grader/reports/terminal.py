@@ -54,9 +54,7 @@ def _captured(print_to: Callable[[Console], None]) -> str:
 
 def show(report: Report, console: Console) -> None:
     """Print the report."""
-    console.print(_text(report.headline, "bold"), soft_wrap=True)
-    for line in report.advice:
-        console.print(_text(line), soft_wrap=True)
+    _lead(report, console)
     console.print()
     console.print(_text(f"{report.submission}: {report.exercise}", "bold"), soft_wrap=True)
     console.print(_table(report, console.width))
@@ -82,13 +80,19 @@ def show_nominal(report: Report, console: Console) -> None:
     if report.verdicts:
         console.print(_table(report, console.width))
     if report.diagnosis is not None and not report.diagnosis.check:
-        console.print(_text(report.headline, "bold"), soft_wrap=True)
-        for line in report.advice:
-            console.print(_text(line), soft_wrap=True)
+        _lead(report, console)
     first = report.first_to_mend
     if first is not None and not report.waited_for(first):
         console.print(_explanation(report, first))
     console.print()
+
+
+def _lead(report: Report, console: Console) -> None:
+    """The first thing to mend; each line whole in a file, and wrapped at words in a terminal."""
+    whole = not console.is_terminal
+    console.print(_text(report.headline, "bold"), soft_wrap=whole)
+    for line in report.advice:
+        console.print(_text(line), soft_wrap=whole)
 
 
 def _text(value: str, style: str = "") -> Text:

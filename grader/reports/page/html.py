@@ -76,10 +76,10 @@ class RunView:
 
 
 class Moment(NamedTuple):
-    """A run, and a time in it [simulated s]."""
+    """A run, and a time in it [simulated s]; None for its end."""
 
     run: int
-    time_s: float
+    time_s: float | None
 
 
 def render(report: Report) -> str:
@@ -111,6 +111,9 @@ def render(report: Report) -> str:
 
 def _first_fault(report: Report) -> Moment | None:
     """The moment that shows the first thing to mend; None where nothing shows it."""
+    found = report.diagnosis
+    if found is not None and not found.check:
+        return Moment(found.run, found.time_s)
     first = report.first_to_mend
     if first is None or not first.evidence:
         return None
@@ -119,7 +122,9 @@ def _first_fault(report: Report) -> Moment | None:
 
 def _faulty_runs(report: Report) -> set[int]:
     """The runs in which something is to be mended; what no evidence shows is of the nominal run."""
-    return {
+    found = report.diagnosis
+    diagnosed = {found.run} if found is not None and not found.check else set()
+    return diagnosed | {
         run
         for verdict in report.verdicts
         if verdict.status == "failed"

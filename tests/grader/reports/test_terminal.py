@@ -23,6 +23,15 @@ def test_the_first_line_is_the_first_thing_to_mend_uncut():
     assert text.splitlines()[0] == rationale.strip()
 
 
+def test_in_a_terminal_the_first_line_is_wrapped_at_words():
+    out = io.StringIO()
+    report = samples.report(verdict("a", "failed", 0, rationale="word " * 60))
+    terminal.show(report, Console(file=out, width=80, force_terminal=True, color_system=None))
+    lines = out.getvalue().splitlines()
+    assert {word for line in lines[:4] for word in line.split()} == {"word"}
+    assert max(map(len, lines)) <= 80
+
+
 def test_with_nothing_to_mend_the_first_line_says_so():
     text = shown(samples.result(verdict("a")))
     assert text.startswith("Nothing to mend: the only check passed.\n")

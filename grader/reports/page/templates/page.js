@@ -172,7 +172,7 @@
   const moment = named && (named.matches("[data-time]") ? named : named.querySelector("[data-time]"));
   if (moment) goTo(moment.dataset.run, moment.dataset.time);
   else if (opensTime) goTo(opensRun, opensTime);
-  else show("0");
+  else show(opensRun);
 
   // How it ended stands last.
   for (const output of all("details[open] pre")) output.scrollTop = output.scrollHeight;

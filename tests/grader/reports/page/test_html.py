@@ -116,6 +116,22 @@ def test_where_no_moment_shows_a_fault_it_opens_as_it_is(judged):
     assert elements(html.render(samples.report(judged)), "main") == [{}]
 
 
+@pytest.mark.parametrize(
+    ("more", "opened"),
+    [
+        ({"run": 2}, {"data-opens-run": "2", "data-opens-time": "6.000"}),
+        ({"run": 2, "time_s": None}, {"data-opens-run": "2"}),
+        ({"check": "a"}, {"data-opens-run": "1", "data-opens-time": "1.600"}),
+    ],
+)
+def test_it_opens_where_the_diagnosis_points_to(more, opened):
+    found = {key: value for key, value in samples.diagnosis(**more).items() if value is not None}
+    varied = [samples.run(), samples.run()]
+    content = html.render(samples.report(*faults(1), varied_runs=varied, diagnosis=found))
+    assert elements(content, "main") == [opened]
+    assert set(on_paper(content)) == {"1", opened["data-opens-run"]}
+
+
 def on_paper(content):
     runs = [a for a in elements(content, "div") if (a.get("class") or "").split()[:1] == ["run"]]
     return [a["data-run"] for a in runs if a["class"] == "run on-paper"]
