@@ -15,6 +15,7 @@ from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.loading import Exercise, load_exercise, names
 from grader.recording.folder import WINDOW_PICTURE, load_all
+from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings
 from grader.reports import Report
 from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
@@ -79,21 +80,47 @@ def main(args: argparse.Namespace) -> int:
     origin = recordings.nominal.provenance
     name = (origin and origin.submission) or (place.older and place.older.submission) or place.name
     result = grading.judge(recordings, exercise, submission=name)
+    _show(
+        args,
+        place,
+        result,
+        recordings,
+        is_meant=asked is not None or _is_made_for(origin, exercise),
+    )
+    return int(args.fail_under is not None and result.score < args.fail_under)
+
+
+def _is_made_for(origin: Provenance | None, exercise: Exercise) -> bool:
+    """Whether recordings were made for just this exercise, as far as they tell."""
+    told = "" if origin is None else origin.exercise_sha256
+    return told in ("", exercise.sha256)
+
+
+def _show(
+    args: argparse.Namespace, place: Place, result: Result, recordings: Recordings, is_meant: bool
+) -> None:
+    """Write what is to be written, and show the result.
+
+    Args:
+        is_meant: whether the exercise is one by which an older result may be replaced.
+    """
     from grader.cli import showing  # here: what takes long to import
 
+    page, folder = None, place.recording
     if args.json and not _is_same(args.json, place):
         beside = os.path.relpath(place.recording, args.json.parent)
         artifacts = {"recording": beside, "canvas": f"{beside}/{WINDOW_PICTURE}"}
         result = replace(result, artifacts=artifacts)
         result.write(args.json)
-        showing.show(Report.of(result, place.recording, recordings), None)
-    elif place.older is None:
-        showing.show(Report.of(result, place.recording, recordings), None)
-    else:
-        result = replace(result, artifacts=place.older.artifacts)
-        report = Report.of(result, place.folder, recordings)
-        showing.show(report, _rewrite(place, result, report))
-    return int(args.fail_under is not None and result.score < args.fail_under)
+    elif place.older is not None and is_meant:
+        result, folder = replace(result, artifacts=place.older.artifacts), place.folder
+        page = _rewrite(place, result, recordings)
+    elif place.older is not None:
+        _say_left(
+            f"the installed exercise {result.exercise!r} is another one than they were made with; "
+            "say with --exercise which one you mean"
+        )
+    showing.show(Report.of(result, folder, recordings), page)
 
 
 def _place(given: Path) -> Place:
@@ -137,7 +164,7 @@ def _is_same(file: Path, place: Place) -> bool:
     return place.older is not None and file.exists() and file.samefile(beside)
 
 
-def _rewrite(place: Place, result: Result, report: Report) -> Path | None:
+def _rewrite(place: Place, result: Result, recordings: Recordings) -> Path | None:
     """Replace the older result and its page; the page, or None where they cannot be written."""
     from grader.reports import render
 
@@ -147,8 +174,13 @@ def _rewrite(place: Place, result: Result, report: Report) -> Path | None:
             files.check_can_put(file)
         with files.sole_writer(place.folder):
             result.put(place.folder / RESULT)
+            report = Report.of(result, place.folder, recordings)
             files.put(page, render("html", [report]).encode("utf-8"))
     except UsageError as error:
-        print(f"Left as they were: {RESULT}, {PAGE}: {for_terminal(str(error))}", file=sys.stderr)
+        _say_left(str(error))
         return None
     return page
+
+
+def _say_left(why: str) -> None:
+    print(f"Left as they were: {RESULT}, {PAGE}: {for_terminal(why)}", file=sys.stderr)

@@ -59,6 +59,21 @@ def test_the_result_is_judged_by_the_new_exercise_and_so_is_its_page(
     assert f"The page with picture and plots: {graded / 'report.html'}" in capsys.readouterr().out
 
 
+def test_a_result_by_an_edited_exercise_is_not_replaced_by_one_that_nobody_has_asked_for(
+    graded, tmp_path, capsys
+):
+    hard = ["--exercise", edited(tmp_path, points={"moves": 7})]
+    assert main(["check", str(graded), *hard]) == 0
+    assert main(["run", "alice.py", *hard]) == 0
+    before = result(graded)
+    capsys.readouterr()
+    assert main(["check", str(graded), "--fail-under", "1"]) == 0
+    assert result(graded) == before
+    said = capsys.readouterr()
+    assert "say with --exercise which one you mean" in said.err
+    assert "of 100" in said.out
+
+
 def test_into_a_file_of_its_own_goes_the_result_and_nothing_else_changes(graded, tmp_path):
     before = {path: path.read_bytes() for path in graded.rglob("*") if path.is_file()}
     assert main(["check", str(graded), "--json", str(tmp_path / "again.json")]) == 0
