@@ -151,7 +151,7 @@ def _add(told: dict[str, Any], line: Any) -> None:
             told["returned_s"] = value
         case "stop" | "raised":
             told[what] = value
-        case _:
+        case _:  # also `blind`: our own code does not know this rclpy
             raise ValueError(f"told of {what!r:.40}")
 
 

@@ -11,7 +11,24 @@ from grader.run.student.witness import End, Witness, quietly
 
 
 def install(witness: Witness) -> None:
-    """Have rclpy's objects tell; rclpy is imported by now, or will be with `rclpy.node`."""
+    """Have rclpy's objects tell; `rclpy.node` is imported by now."""
+    _where_known(_install, witness)
+
+
+def install_actions(witness: Witness) -> None:
+    """The same for action clients; `rclpy.action.client` is imported by now."""
+    _where_known(_install_actions, witness)
+
+
+def _where_known(install: Callable[[Witness], None], witness: Witness) -> None:
+    """An rclpy that is made otherwise is left alone; half of what happens would be worse."""
+    try:
+        install(witness)
+    except (AttributeError, ImportError):
+        witness.is_blind()
+
+
+def _install(witness: Witness) -> None:
     import rclpy.client
     import rclpy.executors
     import rclpy.publisher
@@ -54,8 +71,7 @@ def install(witness: Witness) -> None:
     executor.wait_for_ready_callbacks = first_look
 
 
-def install_actions(witness: Witness) -> None:
-    """The same for action clients; `rclpy.action.client` is imported by now."""
+def _install_actions(witness: Witness) -> None:
     from rclpy.action.client import ActionClient
 
     _after(ActionClient, "__init__", lambda self, _: witness.made(

@@ -103,6 +103,10 @@ class Witness:
                 quietly(self._tell_of, end)
         quietly(self.waits.look)
 
+    def is_blind(self) -> None:
+        """Nothing that was told may be believed: not all of it is seen."""
+        self._teller.tell("blind", True, is_last=True)
+
     def spins(self) -> None:
         """An executor is spun for the first time."""
         self._teller.tell("spun", self._teller.now_s())
