@@ -13,6 +13,7 @@ from typing import Any, Final
 from grader import strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.submission.start import EntryPoint, Imports, Script, Submission
+from grader.text import clip
 
 #: How a line begins that tells where the process is; a string in JSON follows.
 AT: Final = b"at "
@@ -21,6 +22,9 @@ MAX_BYTES: Final = 1_000_000
 #: So many modules are told, of those that are imported surely and of the others.
 _MAX_MODULES: Final = 500
 _MAX_NAME: Final = 200
+#: So many notes are told, and so much of each [characters].
+_MAX_NOTES: Final = 20
+_MAX_NOTE: Final = 1000
 
 _REFUSALS: Final = {each.whose: each for each in (SubmissionError, UsageError)}
 
@@ -43,6 +47,7 @@ def found(submission: Submission) -> bytes:
             "found": submission.found,
             "surely": _some(submission.imports.surely),
             "perhaps": _some(submission.imports.perhaps),
+            "notes": [clip(note, _MAX_NOTE) for note in submission.notes[:_MAX_NOTES]],
         }
     )
 
@@ -104,9 +109,10 @@ def decoded(said: dict[str, Any]) -> Submission:
             "found": str(sentence),
             "surely": dict(surely),
             "perhaps": dict(perhaps),
-        }:
+            "notes": list(notes),
+        } if all(isinstance(note, str) for note in notes):
             imports = Imports(_texts(surely), _texts(perhaps))
-            return Submission(name, Path(root), _start(start), sentence, imports)
+            return Submission(name, Path(root), _start(start), sentence, imports, tuple(notes))
     raise _nonsense()
 
 

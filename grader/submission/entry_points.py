@@ -13,7 +13,7 @@ from grader.submission.setup_files import SETUP_FILES, ConsoleScript, Package, r
 
 USUAL_NAME: Final = "turtle_controller"  # the challenge asks for a node of this name
 
-_Choice = tuple[Package, ConsoleScript]
+Choice = tuple[Package, ConsoleScript]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Packages:
     readable: tuple[Package, ...]
     faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
 
-    def choose(self, executable: str | None) -> _Choice | None:
+    def choose(self, executable: str | None) -> Choice | None:
         """Choose the script asked for, else the usual one, else the only one; None without any.
 
         Raises:
@@ -57,7 +57,18 @@ class Packages:
             raise self._several(names) if len(set(names)) > 1 else self._twice(every)
         return every[0] if every else None
 
-    def _twice(self, matching: list[_Choice]) -> SubmissionError:
+    def others(self, chosen: ConsoleScript) -> list[str]:
+        """The names of the scripts that start something else than the chosen one."""
+        every = [script for package in self.readable for script in package.scripts]
+        target = (chosen.module, chosen.function)
+        return [each.name for each in every if (each.module, each.function) != target]
+
+    def holding(self, file: Path) -> Package | None:
+        """The package with a setup.py in whose folder a file lies."""
+        with_setup = (package for package in self.readable if package.has_setup_py)
+        return next((each for each in with_setup if file.is_relative_to(each.folder)), None)
+
+    def _twice(self, matching: list[Choice]) -> SubmissionError:
         where = listed(self.handed_in.called(script.file) for _, script in matching)
         return SubmissionError(
             f"{self.handed_in.name} has the console script {shown(matching[0][1].name)} more than "
@@ -123,6 +134,14 @@ def no_such_executable(
         f"{handed_in.name} has no {kind} {shown(executable)}; it has: {listed(names)}. "
         "Choose one of these with --executable NAME, or correct the name."
     )
+
+
+def not_started(kind: str, names: list[str]) -> list[str]:
+    """A note on what of a submission nobody has started; none where there is nothing."""
+    if not names:
+        return []
+    others = f"other {kind}s were" if len(names) > 1 else f"another {kind} was"
+    return [f"{others} not started: {listed(names)}"]
 
 
 def example(module: str, name: str = USUAL_NAME) -> str:

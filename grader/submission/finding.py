@@ -14,19 +14,23 @@ What these do not settle is a SubmissionError that lists the candidates.
 from __future__ import annotations
 
 import errno
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from sys import stdlib_module_names
 from typing import Final
 
 from grader.errors import SubmissionError, UsageError
+from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
     USUAL_NAME,
+    Choice,
     Packages,
     example,
     find_module,
     find_packages,
     no_such_executable,
+    not_started,
 )
 from grader.submission.folder import (
     HAND_IN,
@@ -41,8 +45,9 @@ from grader.submission.folder import (
     shown,
     top_of,
 )
+from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.python_source import Source, read_source
-from grader.submission.setup_files import ConsoleScript, Package
+from grader.submission.setup_files import Package
 from grader.submission.start import EntryPoint, Script, Submission
 
 _UNREADABLE: Final = (
@@ -141,38 +146,76 @@ def _in_folder(handed_in: HandedIn, executable: str | None, scratch: Path) -> Su
     files = files_below(top)
     packages = find_packages(handed_in, files)
     if choice := packages.choose(executable):
-        return _from_script(handed_in, *choice, scratch)
+        return _from_script(handed_in, packages, choice, scratch)
     candidates = [file for file in files if _may_be_node(file)]
-    _must_need_no_script(packages, candidates)
     if not candidates:
         raise _no_python(handed_in, files)
-    chosen = _only(handed_in, candidates, executable)
+    starting = [file for file in candidates if _starts(read_source(file))] or candidates
+    several = executable is None and len(_usual(starting)) > 1
+    if several and (package := packages.holding(starting[0])):
+        raise SubmissionError(f"{_no_script(handed_in, package, starting)}.")
+    chosen = _only(handed_in, starting, executable)
     handed_in.must_hold(chosen)
-    return _from_file(handed_in, chosen)
+    if package := packages.holding(chosen):
+        return _without_script(handed_in, package, chosen)
+    others = [handed_in.called(file) for file in starting if file != chosen]
+    found = _from_file(handed_in, chosen)
+    notes = [*_unbuilt(handed_in, chosen), *not_started("program", others)]
+    return replace(found, notes=tuple(notes))
 
 
 def _from_script(
-    handed_in: HandedIn, package: Package, script: ConsoleScript, scratch: Path
+    handed_in: HandedIn, packages: Packages, choice: Choice, scratch: Path
 ) -> Submission:
+    package, script = choice
     module = find_module(handed_in, package, script)
     start = EntryPoint(script.module, script.function)
     found = f"console script {shown(script.name)} in {handed_in.called(script.file)}"
+    others = not_started("console script", packages.others(script))
+    notes = (*shortcomings(handed_in, package, script), *others)
     if not module.bare:
-        return Submission(handed_in.name, module.root, start, found)
+        return Submission(handed_in.name, module.root, start, found, notes=notes)
     # without its __init__.py, Python prefers any installed package of the same name
     mended = scratch / "with_init"
     copy(module.root, mended)
     for folder in module.bare:
         (mended / folder / "__init__.py").touch()
     missing = listed(str(folder / "__init__.py") for folder in module.bare)
-    return Submission(handed_in.name, mended, start, f"{found}, with the missing {missing} added")
+    found += f", with the missing {missing} added"
+    return Submission(handed_in.name, mended, start, found, notes=notes)
+
+
+def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submission:
+    """Start a file of a package that names no console script, as one would that named it."""
+    source = read_source(file)
+    notes = (
+        *shortcomings(handed_in, package, None),
+        _no_script(handed_in, package, [file]),
+    )
+    inside = file.relative_to(package.folder).with_suffix("").parts
+    if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
+        return replace(_from_file(handed_in, file), notes=notes)
+    start = EntryPoint(".".join(inside), "main")
+    found = f"function main of {handed_in.called(file)}"
+    return Submission(handed_in.name, package.folder, start, found, notes=notes)
+
+
+def _unbuilt(handed_in: HandedIn, file: Path) -> list[str]:
+    """What a file's package lacks that has a package.xml alone."""
+    for folder in file.parents:
+        if not folder.is_relative_to(handed_in.base):
+            break
+        if (folder / MANIFEST).is_file():
+            return list(shortcomings(handed_in, Package.without_setup(folder), None))
+    return []
 
 
 def _from_file(handed_in: HandedIn, file: Path) -> Submission:
     """Start a file that no package describes."""
     source = read_source(file)
     called = handed_in.called(file)
-    if not source.parses or source.has_guard or source.calls_main or not source.has_main:
+    is_imported = source.parses and not source.is_refused and source.has_main
+    if not is_imported or source.has_guard or source.calls_main:
         return Submission(handed_in.name, file.parent, Script(file), f"file {called}")
     # one called like a module of Python may find that loaded already, instead of itself
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
@@ -188,15 +231,13 @@ def _may_be_node(file: Path) -> bool:
 
 def _only(handed_in: HandedIn, candidates: list[Path], executable: str | None) -> Path:
     """Choose the Python file to start."""
-    starting = [file for file in candidates if _starts(read_source(file))] or candidates
     if executable:
-        chosen = [file for file in starting if executable in (file.stem, file.name)]
+        chosen = [file for file in candidates if executable in (file.stem, file.name)]
         if not chosen:
-            names = [handed_in.called(file) for file in starting]
+            names = [handed_in.called(file) for file in candidates]
             raise no_such_executable(handed_in, "Python file", executable, names)
     else:
-        usual = [[file for file in starting if file.stem == s] for s in (USUAL_NAME, "main")]
-        chosen = usual[0] or usual[1] or starting
+        chosen = _usual(candidates)
     if len(chosen) > 1:
         raise SubmissionError(
             f"{handed_in.name} has several Python files to start: "
@@ -206,25 +247,27 @@ def _only(handed_in: HandedIn, candidates: list[Path], executable: str | None) -
     return chosen[0]
 
 
+def _usual(candidates: list[Path]) -> list[Path]:
+    """Those of the first usual name that any has; all of them if none has one."""
+    usual = [[file for file in candidates if file.stem == s] for s in (USUAL_NAME, "main")]
+    return usual[0] or usual[1] or candidates
+
+
 def _starts(source: Source) -> bool:
     return source.has_guard or source.has_main
 
 
-def _must_need_no_script(packages: Packages, candidates: list[Path]) -> None:
-    """Refuse a setup.py without console scripts, with the line that it lacks."""
-    for package in packages.readable:
-        if package.has_setup_py:
-            own = [file for file in candidates if file.is_relative_to(package.folder)]
-            likely = [file for file in own if file.stem == USUAL_NAME] or own
-            module = "my_package.turtle_controller"
-            if len(likely) == 1:
-                inside = likely[0].relative_to(package.folder).with_suffix("")
-                module = ".".join(inside.parts)
-            called = packages.handed_in.called(package.folder / "setup.py")
-            raise SubmissionError(
-                f"{called} names no console script, so that `ros2 run` finds nothing to start. "
-                f"Expected in its entry_points: {example(module)}."
-            )
+def _no_script(handed_in: HandedIn, package: Package, starting: list[Path]) -> str:
+    """Say that a setup.py names no console script, with the line that it lacks."""
+    likely = [file for file in starting if file.stem == USUAL_NAME] or starting
+    module = "my_package.turtle_controller"
+    if len(likely) == 1:
+        module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)
+    called = handed_in.called(package.folder / "setup.py")
+    return (
+        f"{called} names no console script, so that `ros2 run` finds nothing to start. "
+        f"Expected in its entry_points: {example(module)}"
+    )
 
 
 def _no_python(handed_in: HandedIn, files: list[Path]) -> SubmissionError:

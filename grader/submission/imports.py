@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections import deque
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -51,7 +52,7 @@ def read_imports(root: Path, start: EntryPoint | Script, only: Path | None = Non
                     where = f"{file.relative_to(root)}, line {node.lineno}"
                     names = found.surely if surely else found.perhaps
                     names.setdefault(top, shown(where))
-    return found
+    return replace(found, files=tuple(sorted({file for file, _ in seen})))
 
 
 def _statements(file: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:

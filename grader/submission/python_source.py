@@ -7,11 +7,12 @@ import re
 import warnings
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from string import Formatter
 from typing import Final
 
+from grader.submission import encoding
 from grader.submission.folder import read_bounded
 
 UNKNOWN: Final = object()  # the value of an expression that only a run could tell
@@ -33,6 +34,7 @@ class Source:
     defined: tuple[str, ...] = ()  # functions, classes and variables at module level, in order
     names: frozenset[str] = frozenset()  # these and the imported ones
     open_ended: bool = False  # more names may come: import *, globals(), …
+    is_refused: bool = False  # by `python3 FILE`, for its bytes; an import may pass over them
 
     def surely_lacks(self, name: str) -> bool:
         """Tell whether an import of the file could not give it this name."""
@@ -71,7 +73,7 @@ def read_source(path: Path) -> Source:
             has_guard=any(map(_looks_like_guard, data.splitlines())),
             has_main=bool(_UNPARSED_MAIN.search(data)),
         )
-    return _seen(tree)
+    return replace(_seen(tree), is_refused=bool(encoding.fault(data)))
 
 
 def _looks_like_guard(line: bytes) -> bool:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.errors import SubmissionError, UsageError
-from grader.submission import answer, limits
+from grader.submission import answer, encoding, limits
 from grader.submission.finding import find
 from grader.submission.folder import shown
 from grader.submission.imports import read_imports
@@ -38,7 +38,8 @@ def _answer(request: dict[str, Any]) -> bytes:
         found = find(path, request["executable"], scratch)
         only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
         imports = read_imports(found.root, found.start, only)
-        return answer.found(replace(found, imports=imports))
+        refused = encoding.faults(imports.files, found.root)
+        return answer.found(replace(found, imports=imports, notes=(*refused, *found.notes)))
     except (SubmissionError, UsageError) as error:
         return answer.refused(error)
     except OSError as error:

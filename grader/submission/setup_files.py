@@ -18,6 +18,8 @@ SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to
 
 _TARGET: Final = re.compile(r"(\w+(?:\.\w+)*)\s*:\s*(\w+(?:\.\w+)*)\s*(?:\[.*\])?")
 
+_SCRIPTS_FOLDER: Final = ("install_scripts", "install-scripts")
+
 _T = TypeVar("_T")
 
 
@@ -43,6 +45,14 @@ class Package:
     package_folders: Mapping[
         str, str
     ]  # where single top-level packages lie: package_dir={"a": "lib/a"}
+    setup: Mapping[str, object] = field(default_factory=dict)  # arguments of setup(), or UNKNOWN
+    finds_packages: bool = False  # setup.py calls find_packages()
+    scripts_folder: str = ""  # where setup.cfg has programs installed: "$base/lib/spiral"
+
+    @classmethod
+    def without_setup(cls, folder: Path) -> Package:
+        """One that has a package.xml alone."""
+        return cls(folder, (), False, (), (), {})
 
     def roots(self, module: str) -> list[Path]:
         """List the folders to import `module` from, best first; none lies outside the package."""
@@ -65,6 +75,9 @@ class _Said:
     unread: bool = False
     folders: dict[str, str] = field(default_factory=dict)  # package_dir
     searched: list[str] = field(default_factory=list)  # find_packages(where=…)
+    setup: dict[str, object] = field(default_factory=dict)  # arguments of setup(), or UNKNOWN
+    finds_packages: bool = False
+    scripts_folder: str = ""
 
 
 class _Unreadable(Exception):
@@ -90,17 +103,21 @@ def read_package(folder: Path, handed_in: HandedIn) -> Package | None:
     for file, words in said.items():
         for name, target in words.scripts:
             scripts.setdefault(name, _console_script(name, target, file, handed_in))
+    of_setup_py = said.get(folder / "setup.py", _Said())
     folders = {name: lies_in for words in said.values() for name, lies_in in words.folders.items()}
     searched = [name for words in said.values() for name in words.searched]
     return Package(
         folder=folder,
         scripts=tuple(scripts.values()),
-        has_setup_py=said.get(folder / "setup.py", _Said()).is_setup,
+        has_setup_py=of_setup_py.is_setup,
         unread=tuple(file for file, words in said.items() if words.unread),
         source_folders=tuple(
             dict.fromkeys([folders[""], *searched] if "" in folders else searched)
         ),
         package_folders={name: lies_in for name, lies_in in folders.items() if name},
+        setup=of_setup_py.setup,
+        finds_packages=of_setup_py.finds_packages,
+        scripts_folder=said.get(folder / "setup.cfg", _Said()).scripts_folder,
     )
 
 
@@ -155,6 +172,7 @@ def _read_setup_py(data: bytes) -> _Said:
                 "find_packages",
                 "find_namespace_packages",
             ):
+                said.finds_packages |= name == "find_packages"
                 where = [k.value for k in call.keywords if k.arg == "where"] or call.args[:1]
                 said.searched += _of_type(str, [constants.value(node) for node in where])
     return said
@@ -164,6 +182,7 @@ def _hear_setup(arguments: object, said: _Said) -> None:
     if not isinstance(arguments, dict):  # setup(**computed)
         said.unread = True
         return
+    said.setup |= arguments
     said.folders |= _texts(arguments.get("package_dir"))
     entry_points = arguments.get("entry_points")
     if isinstance(entry_points, str):
@@ -201,6 +220,9 @@ def _read_setup_cfg(data: bytes) -> _Said:
         scripts=_entries(scripts.splitlines()),
         folders=dict(folders),
         searched=[where] if where else [],
+        scripts_folder=next(
+            filter(None, (parser.get("install", key, fallback="") for key in _SCRIPTS_FOLDER)), ""
+        ),
     )
 
 

@@ -37,10 +37,12 @@ class Imports:
     Attributes:
         surely: imported whenever the submission is run.
         perhaps: only if a function is called, a condition holds, another import fails.
+        files: the submission's own that are loaded, surely or perhaps; known while it is read.
     """
 
     surely: dict[str, str] = field(default_factory=dict)
     perhaps: dict[str, str] = field(default_factory=dict)
+    files: tuple[Path, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
@@ -52,13 +54,15 @@ class Submission:
     start: EntryPoint | Script
     found: str  # a sentence for the user: "console script turtle_controller in setup.py"
     imports: Imports = field(default_factory=Imports, compare=False)
+    #: for the result: what is wrong with it that a run does not show, and what was not started
+    notes: tuple[str, ...] = field(default=(), compare=False)
     #: where its runs find it; None where it lies in place
     copy: PrivateCopy | None = field(default=None, compare=False)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """For the result: what of it was left out."""
-        return self.copy.remarks if self.copy else ()
+        """For the result: its notes, and what of it was left out."""
+        return (*self.notes, *(self.copy.remarks if self.copy else ()))
 
     def again(self, place: Path) -> Submission:
         """The same for one run, which may write into it: copied below an empty folder."""

@@ -17,6 +17,7 @@ import importlib
 import importlib.machinery
 import importlib.util
 import json
+import re
 import runpy
 import signal
 import sys
@@ -31,6 +32,8 @@ from typing import Any
 #: Installed packages that a submission must never pick up in place of its own.
 OURS = ("turtlesim_challenge", "turtlesim_py", "grader")
 PR_SET_PDEATHSIG = 1
+#: How a line begins that declares the encoding of a file (PEP 263).
+ENCODING = re.compile(rb"[ \t\f]*#.*?coding[:=][ \t]*[-\w.]+")
 
 
 class OnlyFromSubmission:
@@ -141,6 +144,7 @@ def _wait(is_connected: Callable[[], bool], patience_s: float) -> float:
 def run(root: str, target: str, function: str | None) -> object:
     """Start what was handed in; returns what its function returned."""
     if target.endswith(".py"):
+        must_be_text(target)
         if function is None:
             runpy.run_path(target, run_name="__main__")
             return None
@@ -156,6 +160,28 @@ def run(root: str, target: str, function: str | None) -> object:
         check_origin(module, root)
     start: Any = functools.reduce(getattr, str(function).split("."), module)
     return start()
+
+
+def must_be_text(file: str) -> None:
+    """Refuse what `python3 FILE` refuses, and `runpy` passes over or does not place.
+
+    Raises:
+        SyntaxError: bytes that are no UTF-8 and no declared encoding either, or null bytes.
+    """
+    data = Path(file).read_bytes()
+    try:
+        at, why = data.index(0), "source code cannot contain null bytes"
+    except ValueError:
+        try:
+            data.decode()
+            return
+        except UnicodeDecodeError as error:
+            if any(ENCODING.match(line) for line in data.splitlines()[:2]):
+                return  # the compiler goes by it
+            at = error.start
+            why = f"Non-UTF-8 code starting with '\\x{data[at]:02x}', but no encoding declared"
+    line = data.count(b"\n", 0, at) + 1
+    raise SyntaxError(f"{why}; save the file as UTF-8", (file, line, None, None))
 
 
 def check_origin(module: types.ModuleType, root: str) -> None:

@@ -11,6 +11,7 @@ from turtlesim_py.world.events import (
     Event,
     Kill,
     Reset,
+    SetPen,
     Spawn,
     TeleportAbsolute,
     TeleportRelative,
@@ -27,6 +28,10 @@ _INTERVENTIONS: dict[type[Event], str] = {
     Clear: "it wipes the drawing",
 }
 _POSE = f"/{FIRST_TURTLE}/pose"
+
+
+def _draws_with_0(event: SetPen) -> bool:
+    return event.width == 0 and not event.off
 
 
 def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER) -> list[str]:
@@ -48,6 +53,12 @@ def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDE
             first_s = calls[0].tick * TICK_S
             times = "once" if len(calls) == 1 else f"{len(calls)} times"
             found.append(f"The node called {kind.op} {times}, first at {first_s:.2f} s: {effect}.")
+    thin = [event for event in trace.events if isinstance(event, SetPen) and _draws_with_0(event)]
+    if thin:
+        found.append(
+            f"The pen's width is 0, first at {thin[0].tick * TICK_S:.2f} s: that draws like width "
+            "1; what lifts the pen is off = 1."
+        )
     if _POSE in published:
         found.append(
             f"The node published on {_POSE} itself. Judged is where the turtle really was."

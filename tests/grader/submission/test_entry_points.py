@@ -143,11 +143,24 @@ def test_a_set_up_file_that_computes_its_scripts_is_refused_and_not_run(tmp_path
     assert "'turtle_controller = my_package.turtle_controller:main'" in text
 
 
-def test_a_setup_py_without_scripts_is_refused_with_the_line_that_it_lacks(tmp_path: Path) -> None:
+def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_told(
+    tmp_path: Path,
+) -> None:
     files = package("spiral") | {"setup.py": SETUP.format(package="spiral", entries="")}
+    submission = found_in(lay(tmp_path, files))
+    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.root == tmp_path
+    (note,) = (note for note in submission.notes if "names no console script" in note)
+    assert note.startswith("setup.py names no console script")
+    assert "'turtle_controller = spiral.turtle_controller:main'" in note
+
+
+def test_several_programs_and_a_setup_py_without_scripts_are_refused(tmp_path: Path) -> None:
+    files = package("spiral", module="draw") | {"spiral/pens.py": GUARDED}
+    files["setup.py"] = SETUP.format(package="spiral", entries="")
     text = refused(lay(tmp_path, files))
     assert "setup.py names no console script" in text
-    assert "'turtle_controller = spiral.turtle_controller:main'" in text
+    assert "'turtle_controller = my_package.turtle_controller:main'" in text
 
 
 # the module of a console script

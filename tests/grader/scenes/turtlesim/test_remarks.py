@@ -9,7 +9,15 @@ import pytest
 from grader.scenes.turtlesim.remarks import remarks
 from grader.scenes.turtlesim.trace import TurtleTrace
 from tests.grader.driving import Spiral, drive
-from turtlesim_py.world.events import Clear, Kill, Reset, Spawn, TeleportAbsolute, TeleportRelative
+from turtlesim_py.world.events import (
+    Clear,
+    Kill,
+    Reset,
+    SetPen,
+    Spawn,
+    TeleportAbsolute,
+    TeleportRelative,
+)
 
 
 @pytest.fixture(scope="module")
@@ -68,3 +76,12 @@ def test_a_node_that_publishes_the_pose_itself_is_told_what_was_judged(trace):
     (said,) = remarks(trace, ["/turtle1/pose"])
     assert said.startswith("The node published on /turtle1/pose itself.")
     assert "where the turtle really was" in said
+
+
+def test_a_pen_of_width_0_draws_and_says_so(trace):
+    pens = [SetPen(tick=tick, r=1, g=2, b=3, width=0, off=off) for tick, off in ((10, 1), (50, 0))]
+    assert remarks(replace(trace, events=(*trace.events, *pens)), []) == [
+        "The pen's width is 0, first at 0.80 s: that draws like width 1; what lifts the pen is "
+        "off = 1."
+    ]
+    assert remarks(replace(trace, events=(*trace.events, pens[0])), []) == []

@@ -1,0 +1,180 @@
+"""What would keep colcon or ros2 from starting a package is noted, and nothing else is.
+
+What they really do with each of these packages was tried with colcon-ros 0.5.0.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from grader.submission.opening import open_submission
+from tests.grader.submission.test_opening import NODE, below, lay
+
+SETUP = """
+from setuptools import find_packages, setup
+package_name = 'spiral'
+setup(
+    name=package_name,
+    packages=[package_name],
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+    ],
+    entry_points={'console_scripts': ['turtle_controller = spiral.node:main']},
+)
+"""
+MANIFEST = """<?xml version="1.0"?>
+<package format="3">
+  <name>spiral</name>
+  <version>0.1.0</version>
+  <description>TODO</description>
+  <maintainer email="a@example.org">A</maintainer>
+  <license>BSD</license>
+  <export><build_type>ament_python</build_type></export>
+</package>
+"""
+PACKAGE = {
+    "package.xml": MANIFEST,
+    "setup.py": SETUP,
+    "setup.cfg": "[develop]\nscript_dir=$base/lib/spiral\n"
+    "[install]\ninstall_scripts=$base/lib/spiral\n",
+    "resource/spiral": "",
+    "spiral/__init__.py": "",
+    "spiral/node.py": NODE,
+}
+
+
+def notes(path: Path) -> tuple[str, ...]:
+    with open_submission(path) as submission:
+        assert submission.remarks == submission.notes
+        return submission.notes
+
+
+def changed(name: str, old: str, new: str) -> dict[str, str | None]:
+    assert old in PACKAGE[name]
+    return {name: PACKAGE[name].replace(old, new)}
+
+
+def test_a_package_as_ros2_pkg_create_makes_it_needs_no_note(tmp_path: Path) -> None:
+    assert notes(lay(tmp_path, PACKAGE)) == ()
+
+
+def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
+    lay(tmp_path, {"node.py": NODE, "README.md": ""})
+    assert notes(tmp_path / "node.py") == notes(tmp_path) == ()
+
+
+@pytest.mark.parametrize(
+    ("change", "note"),
+    [
+        ({"package.xml": None}, "colcon would not build this: no package.xml beside setup.py"),
+        (
+            {"package.xml": None, **changed("setup.py", "['package.xml']", "[]")},
+            "ros2 run would not find this: no package.xml beside setup.py",
+        ),
+        (
+            changed("package.xml", "</license>", "</licence>"),
+            "ros2 run would not find this: package.xml does not parse, line 7: mismatched tag, so "
+            "that colcon takes it for no ROS package",
+        ),
+        (
+            changed("package.xml", "<license>BSD</license>", ""),
+            "ros2 run would not find this: package.xml has no <license>, so that colcon takes it "
+            "for no ROS package",
+        ),
+        (
+            changed("package.xml", "0.1.0", "1.0"),
+            "ros2 run would not find this: package.xml has the version 1.0; expected three "
+            "numbers, as 0.1.0, so that colcon takes it for no ROS package",
+        ),
+        (
+            changed("package.xml", "<build_type>ament_python</build_type>", ""),
+            "colcon would not build this: package.xml names no build type; expected "
+            "<build_type>ament_python</build_type> in <export>",
+        ),
+        (
+            changed("package.xml", "ament_python", "ament_cmake"),
+            "colcon would not build this: package.xml names the build type ament_cmake; expected "
+            "<build_type>ament_python</build_type> in <export>",
+        ),
+        (
+            changed("package.xml", "<name>spiral", "<name>circle"),
+            "ros2 run circle would find nothing: setup.cfg installs programs in $base/lib/spiral, "
+            "and package.xml calls the package circle: expected install_scripts=$base/lib/circle",
+        ),
+        (
+            {"resource/spiral": None},
+            "colcon would not build this: setup.py installs resource/spiral, and there is no such "
+            "file",
+        ),
+        (
+            {"setup.cfg": None},
+            "ros2 run would not find this: no setup.cfg with install_scripts=$base/lib/spiral "
+            "below [install]",
+        ),
+        (
+            changed("setup.cfg", "install_scripts", "script_dir"),
+            "ros2 run would not find this: setup.cfg has no install_scripts=$base/lib/spiral below "
+            "[install]",
+        ),
+        (
+            changed("setup.py", "packages=[package_name]", "packages=['spirale']"),
+            "colcon would not build this: setup.py lists the package spirale, and there is no such "
+            "folder",
+        ),
+        (
+            changed("setup.py", "packages=[package_name]", "packages=[]"),
+            "ros2 run would not start this: setup.py lists no packages, and so does not install "
+            "spiral",
+        ),
+        (
+            {
+                "spiral/__init__.py": None,
+                **changed("setup.py", "packages=[package_name]", "packages=find_packages()"),
+            },
+            "ros2 run would not start this: find_packages() in setup.py passes over spiral, which "
+            "has no __init__.py",
+        ),
+        ({"setup.py": None, "setup.cfg": None}, "colcon would not build this: no setup.py"),
+    ],
+)
+def test_each_shortcoming_is_a_note(
+    tmp_path: Path, change: dict[str, str | None], note: str
+) -> None:
+    files = PACKAGE | change
+    lay(tmp_path, {name: text for name, text in files.items() if text is not None})
+    assert notes(tmp_path)[0] == note
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        changed("setup.py", "['resource/' + package_name]", "glob('resource/*')"),
+        changed("setup.py", "[package_name]", "find_packages(exclude=['test'])"),
+        changed("setup.py", "packages=[package_name]", "packages=more()"),
+        changed("package.xml", "<name>", "<!-- a -->\n<name>"),
+        changed("package.xml", "<package ", "<!DOCTYPE p [<!ENTITY a 'b'>]>\n<package "),
+        {"CMakeLists.txt": "", **changed("package.xml", "ament_python", "ament_cmake")},
+    ],
+)
+def test_what_only_a_run_could_tell_is_not_told(tmp_path: Path, change: dict[str, str]) -> None:
+    assert notes(lay(tmp_path, PACKAGE | change)) == ()
+
+
+def test_a_package_inside_is_named_with_its_folder(tmp_path: Path) -> None:
+    files = {name: text for name, text in PACKAGE.items() if name != "setup.cfg"}
+    lay(tmp_path, {"README.md": "", **below("src/spiral", files)})
+    (note,) = notes(tmp_path)
+    assert "no setup.cfg in src/spiral with install_scripts" in note
+
+
+def test_other_console_scripts_are_told_as_not_started(tmp_path: Path) -> None:
+    scripts = "'again = spiral.node:main', 'pen_node = spiral.pens:main', 'turtle_controller"
+    change = changed("setup.py", "'turtle_controller", scripts)
+    lay(tmp_path, PACKAGE | change | {"spiral/pens.py": NODE})
+    assert notes(tmp_path) == ("another console script was not started: pen_node",)
+
+
+def test_other_programs_of_a_folder_are_told_as_not_started(tmp_path: Path) -> None:
+    lay(tmp_path, {"turtle_controller.py": NODE, "a.py": NODE, "b.py": NODE, "helper.py": ""})
+    assert notes(tmp_path) == ("other programs were not started: a.py, b.py",)

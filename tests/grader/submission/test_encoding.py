@@ -1,0 +1,92 @@
+"""Bytes that Python refuses are told with file and line, and are not run as if they were right."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.run.student import main as student_main
+from grader.submission.encoding import fault
+from grader.submission.opening import EntryPoint, Script, open_submission
+from tests.grader.submission.copies import in_place
+
+NODE = b"import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
+LATIN_1 = NODE + "# café\n".encode("latin-1")
+DECLARED = b"# -*- coding: latin-1 -*-\n" + LATIN_1
+UTF_16 = NODE.decode().encode("utf-16")
+NULL = NODE + b"x = '\0'\n"
+
+REFUSED = {"latin-1": LATIN_1, "utf-16": UTF_16, "null": NULL, "utf-8 to ascii": b"# \xc3\xa9\xff"}
+READ = {
+    "plain": NODE,
+    "declared": DECLARED,
+    "utf-8": "# café\n".encode(),
+    "mark": b"\xef\xbb\xbf" + NODE,
+    "empty": b"",
+}
+
+
+@pytest.mark.parametrize(("data", "is_read"), [(LATIN_1, False), (UTF_16, False), (DECLARED, True)])
+def test_a_file_is_read_or_refused_as_python_does(
+    tmp_path: Path, data: bytes, is_read: bool
+) -> None:
+    file = tmp_path / "node.py"
+    file.write_bytes(data.replace(b"import rclpy\n", b""))
+    run = subprocess.run([sys.executable, file], capture_output=True, check=False)
+    assert (run.returncode == 0) == (fault(file.read_bytes()) == "") == is_read
+
+
+@pytest.mark.parametrize("data", REFUSED.values(), ids=REFUSED.keys())
+def test_the_run_of_a_file_that_python_refuses_ends_with_its_line(
+    tmp_path: Path, data: bytes
+) -> None:
+    file = tmp_path / "node.py"
+    file.write_bytes(data)
+    assert fault(data)
+    with pytest.raises(SyntaxError, match="save the file as UTF-8") as error:
+        student_main.run(str(tmp_path), str(file), None)
+    assert (error.value.filename, error.value.lineno) == (str(file), told_line(data))
+
+
+def told_line(data: bytes) -> int:
+    return {LATIN_1: 6, NULL: 6}.get(data, 1)
+
+
+@pytest.mark.parametrize("data", READ.values(), ids=READ.keys())
+def test_what_python_reads_is_not_refused(tmp_path: Path, data: bytes) -> None:
+    file = tmp_path / "node.py"
+    file.write_bytes(data)
+    assert fault(data) == ""
+    student_main.must_be_text(str(file))
+
+
+def test_a_lone_file_is_refused_as_python3_would_and_noted(tmp_path: Path) -> None:
+    file = tmp_path / "node.py"
+    file.write_bytes(LATIN_1)
+    with open_submission(file) as submission:
+        assert in_place(submission).start == Script(file)
+        (note,) = submission.remarks
+    assert note.startswith("node.py has a byte (0xe9) in line 6 that is no UTF-8")
+    file.write_bytes(UTF_16)
+    with open_submission(file) as submission:
+        assert submission.remarks == (
+            "node.py is saved as UTF-16, and Python reads UTF-8: save it as UTF-8",
+        )
+
+
+def test_a_module_that_only_an_import_passes_over_is_imported_and_noted(tmp_path: Path) -> None:
+    """As `ros2 run` does it: an import of older Pythons does not look at comments."""
+    setup = "setup(entry_points={'console_scripts': ['turtle_controller = node:main']})\n"
+    (tmp_path / "setup.py").write_text(setup)
+    (tmp_path / "node.py").write_bytes(b"import helper\n" + NODE)
+    (tmp_path / "helper.py").write_bytes(LATIN_1)
+    with open_submission(tmp_path) as submission:
+        assert submission.start == EntryPoint("node", "main")
+        assert submission.notes[0].startswith("helper.py has a byte (0xe9) in line 6")
+
+
+def test_an_absurd_declaration_is_left_to_python(tmp_path: Path) -> None:
+    for declaration in (b"# coding: klingon\n", b"# coding: hex\n", b"\xef\xbb\xbf# coding: ascii"):
+        assert fault(declaration + os.linesep.encode()) == ""
