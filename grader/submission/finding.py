@@ -1,7 +1,8 @@
-"""What of a file, a folder, a package or a zip to start, found without running or importing it.
+"""What of a file, a folder, a package or an archive to start, found without running any of it.
 
 The rules, in order:
 
+0. An archive is unpacked first; so is the only one in a folder that holds no source beside it.
 1. A `.py` file is itself what to start.
 2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml): the one that
    is asked for, else `turtle_controller`, else the only one.
@@ -47,15 +48,16 @@ from grader.submission.folder import (
 )
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.python_source import Source, read_source
-from grader.submission.setup_files import Package
+from grader.submission.setup_files import SETUP_FILES, Package
 from grader.submission.start import EntryPoint, Script, Submission
+from grader.submission.unpacking import Unpacking, is_archive
 
 _UNREADABLE: Final = (
     *(errno.EACCES, errno.EPERM, errno.ENOENT),
     *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
 )
 _CPP: Final = {".cpp", ".cc", ".cxx", ".c", ".hpp", ".h"}
-_ARCHIVES: Final = {".tar", ".gz", ".tgz", ".bz2", ".xz", ".rar", ".7z"}
+_OTHER_ARCHIVES: Final = {".gz", ".bz2", ".tbz2", ".xz", ".txz", ".zst", ".rar", ".7z"}
 
 
 def find(path: Path, executable: str | None, scratch: Path) -> Submission:
@@ -84,11 +86,11 @@ def _find(path: Path, executable: str | None, scratch: Path) -> Submission:
     if not path.exists():
         raise _missing(path)
     if path.is_dir():
-        return _in_folder(HandedIn(name, path.resolve()), executable, scratch)
+        return _in_folder(HandedIn(name, path.resolve()), executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
-    if not is_python and path.suffix.lower() != ".zip":
+    if not is_python and not is_archive(path):
         raise SubmissionError(
-            f"{name} is neither a .py file, nor a folder, nor a .zip. {_advice(path)}"
+            f"{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {_advice(path)}"
         )
     if not path.is_file():
         raise SubmissionError(f"{name} is not an ordinary file. {HAND_IN}")
@@ -100,19 +102,15 @@ def _find(path: Path, executable: str | None, scratch: Path) -> Submission:
             )
         folder = path.parent.resolve()
         return _from_file(HandedIn(name, folder), folder / path.name)
-    from grader.submission.archive import unpack  # here: most submissions are no zip
-
-    unpacked = scratch / "unpacked"
-    unpacked.mkdir()
-    unpack(path, unpacked)
-    return _in_folder(HandedIn(name, unpacked), executable, scratch)
+    unpacking = Unpacking(scratch)
+    return _in_folder(HandedIn(name, unpacking.unpack(path)), executable, unpacking)
 
 
 def _advice(path: Path) -> str:
     kind = path.suffix.lower()
     if kind == ".py":
         return f"Python imports no {path.suffix}: call it {path.stem}.py."
-    if kind in _ARCHIVES:
+    if kind in _OTHER_ARCHIVES:
         return "Unpack it, and pack the same as a .zip."
     if kind == ".ipynb":
         return "Save the notebook as a Python file (.py), and hand in that."
@@ -139,14 +137,17 @@ def _unreadable(path: Path, error: OSError) -> SubmissionError:
     )
 
 
-def _in_folder(handed_in: HandedIn, executable: str | None, scratch: Path) -> Submission:
+def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking) -> Submission:
     top = top_of(handed_in.base)
     if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
         raise SubmissionError(f"{handed_in.name} is an empty folder. {HAND_IN}")
     files = files_below(top)
+    archives = [file for file in files if is_archive(file)]
+    if archives and not any(_is_source(file) for file in files):
+        return _in_archive(handed_in, archives, executable, unpacking)
     packages = find_packages(handed_in, files)
     if choice := packages.choose(executable):
-        return _from_script(handed_in, packages, choice, scratch)
+        return _from_script(handed_in, packages, choice, unpacking.scratch)
     candidates = [file for file in files if _may_be_node(file)]
     if not candidates:
         raise _no_python(handed_in, files)
@@ -162,6 +163,22 @@ def _in_folder(handed_in: HandedIn, executable: str | None, scratch: Path) -> Su
     found = _from_file(handed_in, chosen)
     notes = [*_unbuilt(handed_in, chosen), *not_started("program", others)]
     return replace(found, notes=tuple(notes))
+
+
+def _in_archive(
+    handed_in: HandedIn, archives: list[Path], executable: str | None, unpacking: Unpacking
+) -> Submission:
+    """Look into the one archive that a folder holds, as those are that a course's server makes."""
+    if len(archives) > 1:
+        raise SubmissionError(
+            f"{handed_in.name} holds several archives, and no Python file beside them: "
+            f"{listed(map(handed_in.called, archives))}. Hand in only one of them."
+        )
+    (archive,) = archives
+    handed_in.must_hold(archive)
+    inside = HandedIn(handed_in.name, unpacking.unpack(archive))
+    found = _in_folder(inside, executable, unpacking)
+    return replace(found, found=f"{found.found}, in {handed_in.called(archive)}")
 
 
 def _from_script(
@@ -221,6 +238,10 @@ def _from_file(handed_in: HandedIn, file: Path) -> Submission:
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
     start = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
     return Submission(handed_in.name, file.parent, start, f"function main of {called}")
+
+
+def _is_source(file: Path) -> bool:
+    return file.suffix == ".py" or file.name in SETUP_FILES or file.suffix.lower() in _CPP
 
 
 def _may_be_node(file: Path) -> bool:

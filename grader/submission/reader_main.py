@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.errors import SubmissionError, UsageError
-from grader.submission import answer, encoding, limits
+from grader.submission import answer, encoding, limits, unpacking
 from grader.submission.finding import find
 from grader.submission.folder import shown
 from grader.submission.imports import read_imports
@@ -33,7 +33,7 @@ def main() -> None:
 def _answer(request: dict[str, Any]) -> bytes:
     os.chdir(request["cwd"])
     path, scratch = Path(request["path"]), Path(request["scratch"])
-    _tell_what_is_read(path if path.is_dir() else path.parent, scratch / "unpacked")
+    _tell_what_is_read(path if path.is_dir() else path.parent, *unpacking.places(scratch))
     try:
         found = find(path, request["executable"], scratch)
         only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name

@@ -1,6 +1,9 @@
-"""A zip is unpacked below its folder, within its limits, or refused; none is trusted."""
+"""An archive is unpacked below its folder, within its limits, or refused; none is trusted."""
 
+import gzip
+import io
 import stat
+import tarfile
 import zipfile
 from pathlib import Path
 
@@ -8,6 +11,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.submission.archive import unpack
+from grader.submission.archive_members import Budget
 
 
 def pack(archive: Path, *members: str | zipfile.ZipInfo, data: str = "x") -> Path:
@@ -23,16 +27,16 @@ def special(name: str, kind: int) -> zipfile.ZipInfo:
     return info
 
 
-def unpacked(archive: Path) -> set[str]:
+def unpacked(archive: Path, budget: Budget | None = None) -> set[str]:
     into = archive.parent / "unpacked"
     into.mkdir()
-    unpack(archive, into)
+    unpack(archive, into, budget or Budget())
     return {str(path.relative_to(into)) for path in into.rglob("*") if path.is_file()}
 
 
-def refused(archive: Path) -> str:
+def refused(archive: Path, budget: Budget | None = None) -> str:
     with pytest.raises(SubmissionError) as error:
-        unpacked(archive)
+        unpacked(archive, budget)
     assert {path.name for path in archive.parent.iterdir()} == {archive.name, "unpacked"}
     return str(error.value)
 
@@ -76,7 +80,7 @@ def test_a_device_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("members", [[], ["a/"], ["__MACOSX/a"]])
 def test_an_empty_zip_is_refused(tmp_path: Path, members: list[str]) -> None:
-    assert "a.zip is an empty zip" in refused(pack(tmp_path / "a.zip", *members))
+    assert "a.zip is an empty archive" in refused(pack(tmp_path / "a.zip", *members))
 
 
 def test_a_zip_of_no_bytes_is_refused(tmp_path: Path) -> None:
@@ -139,22 +143,16 @@ def test_an_unknown_compression_is_refused(tmp_path: Path) -> None:
     assert "packed in a way that cannot be read here" in refused(archive)
 
 
-def test_a_zip_with_too_many_files_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("grader.submission.archive.MAX_MEMBERS", 2)
+def test_a_zip_with_too_many_files_is_refused(tmp_path: Path) -> None:
     assert "a.zip holds 3 files; the limit for a submission is 2" in refused(
-        pack(tmp_path / "a.zip", "a", "b", "c")
+        pack(tmp_path / "a.zip", "a", "b", "c"), Budget(files_left=2)
     )
 
 
-def test_a_bomb_is_stopped_while_it_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("grader.submission.archive.MAX_BYTES", 1_000_000)
+def test_a_bomb_is_stopped_while_it_is_read(tmp_path: Path) -> None:
     archive = pack(tmp_path / "a.zip", "a", "b", "c", data="0" * 400_000)
     assert archive.stat().st_size < 10_000
-    assert "a.zip unpacks to more than 1 MB" in refused(archive)
+    assert "a.zip unpacks to more than 1 MB" in refused(archive, Budget(1_000_000))
 
 
 def test_a_zip_that_is_too_large_is_not_even_opened(
@@ -162,3 +160,139 @@ def test_a_zip_that_is_too_large_is_not_even_opened(
 ) -> None:
     monkeypatch.setattr("grader.submission.archive.MAX_BYTES", 10)
     assert "the limit for a submission" in refused(pack(tmp_path / "a.zip", "a"))
+
+
+def test_several_archives_of_a_submission_have_one_limit(tmp_path: Path) -> None:
+    budget = Budget(1_000_000)
+    unpack(pack(tmp_path / "a.zip", "a", data="0" * 600_000), tmp_path, budget)
+    assert "b.zip unpacks to more than 1 MB" in refused_after(
+        pack(tmp_path / "b.zip", "b", data="0" * 600_000), budget
+    )
+
+
+def refused_after(archive: Path, budget: Budget) -> str:
+    into = archive.parent / "unpacked"
+    into.mkdir()
+    with pytest.raises(SubmissionError) as error:
+        unpack(archive, into, budget)
+    return str(error.value)
+
+
+# tars
+
+
+def tar(archive: Path, *members: str | tarfile.TarInfo, data: bytes = b"x") -> Path:
+    mode = "w" if archive.suffix == ".tar" else "w:gz"
+    with tarfile.open(archive, mode) as packed:  # type: ignore[call-overload]
+        for member in members:
+            info = tarfile.TarInfo(member) if isinstance(member, str) else member
+            info.size = len(data) if info.isreg() else 0
+            packed.addfile(info, io.BytesIO(data))
+    return archive
+
+
+def other(name: str, kind: bytes, target: str = "") -> tarfile.TarInfo:
+    info = tarfile.TarInfo(name)
+    info.type, info.linkname = kind, target
+    return info
+
+
+@pytest.mark.parametrize("name", ["a.tar", "a.tar.gz", "a.tgz", "A.TGZ"])
+def test_the_files_of_a_tar_are_written_with_their_folders(tmp_path: Path, name: str) -> None:
+    members = ("./a.py", other("b", tarfile.DIRTYPE), "b/c/d.py", "b/" + 120 * "e" + ".py")
+    archive = tar(tmp_path / name, *members)
+    assert unpacked(archive) == {"a.py", "b/c/d.py", "b/" + 120 * "e" + ".py"}
+    assert (tmp_path / "unpacked/a.py").read_bytes() == b"x"
+    assert {path.name for path in tmp_path.iterdir()} == {name, "unpacked"}
+
+
+def test_what_programs_filled_stays_out_of_a_tar_too(tmp_path: Path) -> None:
+    link = other("w/venv/bin/python", tarfile.SYMTYPE, "/usr/bin/python3")
+    archive = tar(tmp_path / "a.tgz", "w/venv/pyvenv.cfg", link, "w/.git/x", "w/src/a.py")
+    assert unpacked(archive) == {"w/src/a.py"}
+
+
+@pytest.mark.parametrize("member", ["../a.py", "a/../../b.py", "/etc/a.py"])
+def test_a_member_of_a_tar_that_leaves_the_folder_is_refused(tmp_path: Path, member: str) -> None:
+    text = refused(tar(tmp_path / "a.tar", member))
+    assert f"a.tar holds {member}, which would be written outside of its own folder" in text
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        (tarfile.SYMTYPE, "a.py as a link"),
+        (tarfile.LNKTYPE, "a.py as a link"),
+        (tarfile.CHRTYPE, "a.py, which is not an ordinary file"),
+        (tarfile.BLKTYPE, "a.py, which is not an ordinary file"),
+        (tarfile.FIFOTYPE, "a.py, which is not an ordinary file"),
+        (b"?", "a.py, which is not an ordinary file"),
+    ],
+)
+def test_a_member_of_a_tar_that_is_no_file_is_refused(
+    tmp_path: Path, kind: bytes, words: str
+) -> None:
+    assert words in refused(tar(tmp_path / "a.tar", other("a.py", kind, "/etc/passwd")))
+
+
+def test_a_link_is_no_way_for_the_members_after_it(tmp_path: Path) -> None:
+    link = other("sub", tarfile.SYMTYPE, str(tmp_path))
+    assert "as a link" in refused(tar(tmp_path / "a.tar", link, "sub/a.py"))
+
+
+def test_a_bomb_in_a_tar_is_stopped_while_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    archive = tar(tmp_path / "a.tgz", "a", "b", "c", data=b"0" * 400_000)
+    assert archive.stat().st_size < 10_000
+    assert "a.tgz unpacks to more than 1 MB" in refused(archive, Budget(1_000_000))
+    assert {path.name for path in tmp_path.iterdir()} == {"a.tgz", "unpacked"}
+
+
+def test_a_bomb_around_a_tar_is_stopped_while_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("grader.submission.tar_archive.Budget", lambda: Budget(100_000))
+    (tmp_path / "a.tgz").write_bytes(gzip.compress(bytes(200_000)))
+    assert "a.tgz unpacks to more than 0.1 MB" in refused(tmp_path / "a.tgz")
+
+
+def test_a_sparse_member_has_no_size_for_nothing(tmp_path: Path) -> None:
+    info = tarfile.TarInfo("a.py")
+    info.pax_headers = {"GNU.sparse.map": "0,1", "GNU.sparse.size": "100000000000"}
+    assert "not an ordinary file" in refused(tar(tmp_path / "a.tar", info))
+
+
+def test_headers_without_end_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    info = tarfile.TarInfo("a.py")
+    info.pax_headers = {"comment": "x" * 200_000}
+    long = "a.tar lists too many files, or too long names: one of its headers has more than 100 kB"
+    assert long in refused(tar(tmp_path / "a.tar", info))
+    monkeypatch.setattr("grader.submission.tar_archive.MAX_HEADERS", 2)
+    many = tar(tmp_path / "b.tar", "a", "b", "c")
+    assert "it has more than 2 entries" in refused_in(tmp_path / "again", many)
+
+
+def refused_in(folder: Path, archive: Path) -> str:
+    folder.mkdir()
+    return refused(archive.rename(folder / archive.name))
+
+
+@pytest.mark.parametrize("data", [b"Rar!", b"\x1f\x8bRar!", bytes(10_240), b"x" * 600])
+def test_something_else_called_tar_is_refused(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / "a.tar.gz").write_bytes(data)
+    text = refused(tmp_path / "a.tar.gz")
+    assert "cannot be unpacked as a tar file" in text or "is an empty archive" in text
+
+
+@pytest.mark.parametrize("cut", [30, 300])
+def test_a_tar_that_is_cut_off_is_refused(tmp_path: Path, cut: int) -> None:
+    archive = tar(tmp_path / "a.tar.gz", "a.py", data=bytes(range(256)) * 16)
+    archive.write_bytes(archive.read_bytes()[:cut])
+    assert "cannot be unpacked as a tar file" in refused(archive)
+
+
+def test_a_tar_that_ends_within_a_file_is_refused(tmp_path: Path) -> None:
+    archive = tar(tmp_path / "a.tar", "a.py", data=b"x" * 5000)
+    archive.write_bytes(archive.read_bytes()[:2000])
+    assert "cannot be unpacked as a tar file" in refused(archive)

@@ -1,6 +1,8 @@
 """A submission is found, or refused in words that a student can act on; it is never run."""
 
+import io
 import os
+import tarfile
 import zipfile
 from pathlib import Path
 
@@ -212,6 +214,82 @@ def test_a_single_file_leaves_nothing_to_choose(tmp_path: Path) -> None:
         pass
 
 
+# archives in folders and archives
+
+
+def packed(files: dict[str, bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+def nested(levels: int, data: bytes) -> bytes:
+    for level in range(levels):
+        data = packed({f"level{level}.zip": data})
+    return data
+
+
+def test_the_folder_of_a_courses_server_with_a_zip_in_it_is_looked_into(tmp_path: Path) -> None:
+    folder = tmp_path / "Alice Doe_123456_assignsubmission_file_"
+    lay(folder, {"onlinetext.html": "<p>Hello</p>"})
+    pack(folder / "spiral.zip", below("spiral", PACKAGE))
+    with open_submission(folder) as submission:
+        assert submission.name == folder.name
+        assert submission.start == EntryPoint("spiral.node", "main")
+        assert submission.found == "console script turtle_controller in spiral/setup.py, in " + (
+            "spiral.zip"
+        )
+        assert submission.as_handed_in(str(submission.root)).startswith(str(folder))
+
+
+def test_a_zip_in_a_zip_is_unpacked_and_so_is_a_tar(tmp_path: Path) -> None:
+    (tmp_path / "a.zip").write_bytes(nested(1, packed({"node.py": NODE.encode()})))
+    assert found_in(tmp_path / "a.zip").found == "function main of node.py, in level0.zip"
+    lay(tmp_path / "a", PACKAGE)
+    with tarfile.open(tmp_path / "a.tar.gz", "w:gz") as archive:
+        archive.add(tmp_path / "a", "a")
+    with open_submission(tmp_path / "a.tar.gz") as submission:
+        assert submission.start == EntryPoint("spiral.node", "main")
+        assert (submission.root / "spiral/node.py").read_text() == GUARDED
+
+
+def test_archives_are_unpacked_three_levels_deep_and_no_further(tmp_path: Path) -> None:
+    inside = packed({"node.py": NODE.encode()})
+    (tmp_path / "a.zip").write_bytes(nested(2, inside))
+    assert found_in(tmp_path / "a.zip").start == EntryPoint("node", "main")
+    (tmp_path / "b.zip").write_bytes(nested(3, inside))
+    assert "level0.zip lies in an archive in an archive in an archive" in refused(
+        tmp_path / "b.zip"
+    )
+
+
+def test_a_bomb_in_a_zip_is_stopped(tmp_path: Path) -> None:
+    zeros = packed({"zeros": bytes(120_000_000)})
+    (tmp_path / "a.zip").write_bytes(packed({"b.zip": zeros}))
+    lay(tmp_path / "in", {})
+    (tmp_path / "c.zip").write_bytes(packed({"b.zip": packed({"0": bytes(210_000_000)})}))
+    assert (tmp_path / "c.zip").stat().st_size < 300_000
+    assert "b.zip unpacks to more than 200 MB" in refused(tmp_path / "c.zip")
+    assert "no Python file" in refused(tmp_path / "a.zip")
+
+
+def test_several_archives_are_listed_and_none_beside_a_program_is_opened(tmp_path: Path) -> None:
+    for name in ("a.zip", "b.zip"):
+        pack(tmp_path / name, {"node.py": NODE})
+    assert "several archives, and no Python file beside them: a.zip, b.zip." in refused(tmp_path)
+    lay(tmp_path, {"node.py": NODE})
+    assert found_in(tmp_path).found == "function main of node.py"
+
+
+def test_an_archive_that_is_a_link_to_somewhere_else_is_not_opened(tmp_path: Path) -> None:
+    pack(tmp_path / "bob.zip", {"node.py": NODE})
+    lay(tmp_path / "alice", {"README.md": ""})
+    (tmp_path / "alice/mine.zip").symlink_to("../bob.zip")
+    assert "mine.zip is a link to a place outside of alice" in refused(tmp_path / "alice")
+
+
 # refusals
 
 
@@ -234,8 +312,8 @@ def test_an_empty_folder_says_what_to_hand_in(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_python_lists_what_it_holds(tmp_path: Path) -> None:
-    text = refused(lay(tmp_path, {"report.pdf": "", "old.zip": "", "test/a.py": ""}))
-    assert "no Python file that could be the node (it holds: old.zip, report.pdf)" in text
+    text = refused(lay(tmp_path, {"report.pdf": "", "old.rar": "", "test/a.py": ""}))
+    assert "no Python file that could be the node (it holds: old.rar, report.pdf)" in text
 
 
 def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path: Path) -> None:
@@ -247,13 +325,13 @@ def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("name", "advice"),
     [
-        *(("a.tar.gz", "as a .zip"), ("a.rar", "as a .zip"), ("a.ipynb", "(.py)")),
+        *(("a.tar.xz", "as a .zip"), ("a.rar", "as a .zip"), ("a.ipynb", "(.py)")),
         *(("a.PY", "call it a.py"), ("a.txt", HAND_IN), ("README", HAND_IN)),
     ],
 )
 def test_another_kind_of_file_says_what_to_hand_in(tmp_path: Path, name: str, advice: str) -> None:
     text = refused(lay(tmp_path, {name: "x"}) / name)
-    assert text.startswith(f"{name} is neither a .py file, nor a folder, nor a .zip.")
+    assert text.startswith(f"{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz.")
     assert advice in text
 
 

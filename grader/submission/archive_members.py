@@ -1,0 +1,158 @@
+"""What lies in an archive, of whatever kind, and which of it may be written: nothing is trusted."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import IO, Final
+
+from grader.errors import SubmissionError
+from grader.submission.folder import MAX_BYTES, is_junk, marks_generated, shown
+
+MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
+MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more
+PACK_AGAIN: Final = "Pack your .py file or package folder into a new .zip and hand that in."
+
+_CHUNK_BYTES: Final = 1 << 16
+
+
+@dataclass(frozen=True)
+class Member:
+    """One entry of an archive.
+
+    Attributes:
+        name: as it stands there.
+        is_folder: it holds nothing itself.
+        refusal: what is wrong with it, as what follows the archive's name; '' for a plain file.
+        open: gives what is in it.
+    """
+
+    name: str
+    is_folder: bool
+    refusal: str
+    open: Callable[[], IO[bytes]]
+
+
+class ListTooLong(Exception):
+    """An archive lists more than any submission has; the text says how much more."""
+
+
+class Bounded(io.BufferedReader):
+    """A file of which not much can be read at once: that is what lists of members ask for.
+
+    Args:
+        most: so many bytes can be read at once.
+        why: of the refusal.
+    """
+
+    def __init__(self, path: Path, most: int, why: str) -> None:
+        super().__init__(io.FileIO(path))
+        self._most, self._why = most, why
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Read as any file does, but not more than allowed.
+
+        Raises:
+            ListTooLong: it would be more.
+        """
+        if size is not None and size > self._most:
+            raise ListTooLong(self._why)
+        data = super().read(self._most + 1 if size is None or size < 0 else size)
+        if len(data) > self._most:
+            raise ListTooLong(self._why)
+        return data
+
+
+class Budget:
+    """What may still come out of a submission's archives, of all of them together."""
+
+    def __init__(self, bytes_left: int = MAX_BYTES, files_left: int = MAX_MEMBERS) -> None:
+        self._all_bytes, self._all_files = bytes_left, files_left
+        self._bytes_left, self._files_left = bytes_left, files_left
+
+    def take_bytes(self, name: str, count: int) -> None:
+        """Count bytes that came out of the archive of this name.
+
+        Raises:
+            SubmissionError: they are too many.
+        """
+        self._bytes_left -= count
+        if self._bytes_left < 0:
+            raise SubmissionError(
+                f"{name} unpacks to more than {self._all_bytes / 1e6:g} MB, the limit for a "
+                "submission. Leave out recordings, videos and virtual environments, and pack it "
+                "again."
+            )
+
+    def take_files(self, name: str, count: int) -> None:
+        """Count files that an archive holds.
+
+        Raises:
+            SubmissionError: they are too many.
+        """
+        self._files_left -= count
+        if self._files_left < 0:
+            raise SubmissionError(
+                f"{name} holds {count:,} files; the limit for a submission is "
+                f"{self._all_files:,}. {PACK_AGAIN}"
+            )
+
+
+def write(name: str, members: Sequence[Member], into: Path, budget: Budget) -> None:
+    """Write what really comes out, and count it: the sizes in an archive are only claims.
+
+    Raises:
+        SubmissionError: a member is no plain file, or would be written elsewhere; or there are
+            too many, or none.
+    """
+    for path, member in _chosen(name, members, budget):
+        target = into / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with member.open() as source, target.open("wb") as file:
+            while chunk := source.read(_CHUNK_BYTES):
+                budget.take_bytes(name, len(chunk))
+                file.write(chunk)
+
+
+def _chosen(
+    name: str, members: Sequence[Member], budget: Budget
+) -> list[tuple[PurePosixPath, Member]]:
+    """Check the members and keep the files to write; directories are made on the way."""
+    everything = [(_inside(name, member.name), member) for member in members]
+    # .parent.name is "" at the top: what was handed in is never left out as a whole
+    marks = [path for path, _ in everything if marks_generated(path) and path.parent.name]
+    left_out = {mark.parent for mark in marks}
+    chosen = [
+        (path, member)
+        for path, member in everything
+        if not member.is_folder
+        and not any(is_junk(folder) for folder in path.parts[:-1])
+        and left_out.isdisjoint(path.parents)
+    ]
+    if not chosen:
+        raise SubmissionError(f"{name} is an empty archive: it holds no files. {PACK_AGAIN}")
+    budget.take_files(name, len(chosen))
+    for _, member in chosen:
+        if member.refusal:
+            raise SubmissionError(f"{name} {member.refusal}")
+    return chosen
+
+
+def _inside(name: str, member: str) -> PurePosixPath:
+    """Turn a member's name into a path; some Windows programs write it with backslashes."""
+    text = member.replace("\\", "/")
+    if len(text) > MAX_NAME:
+        raise SubmissionError(
+            f"{name} holds a name of {len(text):,} characters ({shown(member)}); the limit is "
+            f"{MAX_NAME:,}. {PACK_AGAIN}"
+        )
+    path = PurePosixPath(text)
+    if path.is_absolute() or ".." in path.parts or re.match("[A-Za-z]:/", text):
+        raise SubmissionError(
+            f"{name} holds {shown(member)}, which would be written outside of its own folder. "
+            f"{PACK_AGAIN}"
+        )
+    return path

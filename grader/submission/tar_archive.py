@@ -1,0 +1,84 @@
+"""The members of a tar, compressed by gzip or not, read without trusting its headers."""
+
+from __future__ import annotations
+
+import gzip
+import tarfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import IO, Final
+
+from grader.submission.archive_members import (
+    PACK_AGAIN,
+    Bounded,
+    Budget,
+    ListTooLong,
+    Member,
+)
+from grader.submission.folder import shown
+
+MAX_HEADERS: Final = 50_000  # with those of caches and venvs, which are not written
+MAX_HEADER_BYTES: Final = 100_000  # of one header, with the long names that come before it
+
+_LONG: Final = f"one of its headers has more than {MAX_HEADER_BYTES / 1e3:g} kB"
+_GZIP: Final = b"\x1f\x8b"
+_CHUNK_BYTES: Final = 1 << 16
+
+
+@contextmanager
+def opened(archive: Path, plain: Path) -> Iterator[list[Member]]:
+    """What is in it.
+
+    Args:
+        plain: where the tar may lie without its compression; gone afterwards.
+
+    Raises:
+        ListTooLong: there are too many members, or their names are too long.
+        SubmissionError: it is too large without its compression.
+        Exception: it is damaged; see `archive.DAMAGED`.
+    """
+    with archive.open("rb") as file:
+        is_compressed = file.read(len(_GZIP)) == _GZIP
+    try:
+        if is_compressed:
+            _decompress(archive, plain)
+        with (
+            Bounded(plain if is_compressed else archive, MAX_HEADER_BYTES, _LONG) as file,
+            tarfile.TarFile(fileobj=file, errorlevel=0) as packed,
+        ):
+            yield list(_members(packed))
+    finally:
+        plain.unlink(missing_ok=True)
+
+
+def _decompress(archive: Path, plain: Path) -> None:
+    budget, name = Budget(), shown(archive.name)
+    with gzip.open(archive) as source, plain.open("xb") as target:
+        while chunk := source.read(_CHUNK_BYTES):
+            budget.take_bytes(name, len(chunk))
+            target.write(chunk)
+
+
+def _members(packed: tarfile.TarFile) -> Iterator[Member]:
+    for number, info in enumerate(packed):
+        if number >= MAX_HEADERS:
+            raise ListTooLong(f"it has more than {MAX_HEADERS:,} entries")
+        yield Member(info.name, info.isdir(), _refusal(info), partial(_file, packed, info))
+
+
+def _file(packed: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
+    file = packed.extractfile(info)
+    if file is None:
+        raise tarfile.ReadError("a member has no content")
+    return file
+
+
+def _refusal(info: tarfile.TarInfo) -> str:
+    path = shown(info.name)
+    if info.issym() or info.islnk():
+        return f"holds {path} as a link. Pack it again with the file itself in that place."
+    if not info.isreg() or info.issparse():
+        return f"holds {path}, which is not an ordinary file. {PACK_AGAIN}"
+    return ""

@@ -1,0 +1,58 @@
+"""Where the archives of one submission are unpacked: one in another, and not many."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from grader.errors import SubmissionError
+from grader.submission.folder import shown
+
+if TYPE_CHECKING:
+    from grader.submission.archive_members import Budget
+
+#: A zip of a course's server, in it the student's own, in that a zip once more by mistake.
+MAX_LEVELS: Final = 3
+
+_ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
+
+
+def is_archive(path: Path) -> bool:
+    """Tell by its name whether a file is one that can be unpacked."""
+    return path.name.lower().endswith(_ENDINGS)
+
+
+def places(scratch: Path) -> list[Path]:
+    """Where archives may be unpacked, the outermost first."""
+    return [scratch / f"unpacked{level or ''}" for level in range(MAX_LEVELS)]
+
+
+class Unpacking:
+    """The archives of a submission, as they are unpacked; together they have one limit."""
+
+    def __init__(self, scratch: Path) -> None:
+        self.scratch = scratch
+        self._places = places(scratch)
+        self._budget: Budget | None = None
+
+    def unpack(self, archive: Path) -> Path:
+        """Unpack one; the folder with what was in it.
+
+        Raises:
+            SubmissionError: it cannot be, or lies in too many others.
+        """
+        from grader.submission.archive import unpack  # here: most submissions are none
+        from grader.submission.archive_members import Budget
+
+        if not self._places:
+            raise SubmissionError(
+                f"{shown(archive.name)} lies in an archive in an archive in an archive, which is "
+                "too deep. Hand in the innermost."
+            )
+        if not archive.is_file():
+            raise SubmissionError(f"{shown(archive.name)} is not an ordinary file.")
+        self._budget = self._budget or Budget()
+        place = self._places.pop(0)
+        place.mkdir()
+        unpack(archive, place, self._budget)
+        return place
