@@ -10,7 +10,16 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from grader.errors import SubmissionError
-from grader.submission.folder import MAX_BYTES, is_junk, marks_generated, shown
+from grader.submission.folder import (
+    BEGINNING_BYTES,
+    MAX_BYTES,
+    RESULT,
+    is_junk,
+    is_result,
+    is_source,
+    marks_generated,
+    shown,
+)
 
 MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
 MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more
@@ -124,7 +133,9 @@ def _chosen(
     everything = [(_inside(name, member.name), member) for member in members]
     # .parent.name is "" at the top: what was handed in is never left out as a whole
     marks = [path for path, _ in everything if marks_generated(path) and path.parent.name]
-    left_out = {mark.parent for mark in marks}
+    results = {path.parent for path, member in everything if _is_result(path, member)}
+    sources = {path.parent for path, _ in everything if is_source(path.name)}
+    left_out = {mark.parent for mark in marks} | (results - sources)
     chosen = [
         (path, member)
         for path, member in everything
@@ -139,6 +150,14 @@ def _chosen(
         if member.refusal:
             raise SubmissionError(f"{name} {member.refusal}")
     return chosen
+
+
+def _is_result(path: PurePosixPath, member: Member) -> bool:
+    """Whether it is the result of an earlier grading, in a folder of its own."""
+    if path.name != RESULT or not path.parent.name or member.is_folder or member.refusal:
+        return False
+    with member.open() as source:
+        return is_result(source.read(BEGINNING_BYTES))
 
 
 def _inside(name: str, member: str) -> PurePosixPath:

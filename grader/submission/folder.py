@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -17,6 +18,10 @@ MAX_ENTRIES: Final = 10_000  # files and folders that are looked at
 MAX_SOURCE_BYTES: Final = 1_000_000  # a Python or set-up file larger than this is not read here
 MAX_BYTES: Final = 200_000_000  # of all files together, where they are unpacked or copied
 MAX_SHOWN: Final = 300  # characters of a name in a message
+
+RESULT: Final = "result.json"
+BEGINNING_BYTES: Final = 200  # of a file tell whose it is
+_OUR_RESULT: Final = re.compile(rb'\s*\{\s*"schema"\s*:\s*"turtlesim-grader/result/')
 
 _NEAR_NAMES: Final = 200  # that a name is compared with: the time goes with the cube of their
 _NEAR_LENGTH: Final = 100  # length
@@ -65,9 +70,30 @@ def marks_generated(path: PurePath) -> bool:
 
 
 def is_generated(folder: Path) -> bool:
-    """Tell whether a folder holds such a mark."""
+    """Tell whether a folder holds such a mark, or what an earlier grading has left."""
     marks = (folder / "pyvenv.cfg", folder / "COLCON_IGNORE")
-    return any(marks_generated(mark) and mark.exists() for mark in marks)
+    if any(marks_generated(mark) and mark.exists() for mark in marks):
+        return True
+    result = folder / RESULT
+    if not result.is_file():
+        return False
+    with result.open("rb") as file:
+        begin = file.read(BEGINNING_BYTES)
+    entries = islice(folder.iterdir(), MAX_ENTRIES)
+    return is_result(begin) and not any(is_source(entry.name) for entry in entries)
+
+
+def is_result(begin: bytes) -> bool:
+    """Tell by its beginning whether a file called RESULT is this grader's own.
+
+    Where no source lies beside it, its folder is what `grader run .` has left in a package.
+    """
+    return _OUR_RESULT.match(begin) is not None
+
+
+def is_source(name: str) -> bool:
+    """Tell whether a file of this name is part of a program or a package."""
+    return name.endswith(".py") or name in ("package.xml", "setup.cfg", "pyproject.toml")
 
 
 def top_of(folder: Path) -> Path:

@@ -60,6 +60,16 @@ def test_what_programs_filled_stays_out(tmp_path: Path) -> None:
     assert unpacked(archive) == {"w/src/a.py", "w/test/b.py"}
 
 
+def test_what_an_earlier_grading_has_left_stays_out(tmp_path: Path) -> None:
+    result = '{"schema": "turtlesim-grader/result/v1"}'
+    archive = pack(tmp_path / "a.zip", "w/graded/w/result.json", "w/b/result.json", data=result)
+    with zipfile.ZipFile(archive, "a") as packed:
+        packed.writestr("w/graded/w/recording/trace.npz", "x")
+        packed.writestr("w/b/node.py", "x")
+        packed.writestr("w/c/result.json", "{}")
+    assert unpacked(archive) == {"w/b/node.py", "w/b/result.json", "w/c/result.json"}
+
+
 @pytest.mark.parametrize(
     "member", ["../a.py", "a/../../b.py", "/etc/a.py", "C:\\a.py", "..\\a.py", ".git/../../a.py"]
 )

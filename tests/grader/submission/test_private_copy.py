@@ -91,6 +91,17 @@ def test_a_package_comes_with_all_that_lies_in_it(home: Path) -> None:
         assert flags(submission) == submission.notes
 
 
+def test_what_an_earlier_grading_has_left_is_not_handed_in_again(home: Path) -> None:
+    """`grader run .` writes into the package itself."""
+    result = '{\n  "schema": "turtlesim-grader/result/v1",\n}'
+    left = {"graded/home/result.json": result, "graded/home/recording/output.txt": "x"}
+    own = {"spiral/result.json": result, "data/result.json": "{}"}  # beside source; not ours
+    lay(home, PACKAGE | left | own)
+    with open_submission(home) as submission:
+        names = {*PACKAGE, *own, "spiral", "data", "graded"}
+        assert held(submission) == sorted(names)
+
+
 def test_the_copy_is_for_reading_only_and_what_was_executable_is(home: Path) -> None:
     lay(home, PACKAGE | {"run.sh": "#!/bin/sh\n"})
     (home / "run.sh").chmod(0o755)
