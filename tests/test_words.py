@@ -43,6 +43,8 @@ ALLOWED = {
     "grader/submission/finding.py": [r"turtle_controller"],
     "grader/submission/entry_points.py": [r"turtle_controller"],
     "grader/submission/setup_files.py": [r"turtle_controller"],
+    # the simulator that students' launch files start
+    "grader/submission/launching.py": [r'_SIMULATOR = \("turtlesim", "turtlesim_node"\)'],
     "grader/submission/start.py": [r"turtle_controller"],
 }
 

@@ -16,7 +16,6 @@ from grader.run.plan import Plan
 from grader.run.processes import usage
 from grader.run.processes.watched import Watched
 from grader.run.simulator_process import Message, Simulator, start_simulator
-from grader.run.student import main as student_main
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
 from grader.submission.opening import Submission
@@ -90,7 +89,7 @@ def command(submission: Submission, introduction: Introduction, evidence_fd: int
     """How the submission's process is started."""
     awaited = json.dumps([introduction.topics, introduction.services])
     words = [awaited, str(evidence_fd), *stage.target(submission)]
-    return [sys.executable, student_main.__file__, *words]
+    return [sys.executable, stage.program(submission), *words]
 
 
 def _watch(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import tempfile
 import uuid
@@ -18,17 +19,39 @@ from grader.run.processes.family import start_student
 from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
-from grader.submission.opening import EntryPoint, Submission
+from grader.run.student import main as student_main
+from grader.submission.opening import EntryPoint, Launch, Submission
 
 
 def target(submission: Submission) -> list[str]:
     """What of a submission is started, as arguments of its process's `main`."""
     start = submission.start
-    if isinstance(start, EntryPoint):
-        words = [f"{start.module}:{start.function}"]
+    if isinstance(start, Launch):
+        words = [json.dumps([[p.name, _words(p.entry), p.arguments] for p in start.programs])]
+    elif isinstance(start, EntryPoint):
+        words = [_words(start)]
     else:
         words = [str(start.path), *([start.function] if start.function else [])]
     return [str(submission.root), *words]
+
+
+def _words(entry: EntryPoint) -> str:
+    return f"{entry.module}:{entry.function}"
+
+
+def program(submission: Submission) -> str:
+    """The file with the `main` of a submission's process, in real time."""
+    alone = Path(student_main.__file__)
+    is_launch = isinstance(submission.start, Launch)
+    return str(alone.with_name("launched.py") if is_launch else alone)
+
+
+def not_in_virtual_time(submission: Submission) -> str:
+    """What of its start virtual time cannot follow, to complete "because ..."; '' if nothing."""
+    if not isinstance(submission.start, Launch):
+        return ""
+    names = ", ".join(each.name for each in submission.start.programs)
+    return f"several programs were started, each in a process of its own: {names}"
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def run(
         GraderFailure: the simulator could not be started or died; where the submission had said
             something to it, as a `SimulatorLost`.
     """
-    why = contract.lacking()
+    why = stage.not_in_virtual_time(submission) or contract.lacking()
     if not why:
         recording, why = _try(submission, plan, patience, {} if marks is None else marks)
         if recording is not None:

@@ -12,7 +12,14 @@ from typing import Any, Final
 
 from grader import strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
-from grader.submission.start import EntryPoint, Imports, Script, Submission
+from grader.submission.start import (
+    EntryPoint,
+    Imports,
+    Launch,
+    Program,
+    Script,
+    Submission,
+)
 from grader.text import clip
 
 #: How a line begins that tells where the process is; a string in JSON follows.
@@ -36,20 +43,31 @@ def at(place: str) -> bytes:
 
 def found(submission: Submission) -> bytes:
     """The answer of one who has found what to start."""
-    start = submission.start
     return _line(
         {
             "name": submission.name,
             "root": str(submission.root),
-            "start": {"module": start.module, "function": start.function}
-            if isinstance(start, EntryPoint)
-            else {"path": str(start.path), "function": start.function},
+            "start": _told(submission.start),
             "found": submission.found,
             "surely": _some(submission.imports.surely),
             "perhaps": _some(submission.imports.perhaps),
             "notes": [clip(note, _MAX_NOTE) for note in submission.notes[:_MAX_NOTES]],
         }
     )
+
+
+def _told(start: EntryPoint | Script | Launch) -> dict[str, object]:
+    match start:
+        case EntryPoint(module, function):
+            return {"module": module, "function": function}
+        case Script(path, function):
+            return {"path": str(path), "function": function}
+    return {
+        "programs": [
+            {"name": each.name, "entry": _told(each.entry), "arguments": list(each.arguments)}
+            for each in start.programs
+        ]
+    }
 
 
 def refused(error: GraderError) -> bytes:
@@ -116,12 +134,23 @@ def decoded(said: dict[str, Any]) -> Submission:
     raise _nonsense()
 
 
-def _start(said: dict[str, Any]) -> EntryPoint | Script:
+def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch:
     match said:
+        case {"programs": list(programs)} if programs:
+            return Launch(tuple(map(_program, programs)))
         case {"module": str(module), "function": str(function)}:
             return EntryPoint(module, function)
         case {"path": str(path), "function": str() | None as function}:
             return Script(Path(path), function)
+    raise _nonsense()
+
+
+def _program(said: object) -> Program:
+    match said:
+        case {"name": str(name), "entry": dict(entry), "arguments": list(arguments)}:
+            start = _start(entry)
+            if isinstance(start, EntryPoint) and all(isinstance(each, str) for each in arguments):
+                return Program(name, start, tuple(arguments))
     raise _nonsense()
 
 

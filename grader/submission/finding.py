@@ -5,9 +5,11 @@ The rules, in order:
 0. An archive is unpacked first; so is the only one in a folder that holds no source beside it.
 1. A `.py` file is itself what to start.
 2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml): the one that
-   is asked for, else `turtle_controller`, else the only one.
+   is asked for; else those that a launch file of the package starts, if it plainly starts several
+   of its programs; else `turtle_controller`, else the only one.
 3. Else a Python file that starts itself or has a function `main`: the one that is asked for, else
-   `turtle_controller.py`, else `main.py`, else the only one.
+   `turtle_controller.py`, else `main.py`, else the only one. So in a package whose setup.py
+   names no console script.
 
 What these do not settle is a SubmissionError that lists the candidates.
 """
@@ -16,7 +18,6 @@ from __future__ import annotations
 
 import errno
 from dataclasses import replace
-from itertools import islice
 from pathlib import Path
 from sys import stdlib_module_names
 from typing import Final
@@ -42,12 +43,13 @@ from grader.submission.folder import (
     files_below,
     is_junk,
     listed,
-    near,
     shown,
     top_of,
 )
+from grader.submission.launching import find_launched, launch_files, not_run
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.python_source import Source, read_source
+from grader.submission.refusals import CPP, advice, missing, no_python, unreadable
 from grader.submission.setup_files import SETUP_FILES, Package
 from grader.submission.start import EntryPoint, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
@@ -56,8 +58,6 @@ _UNREADABLE: Final = (
     *(errno.EACCES, errno.EPERM, errno.ENOENT),
     *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
 )
-_CPP: Final = {".cpp", ".cc", ".cxx", ".c", ".hpp", ".h"}
-_OTHER_ARCHIVES: Final = {".gz", ".bz2", ".tbz2", ".xz", ".txz", ".zst", ".rar", ".7z"}
 
 
 def find(path: Path, executable: str | None, scratch: Path) -> Submission:
@@ -78,19 +78,19 @@ def find(path: Path, executable: str | None, scratch: Path) -> Submission:
     except OSError as error:
         if error.errno not in _UNREADABLE:
             raise
-        raise _unreadable(path, error) from error
+        raise unreadable(path, error) from error
 
 
 def _find(path: Path, executable: str | None, scratch: Path) -> Submission:
     name = shown(path.name or path.resolve().name)
     if not path.exists():
-        raise _missing(path)
+        raise missing(path)
     if path.is_dir():
         return _in_folder(HandedIn(name, path.resolve()), executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
-            f"{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {_advice(path)}"
+            f"{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice(path)}"
         )
     if not path.is_file():
         raise SubmissionError(f"{name} is not an ordinary file. {HAND_IN}")
@@ -106,37 +106,6 @@ def _find(path: Path, executable: str | None, scratch: Path) -> Submission:
     return _in_folder(HandedIn(name, unpacking.unpack(path)), executable, unpacking)
 
 
-def _advice(path: Path) -> str:
-    kind = path.suffix.lower()
-    if kind == ".py":
-        return f"Python imports no {path.suffix}: call it {path.stem}.py."
-    if kind in _OTHER_ARCHIVES:
-        return "Unpack it, and pack the same as a .zip."
-    if kind == ".ipynb":
-        return "Save the notebook as a Python file (.py), and hand in that."
-    return f"Only Python can be graded. {HAND_IN}" if kind in _CPP else HAND_IN
-
-
-def _missing(path: Path) -> UsageError:
-    folder = path.parent
-    if not folder.is_dir():
-        return UsageError(f"{shown(path)} does not exist: there is no folder {shown(folder)}.")
-    there = islice((entry.name for entry in folder.iterdir()), MAX_ENTRIES)
-    meant = near(path.name, sorted(there))
-    advice = f"Did you mean {listed(meant)}?" if meant else "Check the name and the folder."
-    return UsageError(f"{shown(path)} does not exist. {advice}")
-
-
-def _unreadable(path: Path, error: OSError) -> SubmissionError:
-    base, culprit = path.resolve(), Path(error.filename or path)
-    called = culprit.relative_to(base) if base in culprit.parents else path
-    is_long = error.errno == errno.ENAMETOOLONG
-    return SubmissionError(
-        f"{shown(called)} cannot be read: {error.strerror}. "
-        f"{'Shorten its name' if is_long else 'Check its permissions'}, and hand it in again."
-    )
-
-
 def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking) -> Submission:
     top = top_of(handed_in.base)
     if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
@@ -146,11 +115,16 @@ def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking
     if archives and not any(_is_source(file) for file in files):
         return _in_archive(handed_in, archives, executable, unpacking)
     packages = find_packages(handed_in, files)
+    if executable is None and (launched := find_launched(handed_in, packages, files)):
+        found = _from_script(handed_in, packages, launched.first, unpacking.scratch)
+        return launched.start(handed_in, found)
     if choice := packages.choose(executable):
-        return _from_script(handed_in, packages, choice, unpacking.scratch)
+        found = _from_script(handed_in, packages, choice, unpacking.scratch)
+        launches = launch_files(handed_in, choice[0], files)
+        return replace(found, notes=(*found.notes, *not_run(handed_in, launches, *choice)))
     candidates = [file for file in files if _may_be_node(file)]
     if not candidates:
-        raise _no_python(handed_in, files)
+        raise no_python(handed_in, files)
     starting = [file for file in candidates if _starts(read_source(file))] or candidates
     several = executable is None and len(_usual(starting)) > 1
     if several and (package := packages.holding(starting[0])):
@@ -241,7 +215,7 @@ def _from_file(handed_in: HandedIn, file: Path) -> Submission:
 
 
 def _is_source(file: Path) -> bool:
-    return file.suffix == ".py" or file.name in SETUP_FILES or file.suffix.lower() in _CPP
+    return file.suffix == ".py" or file.name in SETUP_FILES or file.suffix.lower() in CPP
 
 
 def _may_be_node(file: Path) -> bool:
@@ -288,17 +262,4 @@ def _no_script(handed_in: HandedIn, package: Package, starting: list[Path]) -> s
     return (
         f"{called} names no console script, so that `ros2 run` finds nothing to start. "
         f"Expected in its entry_points: {example(module)}"
-    )
-
-
-def _no_python(handed_in: HandedIn, files: list[Path]) -> SubmissionError:
-    names = [handed_in.called(file) for file in files]
-    holds = f"it holds: {listed(names) or 'only folders that are not searched'}"
-    if any(file.suffix.lower() in _CPP or file.name == "CMakeLists.txt" for file in files):
-        return SubmissionError(
-            f"{handed_in.name} has no Python node, but C++ ({holds}). Only Python can be graded. "
-            f"{HAND_IN}"
-        )
-    return SubmissionError(
-        f"{handed_in.name} has no Python file that could be the node ({holds}). {HAND_IN}"
     )

@@ -11,14 +11,16 @@ from typing import Final
 
 from grader.submission.folder import read_bounded, shown
 from grader.submission.python_source import parse
-from grader.submission.start import EntryPoint, Imports, Script
+from grader.submission.start import EntryPoint, Imports, Launch, Script
 
 #: What runs together with the statement that it stands in, once and in any case.
 _ALWAYS: Final = (ast.Module, ast.ClassDef, ast.With, ast.AsyncWith)
 _BODIES: Final = (ast.stmt, ast.ExceptHandler, ast.match_case)
 
 
-def read_imports(root: Path, start: EntryPoint | Script, only: Path | None = None) -> Imports:
+def read_imports(
+    root: Path, start: EntryPoint | Script | Launch, only: Path | None = None
+) -> Imports:
     """Read what is started, and what of the submission that imports in turn.
 
     A file that cannot be read or parsed tells nothing: the run shows what is wrong with it. Nor
@@ -33,10 +35,13 @@ def read_imports(root: Path, start: EntryPoint | Script, only: Path | None = Non
 
     found = Imports()
     pending: deque[tuple[Path, str, bool]] = deque()  # file, its package, whether surely loaded
-    if isinstance(start, EntryPoint):
-        pending.extend((*file, True) for file in files(start.module))
-    else:
+    if isinstance(start, Script):
         pending.append((start.path, "", True))
+    else:
+        entries = (
+            [start] if isinstance(start, EntryPoint) else [each.entry for each in start.programs]
+        )
+        pending.extend((*file, True) for entry in entries for file in files(entry.module))
     seen: set[tuple[Path, bool]] = set()
     while pending:
         file, package, is_loaded = pending.popleft()

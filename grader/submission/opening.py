@@ -15,9 +15,9 @@ from pathlib import Path
 from grader.scratch import make_folder
 from grader.submission import reader
 from grader.submission.private_copy import copy_privately
-from grader.submission.start import EntryPoint, Imports, Script, Submission
+from grader.submission.start import EntryPoint, Imports, Launch, Script, Submission
 
-__all__ = ["EntryPoint", "Imports", "Script", "Submission", "open_submission"]
+__all__ = ["EntryPoint", "Imports", "Launch", "Script", "Submission", "open_submission"]
 
 
 @contextmanager

@@ -29,6 +29,22 @@ class Script:
 
 
 @dataclass(frozen=True)
+class Program:
+    """One of several that are started."""
+
+    name: str  # of the console script
+    entry: EntryPoint
+    arguments: tuple[str, ...]  # of ROS: "--ros-args", "-r", "__ns:=/left"
+
+
+@dataclass(frozen=True)
+class Launch:
+    """Start several programs of a package, each in a process of its own, as a launch file does."""
+
+    programs: tuple[Program, ...]
+
+
+@dataclass(frozen=True)
 class Imports:
     """The modules, by the first part of their names, that are not the submission's own.
 
@@ -51,7 +67,7 @@ class Submission:
 
     name: str  # as handed in: "alice.zip", "turtle_controller.py"
     root: Path  # in its copy, absolute; comes first on sys.path and is the working directory
-    start: EntryPoint | Script
+    start: EntryPoint | Script | Launch
     found: str  # a sentence for the user: "console script turtle_controller in setup.py"
     imports: Imports = field(default_factory=Imports, compare=False)
     #: for the result: what is wrong with it that a run does not show, and what was not started

@@ -233,24 +233,29 @@ def die_with_parent() -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def forget_ourselves(root: str, target: str) -> None:
+def forget_ourselves(root: str, target: str, arguments: Sequence[str] = ()) -> None:
     """Have the interpreter look as it would at a student's desk."""
-    sys.argv = [Path(target).name if target.endswith(".py") else target.partition(":")[0]]
+    name = Path(target).name if target.endswith(".py") else target.partition(":")[0]
+    sys.argv = [name, *arguments]
     sys.path[0] = root
     sys.meta_path.insert(0, OnlyFromSubmission(root))
     for name in [name for name in sys.modules if name.partition(".")[0] in OURS]:
         del sys.modules[name]
 
 
-def main() -> None:
-    """Prepare the interpreter, run, and leave with the exit code."""
+def main(arguments: Sequence[str] = ()) -> None:
+    """Prepare the interpreter, run, and leave with the exit code.
+
+    Args:
+        arguments: of the submission's program.
+    """
     _, awaited, evidence, root, target, *more = sys.argv
     die_with_parent()
     sys.path[0] = str(Path(__file__).resolve().parents[3])
     from grader.run.student.looking import Looking
 
     looking = Looking(int(evidence), root)
-    forget_ourselves(root, target)
+    forget_ourselves(root, target, arguments)
     introduced = Introduced(*json.loads(awaited))
     calls = {name: [look] for name, look in looking.calls.items()}
     calls["rclpy.node"].insert(0, introduced.patch)

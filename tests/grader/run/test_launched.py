@@ -1,0 +1,26 @@
+"""A package whose launch file starts two of its nodes is run so: in real time, as two processes."""
+
+from pathlib import Path
+
+from grader.run import virtual_time
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits
+from grader.submission.opening import open_submission
+from turtlesim_py.world.events import CmdVel, SetPen
+
+TWO_NODES = Path(__file__).parents[2] / "submissions" / "launched" / "spiral"
+#: Long enough for a machine with much else to do.
+PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=3))
+
+
+def test_both_nodes_run_with_what_the_launch_file_gives_them() -> None:
+    with open_submission(TWO_NODES) as submission:
+        recording = virtual_time.run(submission, PLAN)
+    assert recording.run.time == "real"
+    assert recording.run.flags == (
+        "graded in real time, because several programs were started, each in a process of its "
+        "own: turtle_controller, pen_node",
+    )
+    events = recording.trace.events
+    assert any(isinstance(event, CmdVel) for event in events), recording.output
+    assert {event.width for event in events if isinstance(event, SetPen)} == {5}
