@@ -8,12 +8,13 @@ is listed has to be there) and of ros2run (programs are looked for in lib/PACKAG
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Final
 
 from grader.submission.folder import HandedIn, listed, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
+from grader.submission.python_source import UNKNOWN
 from grader.submission.setup_files import ConsoleScript, Package
 
 _BUILD: Final = "colcon would not build this"
@@ -86,6 +87,8 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
 
 def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]:
     """Where the programs are installed, and where they are looked for."""
+    if _may_place_programs(package.setup):
+        return
     expected = f"$base/lib/{name}"
     setup_cfg = package.folder / "setup.cfg"
     if not package.scripts_folder:
@@ -100,6 +103,17 @@ def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]
             f"in {shown(package.scripts_folder)}, and {FILE} calls the package {name}: expected "
             f"install_scripts={expected}"
         )
+
+
+def _may_place_programs(setup: Mapping[str, object]) -> bool:
+    """Whether a setup.py may install programs in a place of its own choice."""
+    files = setup.get("data_files", [])
+    entries = files if isinstance(files, list) else [UNKNOWN]
+    places = [entry[0] if isinstance(entry, list) and entry else UNKNOWN for entry in entries]
+    unusual = not setup or any(key in setup for key in ("options", "cmdclass", "script_args"))
+    return unusual or any(
+        place is UNKNOWN or (isinstance(place, str) and place.startswith("lib")) for place in places
+    )
 
 
 def _data_files(package: Package) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import posixpath
 import re
 import warnings
 from collections import Counter
@@ -167,6 +168,14 @@ class Constants:
             case ast.Call(func=ast.Name(id="dict"), args=[], keywords=keywords):
                 return self.keywords(keywords)
             case ast.Call(
+                func=ast.Attribute(
+                    value=ast.Attribute(value=ast.Name(id="os"), attr="path"), attr="join"
+                ),
+                args=[_, *_] as parts,
+                keywords=[],
+            ):
+                return _path([self.value(part) for part in parts])
+            case ast.Call(
                 func=ast.Attribute(value=template, attr="format"), args=args, keywords=keywords
             ):
                 return _format(
@@ -249,6 +258,11 @@ def _sum(left: object, right: object) -> object:
 def _joined(parts: list[object]) -> object:
     texts = [part for part in parts if isinstance(part, str)]
     return _short("".join(texts)) if len(texts) == len(parts) else UNKNOWN
+
+
+def _path(parts: list[object]) -> object:
+    texts = [part for part in parts if isinstance(part, str)]
+    return _short(posixpath.join(*texts)) if len(texts) == len(parts) else UNKNOWN
 
 
 def _percent(template: object, values: object) -> object:

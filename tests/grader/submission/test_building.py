@@ -152,6 +152,9 @@ def test_each_shortcoming_is_a_note(
         changed("setup.py", "['resource/' + package_name]", "glob('resource/*')"),
         changed("setup.py", "[package_name]", "find_packages(exclude=['test'])"),
         changed("setup.py", "packages=[package_name]", "packages=more()"),
+        {"setup.cfg": "", **changed("setup.py", "packages=", "cmdclass=mine, packages=")},
+        {"setup.cfg": "", **changed("setup.py", "data_files=[", "data_files=more() + [")},
+        {"setup.cfg": "", **changed("setup.py", "('share/' + package_name,", "('lib/spiral',")},
         changed("package.xml", "<name>", "<!-- a -->\n<name>"),
         changed("package.xml", "<package ", "<!DOCTYPE p [<!ENTITY a 'b'>]>\n<package "),
         {"CMakeLists.txt": "", **changed("package.xml", "ament_python", "ament_cmake")},
@@ -159,6 +162,12 @@ def test_each_shortcoming_is_a_note(
 )
 def test_what_only_a_run_could_tell_is_not_told(tmp_path: Path, change: dict[str, str]) -> None:
     assert notes(lay(tmp_path, PACKAGE | change)) == ()
+
+
+def test_a_place_that_os_path_join_makes_is_known(tmp_path: Path) -> None:
+    change = changed("setup.py", "'share/' + package_name", "os.path.join('share', package_name)")
+    (note,) = notes(lay(tmp_path, PACKAGE | change | {"setup.cfg": ""}))
+    assert "setup.cfg has no install_scripts" in note
 
 
 def test_a_package_inside_is_named_with_its_folder(tmp_path: Path) -> None:
