@@ -12,9 +12,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Final
 
+from grader.submission.constants import UNKNOWN
 from grader.submission.folder import HandedIn, listed, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
-from grader.submission.python_source import UNKNOWN
 from grader.submission.setup_files import ConsoleScript, Package
 
 _BUILD: Final = "colcon would not build this"

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from grader.submission.constants import Constants
 from grader.submission.folder import read_bounded, shown
 from grader.submission.manifest import parse_xml
-from grader.submission.python_source import Constants, parse
+from grader.submission.python_source import parse
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

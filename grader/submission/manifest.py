@@ -23,6 +23,10 @@ _NAME: Final = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]*")
 _VERSION: Final = re.compile(r"[0-9]+\.[0-9]+\.[0-9]+")
 
 
+class _HasDoctype(Exception):
+    """An XML file with more than elements."""
+
+
 @dataclass(frozen=True)
 class Manifest:
     """What a package.xml says.
@@ -59,16 +63,20 @@ def read_manifest(file: Path) -> Manifest | None:
 
 
 def parse_xml(data: bytes) -> Element | str | None:
-    """Parse XML: its root; or why it does not parse; or None where it declares entities.
+    """Parse XML: its root; or why it does not parse; or None where it has a DOCTYPE.
 
-    Those make a long text out of a short one, and nothing of ROS needs them.
+    That may declare entities, which make a long text out of a short one; nothing of ROS needs it.
     """
     from xml.etree import ElementTree  # here: many submissions have none
 
-    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-        return None
+    class Builder(ElementTree.TreeBuilder):
+        def doctype(self, *_: object) -> None:
+            raise _HasDoctype
+
     try:
-        return ElementTree.fromstring(data)
+        return ElementTree.fromstring(data, ElementTree.XMLParser(target=Builder()))
+    except _HasDoctype:
+        return None
     except ElementTree.ParseError as error:
         line, _ = error.position
         return f"does not parse, line {line}: {shown(str(error).partition(':')[0])}"

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 from grader.errors import SubmissionError
+from grader.submission.constants import UNKNOWN, Constants
 from grader.submission.folder import MAX_SOURCE_BYTES, HandedIn, read_bounded, shown
-from grader.submission.python_source import UNKNOWN, Constants, parse
+from grader.submission.python_source import parse
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
 
