@@ -75,7 +75,7 @@ def is_generated(folder: Path) -> bool:
     if any(marks_generated(mark) and mark.exists() for mark in marks):
         return True
     result = folder / RESULT
-    if not result.is_file():
+    if result.is_symlink() or not result.is_file():
         return False
     with result.open("rb") as file:
         begin = file.read(BEGINNING_BYTES)
