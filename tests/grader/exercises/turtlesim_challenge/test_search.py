@@ -33,7 +33,7 @@ def test_every_fault_of_the_search_concerns_checks_that_there_are():
         ((), set()),
         (("counts",), {"edge_stop"}),
         (("shades",), {"pen_per_quadrant", "picture"}),
-        (("pauses",), {"steady_rate"}),
+        (("every_pose",), {"no_redundant_calls"}),
     ],
 )
 def test_a_fault_of_the_search_costs_what_it_concerns_and_nothing_else(fault, expected):
