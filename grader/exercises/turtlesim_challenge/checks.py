@@ -132,7 +132,8 @@ def edge_stop(recordings: Recordings, tolerances: Tolerances) -> Finding:
     commands come (the simulator stops a turtle a second after its last command), or turns on the
     spot to the end. The worst run counts. A run that starts elsewhere counts as none where turtle1
     was nearer to the wall by more than {passed_by_m} m before and drove on: such a stop does not
-    come from the pose. Where the time was up while the spiral still grew, the other runs decide.
+    come from the pose, nor does one that comes at the same moment in all of three or more runs.
+    Where the time was up while the spiral still grew, the other runs decide.
     """
     return judge_edge(recordings, tolerances)
 

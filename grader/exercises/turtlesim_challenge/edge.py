@@ -34,6 +34,15 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if not telling:
         return first.finding
     worst = min(telling, key=lambda stop: stop.finding.share)
+    if worst.finding.share >= 1 and _all_at_one_moment(stops):
+        return Finding(
+            0,
+            f"It {first.finding.rationale}, but at the same moment, after "
+            f"{first.path.stop_tick * TICK_S:.2f} s, from wherever it started: that it was near a "
+            "wall each time is chance.",
+            "The stop must depend on the pose, not on the time or on how often something was done.",
+            first.finding.evidence,
+        )
     if worst.finding.share >= 1:
         return Finding(1, _all_right(stops), evidence=telling[0].finding.evidence)
     if worst is first or (first.kind == "halfway" and worst.finding.share > 0):
@@ -48,6 +57,12 @@ def in_varied_runs_too(recordings: Recordings) -> str:
         return ""
     which = "run that starts" if count == 1 else f"{count} runs that start"
     return f", and in the {which} elsewhere too"
+
+
+def _all_at_one_moment(stops: list[Stop]) -> bool:
+    """Whether several runs from elsewhere took as long as the first, to the tick."""
+    first, *others = [stop.path.stop_tick for stop in stops]
+    return len(others) > 1 and all(abs(tick - first) <= 1 for tick in others)
 
 
 def _judge_varied(path: Path, tolerances: Tolerances) -> Stop:

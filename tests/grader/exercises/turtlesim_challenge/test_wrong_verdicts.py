@@ -16,8 +16,8 @@ from turtlesim_py.world.turtle import SIZE_M
 EXERCISE = load_exercise("turtlesim_challenge")
 
 
-def verdicts(controller, varied=True, ticks=4000, **tolerances):
-    starts = EXERCISE.starts() if varied else []
+def verdicts(controller, varied=True, ticks=4000, seed=None, **tolerances):
+    starts = EXERCISE.starts(seed) if varied else []
     runs = tuple(drive(controller(), ticks, start) for start in starts)
     recordings = Recordings(drive(controller(), ticks), runs)
     found = judge(
@@ -139,6 +139,12 @@ def test_a_stop_by_the_commands_is_none_by_the_pose(controller):
     found = verdicts(controller)["edge_stop"]
     assert found.score == 0
     assert "at the same moment" in found.rationale
+
+
+def test_a_stop_by_the_commands_that_is_near_a_wall_by_chance_is_none_either():
+    found = verdicts(CountsToASmallerCircle, seed=1946)["edge_stop"]
+    assert found.score == 0
+    assert "near a wall each time is chance" in found.rationale
 
 
 class Slow(Spiral):
