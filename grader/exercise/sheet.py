@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import yaml
 
+from grader.exercise import rubric
 from grader.exercise.check import Check
 from grader.exercise.loading import Exercise
 from grader.exercise.places import DESCRIPTION
@@ -22,8 +23,6 @@ from grader.text import points
 
 #: A line of exercise.yaml in a part: blanks, key, value, perhaps a comment.
 _VALUE = re.compile(r"^(\s+)([\w-]+)(:\s*)([^#\n]*?)(\s+#.*)?$")
-#: A tolerance in a check's docstring; with % it is meant in percent.
-_NAMED = re.compile(r"\{(\w+)(%?)\}")
 
 
 @dataclass(frozen=True)
@@ -64,10 +63,9 @@ def _judged(exercise: Exercise, scene: Scene) -> Iterator[str]:
     )
     yield "\n".join(_waits([check for check, _ in listed]))
     for check, worth in listed:
-        rubric = getattr(check, "rubric", "")
-        if rubric:
+        if text := rubric.told(check, exercise.tolerances):
             yield f"### {check.title}: {points(worth)} points"
-            yield _NAMED.sub(lambda found: _told(exercise.tolerances, found), rubric)
+            yield text
     yield "## How it is judged"
     yield _runs(exercise, scene)
 
@@ -81,17 +79,6 @@ def _waits(checks: Iterable[Check]) -> Iterator[str]:
     for first, names in waiting.items():
         passed = " and ".join(f"`{name}`" for name in first)
         yield _wrapped(f"- Judged only where {passed} passed: {', '.join(names)}.", indent="  ")
-
-
-def _told(tolerances: object, found: re.Match[str]) -> str:
-    """A tolerance in the words of a docstring; what is none stays as it stands."""
-    name, percent = found.groups()
-    if not isinstance(tolerances, dict) or name not in tolerances:
-        return found[0]
-    value = tolerances[name]
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return _in_yaml(value)
-    return f"{100 * value:g} %" if percent else f"{value:g}"
 
 
 def _runs(exercise: Exercise, scene: Scene) -> str:

@@ -6,7 +6,7 @@ from grader import text
 from grader.exercise.verdict import Verdict
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.reports.wording import score_text, word
+from grader.reports.wording import score_text, title_of, word
 
 
 def render(report: Report) -> str:
@@ -33,7 +33,7 @@ def render_error(report: ErrorReport) -> str:
 def _verdict(report: Report, verdict: Verdict) -> list[str]:
     # A title that ended with a number in brackets would be taken for a deduction.
     lines = [
-        f"-{_quote(verdict.check)}: {word(verdict)}, {score_text(verdict)} points",
+        f"-{_quote(title_of(verdict))}: {word(verdict)}, {score_text(verdict)} points",
         f"Asked for: {_quote(verdict.title)}",
         f"Seen: {_quote(verdict.rationale)}",
     ]

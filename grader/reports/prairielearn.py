@@ -10,7 +10,7 @@ from grader.exercise.verdict import Verdict
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
 from grader.reports.report import Report
-from grader.reports.wording import word
+from grader.reports.wording import title_of, word
 
 #: PrairieLearn refuses a file above 1 MB.
 LIMIT_BYTES = 1_000_000
@@ -47,7 +47,7 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
 
 def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
     test = {
-        "name": f"{verdict.check} ({word(verdict)})",
+        "name": f"{title_of(verdict)} ({word(verdict)})",
         "points": text.number(verdict.score),
         "max_points": text.number(verdict.max_score),
     }

@@ -81,8 +81,8 @@ class Introduced:
     ROS drops what is published before the other side is found, which takes some tenths of a
     second, and seconds on a busy machine: the same submission would do something else each time.
     So publishers and clients of these names wait until they are connected. What only ends like one
-    of them may be a wrong name, or a turtle's that is yet to come: these wait for `patience_s` at
-    most, all together.
+    of them may be a wrong name, or one of what is yet to come: these wait for `patience_s` at most,
+    all together.
     """
 
     def __init__(self, topics: list[str], services: list[str]) -> None:

@@ -48,7 +48,7 @@ def test_numbers_are_those_in_force_and_keep_their_explanations(tmp_path):
     changes = {"tolerances": {"edge_m": 1.25, "centres_m": [5.5]}, "limits": {"total_s": 240}}
     path.write_text(yaml.safe_dump({"exercise": "turtlesim_challenge", **changes}))
     text = sheet_of(path)
-    assert "\nedge_m: 1.25            # a stop this near a wall is near the edge\n" in text
+    assert "\nedge_m: 1.25            # a stop this near a wall is near the edge" in text
     assert "\ncentres_m: [5.5]  # where students take the centre to be\n" in text
     assert "240 simulated seconds" in " ".join(text.split())
 

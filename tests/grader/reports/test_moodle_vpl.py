@@ -39,7 +39,7 @@ def test_nothing_that_a_submission_says_is_a_grade(text):
 
 def test_no_title_looks_like_a_deduction():
     content = moodle_vpl.render(samples.report(verdict("a (-5)", "failed", 3)))
-    assert "-a (-5): failed, 3 / 10 points\n" in content
+    assert "-Title of a (-5): failed, 3 / 10 points\n" in content
 
 
 def test_partial_points_stay_exact():
