@@ -24,7 +24,8 @@ def how_it_ended(recording: Recording) -> str:
     if run.outcome == "exited":
         return " The node ended by itself, without an error."
     if run.outcome == "killed":
-        return f" The node was killed (signal {-(run.exit_code or 0)})."
+        signal = f" (signal {-run.exit_code})" if run.exit_code else ""
+        return f" The node was killed{signal}."
     return ""
 
 

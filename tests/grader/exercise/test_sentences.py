@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from grader.exercise.sentences import last_error
+from grader.exercise.sentences import how_it_ended, last_error
+from grader.recording.recording import Run
+from tests.grader.driving import drive
 from tests.limited import printed_by
 
 CRASH = """[INFO] hello
@@ -53,3 +57,11 @@ limit(2, 4_000_000_000)
 print(repr(last_error("Traceback (most recent call last)" + {after})))
 """
     assert printed_by(code) == "''\n"
+
+
+def test_a_signal_is_told_only_where_there_was_one():
+    run = Run(outcome="killed", exit_code=-9)
+    recording = drive(lambda tick, pose, arena: None, ticks=1)
+    assert how_it_ended(replace(recording, run=run)).endswith("killed (signal 9).")
+    run = Run(outcome="killed", exit_code=None)
+    assert how_it_ended(replace(recording, run=run)).endswith("was killed.")
