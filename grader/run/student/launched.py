@@ -1,10 +1,10 @@
 """The process of a submission that a launch file starts: one process more for each program.
 
-    python launched.py AWAITED [WORD ...] ROOT PROGRAMS
+    python launched.py AWAITED EVIDENCE ROOT PROGRAMS
 
 PROGRAMS is a JSON list of [name, module:function, arguments]; all before it goes to each as to
-`main.py`, but for the words between: pipes to the grader, into which several must not write. In
-real time only. It ends when all have ended, as the first did that did not end well.
+`main.py`, but for EVIDENCE: into one pipe to the grader several must not write. In real time only.
+It ends when all have ended, as the first did that did not end well.
 """
 
 import json
@@ -22,7 +22,7 @@ from grader.run.student import main as student_main  # noqa: E402
 
 def main() -> None:
     """Start the programs and wait for them."""
-    _, awaited, *words, root, programs = sys.argv
+    _, awaited, _, root, programs = sys.argv
     student_main.die_with_parent()
     if not hasattr(os, "fork"):
         sys.exit("The grader starts several programs only where processes fork: not on Windows.")
@@ -30,7 +30,7 @@ def main() -> None:
     for name, target, arguments in json.loads(programs):
         pid = os.fork()
         if pid == 0:
-            become([awaited, *("-1" for _ in words), root, target], arguments)
+            become([awaited, "-1", root, target], arguments)
         names[pid] = name
     be_deaf()
     try:

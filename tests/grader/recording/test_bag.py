@@ -265,7 +265,13 @@ def test_the_real_rclpy_reads_the_messages(folder, recorded):
 def test_it_is_the_bag_that_rosbags_writes_message_by_message(tmp_path):
     """Chunks, indices and counts too; a run of three minutes fills several chunks."""
     scene = load_scene("turtlesim")
-    trace = drive(couple, ticks=11_000).trace
+
+    def drive_on(tick, pose, arena):
+        couple(tick, pose, arena)
+        if tick % 50 == 0:
+            twist(arena, 1.0, 1.0)
+
+    trace = drive(drive_on, ticks=11_000).trace
     quick = bag.write(trace, scene, tmp_path / "quick" / "recording")
     types, writer = (
         types_of(scene.message_definitions()),

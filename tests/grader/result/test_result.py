@@ -56,8 +56,8 @@ def test_everything_comes_back_as_it_was(tmp_path):
     run = RunSummary(exit_code=-9, outcome="killed", ticks=3, flags=("x",), seed=5)
     varied = replace(run, seed=None, start=Start(1.0, 2.0, 3.0))
     cause = Diagnosis("k", "cause", "help", 1, 0.0, Place("d.py", 3, "f", "x = 1"), "a")
-    parts = ((verdict,), run, (varied,), {"canvas": "c.png"}, cause)
-    result = Result("e", "größe 🐢", 1.5, 4.0, *parts)
+    parts = ((verdict,), run, (varied,), {"canvas": "c.png"})
+    result = Result("e", "größe 🐢", 1.5, 4.0, *parts, diagnosis=cause)
     result.write(tmp_path / "new" / "result.json")
     assert Result.read(tmp_path / "new" / "result.json") == result
 

@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[4]
 HIDDEN = ("grader", "turtlesim_challenge", "turtlesim_py")
 #: ... but for what works in the submission's own process.
 HOST = (
-    *("grader/__init__.py", "grader/system.py", "grader/run/__init__.py"),
+    *("grader/__init__.py", "grader/system.py", "grader/versions.py", "grader/run/__init__.py"),
     *("grader/run/student", "grader/run/lockstep"),
     *("grader/run/processes/__init__.py", "grader/run/processes/cores.py"),
 )

@@ -28,7 +28,7 @@ def killed():
 def launch(folder: Path, *programs: tuple[str, list[str]]) -> subprocess.CompletedProcess[str]:
     (folder / "programs.py").write_text(PROGRAMS)
     listed = [[name, f"programs:{name}", arguments] for name, arguments in programs]
-    words = [json.dumps([[], []]), str(folder), json.dumps(listed)]
+    words = [json.dumps([[], []]), "-1", str(folder), json.dumps(listed)]
     return subprocess.run(
         [sys.executable, LAUNCHED, *words], capture_output=True, text=True, check=False
     )
