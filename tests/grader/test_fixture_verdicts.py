@@ -43,6 +43,7 @@ SHOWS_BY_ITSELF = {
     "wrong_topic": "publishes_to_nobody",
     "wrong_type": "publishes_to_nobody",
     "wrong_turtle": "publishes_to_nobody",
+    "crashes_after_six_seconds": "crashed",
     "crashes_after_ten_seconds": "crashed",
     "never_spins": "never_spins",
 }

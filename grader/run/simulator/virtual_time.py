@@ -3,7 +3,7 @@
     python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PID CORE PATIENCE
 
 The first three as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
-process PID, CORE the processor core that both are to share, PATIENCE a
+process PID, CORE the processor core that both are to share (-1: any), PATIENCE a
 `grader.run.simulator.link.Patience` as JSON.
 
 What the submission has sent comes with its request for time, what is answered and published goes

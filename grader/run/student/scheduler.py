@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from grader.run.lockstep import real
+from grader.run.lockstep.faults import pass_on
 from grader.run.lockstep.times import NEVER
 
 #: What asking for the time or the like costs [units], and how many units make a pause.
@@ -96,7 +97,12 @@ class Scheduler:
                 self._end(runner)
 
         self._queue.append(runner)
-        runner.ident = real.start_new_thread(run, ())
+        try:
+            runner.ident = pass_on(real.start_new_thread, run, ())
+        except RuntimeError:  # there are too many
+            self.runners.remove(runner)
+            self._queue.remove(runner)
+            raise
         return runner.ident
 
     def _end(self, runner: Runner) -> None:

@@ -82,7 +82,7 @@ def test_under_watch_the_nominal_run_s_verdicts_come_first(call, in_turn, capsys
     first = capsys.readouterr().err
     assert "The nominal run is over, the others still go." in first
     assert "moves" in first
-    assert "edge_stop" not in first  # which looks at the varied runs too
+    assert "pen_per_quadrant" not in first  # which looks at the varied runs too
 
 
 def test_without_watch_there_is_one_table(call, in_turn, capsys):
