@@ -77,15 +77,15 @@ def _seen(report: Report, verdict: Verdict) -> str:
     ]
     if verdict.evidence:
         lines += ["", *(f"- {_quote(str(point))}" for point in report.points_of(verdict))]
-    if verdict.help:
-        lines += ["", f"**Look at:** {_quote(verdict.help)}"]
+    if help_ := report.help_for(verdict):
+        lines += ["", f"**Look at:** {_quote(help_)}"]
     return "\n".join(lines)
 
 
 def _run(report: Report) -> str:
     run = report.run
     lines = [
-        f"Run: {_quote(run.outcome.replace('_', ' '))}, {run.simulated_s:.1f} s simulated "
+        f"Run: {_quote(report.outcome(0))}, {run.simulated_s:.1f} s simulated "
         f"in {run.wall_s:.1f} s ({run.time} time)."
     ]
     lines += [f"- Note: {_quote(flag)}" for flag in run.flags]

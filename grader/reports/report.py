@@ -16,7 +16,7 @@ from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
 from grader.reports import origin
 from grader.reports.beside import Beside, StillInMemory
-from grader.reports.wording import all_passed, where, word
+from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, all_passed, title_of, where, word
 from grader.result.result import Result, RunSummary
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
@@ -125,6 +125,29 @@ class Report:
         """What has to pass before it can be judged; nothing, if it was judged."""
         return self._waits[verdict.check]
 
+    @property
+    def waiting(self) -> dict[tuple[str, ...], tuple[Verdict, ...]]:
+        """The verdicts that wait for others, by the titles of these."""
+        titles = {verdict.check: title_of(verdict) for verdict in self.verdicts}
+        found: dict[tuple[str, ...], tuple[Verdict, ...]] = {}
+        for verdict in self.verdicts:
+            if waited_for := self.waited_for(verdict):
+                key = tuple(titles.get(name, name) for name in waited_for)
+                found[key] = (*found.get(key, ()), verdict)
+        return found
+
+    def help_for(self, verdict: Verdict) -> str:
+        """What to look at: for formats in which the diagnosis stands above, where there is one.
+
+        A check sees only what came of a cause that the diagnosis knows: its advice may contradict.
+        One whose evidence is of other runs alone has a cause of its own.
+        """
+        found = self.diagnosis
+        if not verdict.help or found is None or found.check or verdict.passed:
+            return verdict.help
+        runs = {item.run for item in verdict.evidence} or {found.run}
+        return SEE_FIRST if found.run in runs else verdict.help
+
     def lines(self, verdict: Verdict) -> list[str]:
         """What was seen, where, and what to look at: for formats that show plain text."""
         lines = [text.one_line(verdict.rationale)]
@@ -144,7 +167,7 @@ class Report:
         first = next((each for each in self.verdicts if not each.passed), None)
         if found is None or verdict is not first or found.check == verdict.check:
             return lines
-        return [f"First to mend: {self.headline}", *self.advice, "", *lines]
+        return [self.first_line, *self.advice, "", *lines]
 
     @property
     def first_to_mend(self) -> Verdict | None:
@@ -168,6 +191,12 @@ class Report:
         if first is not None:
             return text.one_line(first.rationale) or f"{first.check}: {word(first)}"
         return f"Nothing to mend: {all_passed(len(self.verdicts))}"
+
+    @property
+    def first_line(self) -> str:
+        """The headline, with what it is before it."""
+        lost = self.diagnosis is not None or self.first_to_mend is not None
+        return f"First to mend: {self.headline}" if lost else self.headline
 
     @property
     def first_key(self) -> str:
@@ -194,6 +223,22 @@ class Report:
         function = f", in {place.function}" if place.function else ""
         line = f": {place.text}" if place.text else ""
         return text.one_line(f"{place.file}, line {place.line}{function}{line}")
+
+    def outcome(self, run: int) -> str:
+        """How a run ended, in a word or two: that of the result, for people."""
+        summary = self.varied_runs[run - 1] if run else self.run
+        if summary.outcome == "time_limit" and self._never_moved(run):
+            return NOTHING_MOVED
+        return summary.outcome.replace("_", " ")
+
+    def _never_moved(self, run: int) -> bool:
+        """Whether a recording is there that shows all things where they were at its start."""
+        recording = self.recordings.get(run)
+        if recording is None:
+            return False
+        tracks = load_scene(recording.scene).view(recording.trace).tracks
+        ways = [way for track in tracks for way in (track.x, track.y, track.theta)]
+        return bool(tracks) and all((way == way[:1]).all() for way in ways)
 
     @cached_property
     def recordings(self) -> dict[int, Recording]:

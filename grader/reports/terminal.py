@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
@@ -15,7 +15,7 @@ from grader.exercise.verdict import Verdict
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
-from grader.text import for_terminal
+from grader.text import for_terminal, points
 
 _MARKS = {
     "passed": ("✓", "green"),
@@ -57,7 +57,7 @@ def show(report: Report, console: Console) -> None:
     _lead(report, console)
     console.print()
     console.print(_text(f"{report.submission}: {report.exercise}", "bold"), soft_wrap=True)
-    console.print(_table(report, console.width))
+    _checks(report, console)
     for verdict in report.verdicts:
         if not verdict.passed and not report.waited_for(verdict):
             console.print(_explanation(report, verdict))
@@ -65,7 +65,7 @@ def show(report: Report, console: Console) -> None:
     console.print()
     console.print(
         _text(
-            f"Run: {run.outcome.replace('_', ' ')}, {run.simulated_s:.1f} s simulated "
+            f"Run: {report.outcome(0)}, {run.simulated_s:.1f} s simulated "
             f"in {run.wall_s:.1f} s ({run.time} time)."
         )
     )
@@ -78,7 +78,7 @@ def show_nominal(report: Report, console: Console) -> None:
     """Print what the nominal run decides while the varied ones still go."""
     console.print(_text("The nominal run is over, the others still go.", "bold"))
     if report.verdicts:
-        console.print(_table(report, console.width))
+        _checks(report, console)
     if report.diagnosis is not None and not report.diagnosis.check:
         _lead(report, console)
     first = report.first_to_mend
@@ -90,7 +90,7 @@ def show_nominal(report: Report, console: Console) -> None:
 def _lead(report: Report, console: Console) -> None:
     """The first thing to mend; each line whole in a file, and wrapped at words in a terminal."""
     whole = not console.is_terminal
-    console.print(_text(report.headline, "bold"), soft_wrap=whole)
+    console.print(_text(report.first_line, "bold"), soft_wrap=whole)
     for line in report.advice:
         console.print(_text(line), soft_wrap=whole)
 
@@ -99,27 +99,45 @@ def _text(value: str, style: str = "") -> Text:
     return Text(for_terminal(value), style)
 
 
-def _table(report: Report, width: int) -> Table:
-    """A check's name and notes stand beside its title, or behind it where there is no room."""
-    rows = [_row(report, verdict) for verdict in report.verdicts]
+def _checks(report: Report, console: Console) -> None:
+    """A line for each check that was judged, and one for all that wait for the same."""
+    judged = [verdict for verdict in report.verdicts if not report.waited_for(verdict)]
+    if judged:
+        console.print(_table(judged, console.width))
+    sign, color = _MARKS["not_judged"]
+    for titles, verdicts in report.waiting.items():
+        since = " and ".join(f"“{title}”" for title in titles)
+        names = ", ".join(verdict.check for verdict in verdicts)
+        worth = points(sum(verdict.max_score for verdict in verdicts))
+        said = f"not judged, since {since} did not pass: {names} ({worth} points)"
+        grid = Table.grid(padding=(0, 1))
+        grid.add_row(Text(f" {sign}", color), _text(said, color))
+        console.print(grid)
+
+
+def _table(verdicts: Sequence[Verdict], width: int) -> Table:
+    """A check's name and notes stand beside its title, or are left out where there is no room.
+
+    Where there is none for the titles either, they are behind it: all is wrapped then.
+    """
+    rows = [_row(verdict) for verdict in verdicts]
     widest = [max(cell.cell_len for cell in column) for column in zip(*rows, strict=True)]
     beside = sum(widest) + 2 * len(widest) <= width
+    alone = not beside and sum(widest[:-1]) + 2 * len(widest[:-1]) <= width
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True, justify="right")
-    for said, points, title, notes in rows:
-        behind = Text.assemble(title, " (", notes, ")") if notes else title
+    for said, score, title, notes in rows:
+        behind = Text.assemble(title, " (", notes, ")") if notes and not alone else title
         cells = [title, notes] if beside else [behind]
-        table.add_row(said, points, *cells)
+        table.add_row(said, score, *cells)
     return table
 
 
-def _row(report: Report, verdict: Verdict) -> tuple[Text, Text, Text, Text]:
+def _row(verdict: Verdict) -> tuple[Text, Text, Text, Text]:
     sign, color = _MARKS[verdict.status]
     notes = [_text(verdict.check, "dim")] if verdict.title else []
-    if waited_for := report.waited_for(verdict):
-        notes.append(_text(f"waits for {', '.join(waited_for)}", "yellow"))
-    elif verdict.is_partial:
+    if verdict.is_partial:
         notes.append(_text("partial credit", "yellow"))
     said = Text(f" {sign} {word(verdict)}", color)
     return (
@@ -132,12 +150,13 @@ def _row(report: Report, verdict: Verdict) -> tuple[Text, Text, Text, Text]:
 
 def _explanation(report: Report, verdict: Verdict) -> Group:
     sign, color = _MARKS[verdict.status]
-    head = _text(f"{sign} {title_of(verdict)}: {score_text(verdict)}", f"bold {color}")
+    partial = " (partial credit)" if verdict.is_partial else ""
+    head = _text(f"{sign} {title_of(verdict)}: {score_text(verdict)}{partial}", f"bold {color}")
     lines: list[RenderableType] = [Text(), head]
     lines.append(Padding(_text(" ".join(verdict.rationale.split())), (0, 0, 0, 2)))
     lines += [_indented("•", str(point)) for point in report.points_of(verdict)]
-    if verdict.help:
-        lines.append(_indented("→", " ".join(verdict.help.split()), "italic"))
+    if help_ := report.help_for(verdict):
+        lines.append(_indented("→", " ".join(help_.split()), "italic"))
     return Group(*lines)
 
 

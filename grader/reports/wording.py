@@ -8,6 +8,10 @@ from grader import text
 from grader.exercise.verdict import Evidence, Verdict
 
 WORDS: Final = {"passed": "passed", "failed": "failed", "not_judged": "not judged"}
+#: What stands in place of a check's advice where the first line knows the cause.
+SEE_FIRST: Final = "See the first line."
+#: What a run says of itself that ended because nothing had moved.
+NOTHING_MOVED: Final = "nothing moved"
 
 
 def word(verdict: Verdict) -> str:

@@ -138,7 +138,8 @@ def _outcomes(thing: str) -> dict[str, str]:
         "exited": "the node ended by itself, without an error",
         "crashed": "the node ended with an error",
         "stalled": "the node stopped responding",
-        "time_limit": f"the {thing} was still going at the time limit",
+        "time limit": f"the {thing} was still going at the time limit",
+        wording.NOTHING_MOVED: f"the {thing} never moved, so the run was ended",
         "killed": "somebody killed the node",
     }
 
@@ -163,6 +164,7 @@ def _environment() -> jinja2.Environment:
     environment.filters.update(points=text.points, clip=text.clip)
     environment.globals.update(
         all_passed=wording.all_passed,
+        see_first=wording.SEE_FIRST,
         counted=text.count,
         place=text.place,
         word=wording.word,

@@ -19,7 +19,7 @@ _COLUMNS = 400
 _MARKS = 400
 _SERVICES = 8
 #: More calls of one service than this are not listed in words.
-_ROWS = 50
+_ROWS = 12
 
 
 @dataclass(frozen=True)

@@ -162,7 +162,7 @@ def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(grade
     run = graded["starter"]
     assert (run.code, run.result["score"]) == (0, 0)
     assert run.stdout.startswith(
-        "Your node published no velocity command on /turtle1/cmd_vel in 4.0 s"
+        "First to mend: Your node published no velocity command on /turtle1/cmd_vel in 4.0 s"
     )
     assert run.result["run"]["outcome"] == "time_limit"
 

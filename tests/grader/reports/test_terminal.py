@@ -20,7 +20,7 @@ def shown(result, width=80):
 def test_the_first_line_is_the_first_thing_to_mend_uncut():
     rationale = "word " * 60
     text = shown(samples.result(verdict("a", "failed", 0, rationale=rationale)))
-    assert text.splitlines()[0] == rationale.strip()
+    assert text.splitlines()[0] == f"First to mend: {rationale.strip()}"
 
 
 def test_in_a_terminal_the_first_line_is_wrapped_at_words():
@@ -28,7 +28,7 @@ def test_in_a_terminal_the_first_line_is_wrapped_at_words():
     report = samples.report(verdict("a", "failed", 0, rationale="word " * 60))
     terminal.show(report, Console(file=out, width=80, force_terminal=True, color_system=None))
     lines = out.getvalue().splitlines()
-    assert {word for line in lines[:4] for word in line.split()} == {"word"}
+    assert {word for line in lines[:4] for word in line.split()} == {"First", "to", "mend:", "word"}
     assert max(map(len, lines)) <= 80
 
 
@@ -55,6 +55,36 @@ def test_at_80_columns_a_usual_check_is_one_line():
     assert lines[3].rstrip() == f" ✗ failed  0 / 10  {title}  edge_stop"
 
 
+def test_a_title_that_leaves_no_room_for_the_name_stands_alone_in_its_line():
+    titles = {"a": "A title of an ordinary length", "b": "t" * 58}
+    text = shown(samples.result(*[verdict(name, title=title) for name, title in titles.items()]))
+    assert text.splitlines()[3].rstrip() == f" ✓ passed  10 / 10  {titles['a']}"
+    assert text.splitlines()[4].rstrip() == f" ✓ passed  10 / 10  {titles['b']}"
+
+
+def test_all_that_wait_for_the_same_share_a_line():
+    waiting = [verdict(name, "not_judged", 0, depends_on=["moves"]) for name in "abc"]
+    text = shown(samples.result(verdict("moves", "failed", 0), *waiting))
+    assert " – not judged, since “Title of moves” did not pass: a, b, c (30 points)\n" in text
+    assert text.count("not judged") == 1
+
+
+def test_no_advice_of_a_check_contradicts_the_first_line():
+    other = verdict("b", "failed", 0, evidence=[samples.evidence(run=1)])
+    judged = samples.result(
+        verdict("a", "failed", 0), other, diagnosis=samples.diagnosis(), varied_runs=[samples.run()]
+    )
+    text = shown(judged)
+    assert "→ See the first line." in text
+    assert "Help for a." not in text
+    assert "→ Help for b." in text  # of a run in which there was no such cause
+
+
+def test_advice_that_the_first_line_repeats_stays():
+    found = samples.diagnosis(key="check", check="a")
+    assert "→ Help for a." in shown(samples.result(verdict("a", "failed", 0), diagnosis=found))
+
+
 def test_a_check_without_a_title_is_called_by_its_name():
     text = shown(samples.result(verdict("a", "failed", 0, title="")))
     assert " ✗ failed  0 / 10  a" in text
@@ -65,7 +95,7 @@ def test_partial_credit_and_what_a_check_waits_for_are_shown():
     text = shown(samples.result())
     assert "8.33 / 10" in text
     assert "partial credit" in text
-    assert "waits for stops" in text
+    assert "“Title of stops” did not pass: rests (10 points)" in text
     assert "Score: 18.33 of 40" in text
 
 
@@ -76,7 +106,7 @@ def test_a_check_that_waits_for_none_says_why_it_is_not_judged():
 
 def test_markup_is_shown_and_not_obeyed():
     text = shown(samples.result(verdict("a", "failed", 0, rationale="[bold]x[/bold] [/red] [1]")))
-    assert text.startswith("[bold]x[/bold] [/red] [1]\n")
+    assert text.startswith("First to mend: [bold]x[/bold] [/red] [1]\n")
 
 
 def test_a_submission_cannot_speak_to_the_runner_of_a_ci_system():

@@ -11,10 +11,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from grader.reports import Report
+from grader.reports import Report, terminal
 from grader.reports.page import html
 from grader.result.result import Result
-from tests.grader.driving import Spiral, drive, pen
+from tests.grader.driving import Spiral, drive, pen, twist
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import evidence, verdict
 from turtlesim_py.world.trajectory import Trajectory
@@ -157,9 +157,36 @@ def test_on_paper_are_the_runs_with_a_fault_or_the_nominal_one(judged, printed):
     assert on_paper(html.render(samples.report(*judged, varied_runs=varied))) == printed
 
 
-def test_on_paper_each_pin_has_its_text_beside_the_picture(page):
+def test_on_paper_each_pin_has_its_check_and_place_beside_the_picture(page):
     lists = re.findall(r'<ul class="evidence paper">(.*?)</ul>', page, re.DOTALL)
     assert ["Title of stops: varied run 1, at 50.00 s" in text for text in lists] == [False, True]
+
+
+def test_what_a_pin_shows_is_told_once_beside_the_first_thing_to_mend(page):
+    assert page.count("it starts") == 1
+    assert page.count("too far") == 2
+
+
+def test_a_run_in_which_nothing_moved_says_so_and_not_that_it_went_on(tmp_path):
+    still, going = drive(lambda *_: None, ticks=9), drive(twisting, ticks=9)
+    for recording, words in ((still, "the turtle never moved"), (going, "still going")):
+        folder = tmp_path / words
+        path = samples.graded(folder, recording, run=samples.run(outcome="time_limit"))
+        report = Report.read(path)
+        assert f"Nominal run: {words}" in html.render(report).replace("the turtle was ", "")
+        assert ("Run: nothing moved, " in terminal.render(report)) == (recording is still)
+    without = samples.report(run=samples.run(outcome="time_limit"))
+    assert "Run: time limit, " in terminal.render(without)
+
+
+def twisting(tick, pose, arena):
+    twist(arena, 1.0)
+
+
+def test_where_the_first_thing_says_more_a_check_points_to_it():
+    content = html.render(samples.report(verdict("a", "failed", 0), diagnosis=samples.diagnosis()))
+    assert '<p class="help"><a href="#first">See the first line.</a></p>' in content
+    assert "Help for a." not in content
 
 
 def test_on_paper_is_the_end_of_what_the_node_printed(tmp_path, good):
@@ -180,7 +207,7 @@ def test_what_is_counted_is_in_the_plural_unless_it_is_one(page):
 
 
 def test_calls_are_a_table_too(page):
-    assert re.search(r"set_pen</code>: \d+ calls as a table", page)
+    assert re.search(r"set_pen</code>: the first 12 calls as a table", page)
     table = page[page.index("<table>") : page.index("</table>")]
     assert re.findall(r'<th scope="col">(.*?)</th>', table) == [
         "Time",
