@@ -12,6 +12,7 @@ from grader.text import without_controls
 
 # blanks of one line only: lines of nothing would be gone through again from each of them
 _FRAME = re.compile(r'^[^\S\n]*File "(?P<file>[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
+_PLACE = re.compile(r" \([^()]*, line \d+\)$")
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
 
 
@@ -19,14 +20,25 @@ def how_it_ended(recording: Recording) -> str:
     """A sentence (with a space before it) about an end that matters; '' where there is none."""
     run = recording.run
     if run.outcome == "crashed":
-        error = last_error(recording.output) or f"exit code {run.exit_code}"
-        return f" The node ended with an error: {error}."
+        return f" The node ended with an error: {_error(recording)}."
     if run.outcome == "exited":
         return " The node ended by itself, without an error."
     if run.outcome == "killed":
         signal = f" (signal {-run.exit_code})" if run.exit_code else ""
         return f" The node was killed{signal}."
     return ""
+
+
+def _error(recording: Recording) -> str:
+    """The error with the last line of the submission's own, where it is known."""
+    error, raised = last_error(recording.output), recording.conduct.raised
+    if raised is None or raised.place is None:
+        return error or f"exit code {recording.run.exit_code}"
+    file, line = PurePath(raised.place.file).name, raised.place.line
+    said = _PLACE.sub("", error) or f"{raised.type}: {raised.text}".rstrip(".: ")
+    if said.partition(":")[0].rpartition(".")[2] != raised.type.rpartition(".")[2]:
+        return error  # of another thread
+    return without_controls(f"{said} ({file}, line {line})", "?")
 
 
 def last_error(output: str) -> str:
@@ -46,10 +58,19 @@ def last_error(output: str) -> str:
     return without_controls(f"{error.rstrip('.')} {place}", "?")
 
 
-def remarks(recording: Recording) -> list[str]:
-    """What a reader of any exercise's result should know about the run."""
+def remarks(recording: Recording, all_passed: bool = False) -> list[str]:
+    """What a reader of any exercise's result should know about the run.
+
+    Args:
+        all_passed: whether every check of the exercise did.
+    """
     found = []
-    if recording.run.outcome == "crashed":
+    if recording.run.outcome == "crashed" and all_passed:
+        found.append(
+            f"After its work was done the node ended with an error: {_error(recording)}; "
+            "it costs no points."
+        )
+    elif recording.run.outcome == "crashed":
         found.append(how_it_ended(recording).strip())
     published = [topic.topic for topic in recording.topics]
     found += load_scene(recording.scene).remarks(

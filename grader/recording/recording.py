@@ -72,7 +72,7 @@ class Recording:
         output: what the submission printed (start and end of it, if it was much).
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
-        conduct: what its process has told of itself; for a diagnosis, not for verdicts.
+        conduct: what its process has told of itself; for words, not for points.
         provenance: when and with what it was made; the nominal run's tells it of all.
     """
 

@@ -43,10 +43,10 @@ class RunSummary(Run):
     start: Start | None = None
 
     @classmethod
-    def of(cls, recording: Recording) -> Self:
-        """What the result tells of a recording."""
+    def of(cls, recording: Recording, all_passed: bool = False) -> Self:
+        """What the result tells of a recording, and whether it cost any points."""
         run = {field.name: getattr(recording.run, field.name) for field in fields(Run)}
-        flags = (*recording.run.flags, *remarks(recording))
+        flags = (*recording.run.flags, *remarks(recording, all_passed))
         return cls(**{**run, "flags": flags}, start=recording.start)
 
     def to_json(self) -> dict[str, Any]:
@@ -193,21 +193,22 @@ def build(
     diagnosis: Diagnosis | None = None,
 ) -> Result:
     """Put a result together; `artifacts` are paths relative to the result file."""
+    all_passed = all(verdict.passed for verdict in verdicts)
     return Result(
         exercise.name,
         submission,
         round(sum(verdict.score for verdict in verdicts), 2),
         round(sum(verdict.max_score for verdict in verdicts), 2),
         tuple(verdicts),
-        _nominal(recordings.nominal, exercise),
-        tuple(RunSummary.of(recording) for recording in recordings.varied),
+        _nominal(recordings.nominal, exercise, all_passed),
+        tuple(RunSummary.of(recording, all_passed) for recording in recordings.varied),
         dict(artifacts),
         provenance=Origin.of(recordings, exercise),
         diagnosis=diagnosis,
     )
 
 
-def _nominal(recording: Recording, exercise: Exercise) -> RunSummary:
+def _nominal(recording: Recording, exercise: Exercise, all_passed: bool) -> RunSummary:
     """The nominal run, with what of the exercise came too late for it."""
-    run = RunSummary.of(recording)
+    run = RunSummary.of(recording, all_passed)
     return replace(run, flags=(*run.flags, *not_followed(recording, exercise.conditions)))

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from grader.exercise.sentences import how_it_ended, last_error
+from grader.exercise.sentences import how_it_ended, last_error, remarks
+from grader.recording.conduct import Conduct, Place, Raised
 from grader.recording.recording import Run
 from tests.grader.driving import drive
 from tests.limited import printed_by
@@ -57,6 +58,45 @@ limit(2, 4_000_000_000)
 print(repr(last_error("Traceback (most recent call last)" + {after})))
 """
     assert printed_by(code) == "''\n"
+
+
+IN_A_LIBRARY = CRASH.replace("<module>", "spin").replace("turtle_controller", "executors")
+
+
+def crashed(output, raised):
+    run = Run(outcome="crashed", exit_code=1)
+    recording = drive(lambda tick, pose, arena: None, ticks=1)
+    return replace(recording, run=run, output=output, conduct=Conduct(True, raised=raised))
+
+
+@pytest.mark.parametrize(
+    ("output", "type_", "expected"),
+    [
+        (
+            IN_A_LIBRARY,
+            "ModuleNotFoundError",
+            "ModuleNotFoundError: No module named 'turtlesim_messages' (drive.py, line 39)",
+        ),
+        ("", "KeyError", "KeyError: 'x' (drive.py, line 39)"),
+        (
+            IN_A_LIBRARY,
+            "KeyError",  # that ended a thread, and something else the program
+            "ModuleNotFoundError: No module named 'turtlesim_messages' (executors.py, line 3)",
+        ),
+    ],
+)
+def test_an_error_names_the_last_line_of_the_submission_s_own(output, type_, expected):
+    recording = crashed(output, Raised(type_, "'x'", 1.0, Place("src/drive.py", 39)))
+    assert how_it_ended(recording) == f" The node ended with an error: {expected}."
+
+
+def test_an_error_that_cost_nothing_is_told_as_such():
+    recording = crashed(CRASH, None)
+    assert remarks(recording, all_passed=True)[0] == (
+        "After its work was done the node ended with an error: ModuleNotFoundError: No module "
+        "named 'turtlesim_messages' (turtle_controller.py, line 3); it costs no points."
+    )
+    assert remarks(recording)[0].startswith("The node ended with an error: ")
 
 
 def test_a_signal_is_told_only_where_there_was_one():
