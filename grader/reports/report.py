@@ -140,13 +140,19 @@ class Report:
         """What to look at: for formats in which the diagnosis stands above, where there is one.
 
         A check sees only what came of a cause that the diagnosis knows: its advice may contradict.
-        One whose evidence is of other runs alone has a cause of its own.
+        The first of these verdicts points to the diagnosis, the others say nothing.
         """
-        found = self.diagnosis
-        if not verdict.help or found is None or found.check or verdict.passed:
+        led = [each for each in self.verdicts if each.help and self._comes_of_the_first(each)]
+        if verdict not in led:
             return verdict.help
-        runs = {item.run for item in verdict.evidence} or {found.run}
-        return SEE_FIRST if found.run in runs else verdict.help
+        return SEE_FIRST if verdict is led[0] else ""
+
+    def _comes_of_the_first(self, verdict: Verdict) -> bool:
+        """Whether a run's own diagnosis may be behind it: not if it is all about other runs."""
+        found = self.diagnosis
+        if found is None or found.check or verdict.status != "failed":
+            return False
+        return found.run in ({item.run for item in verdict.evidence} or {found.run})
 
     def lines(self, verdict: Verdict) -> list[str]:
         """What was seen, where, and what to look at: for formats that show plain text."""

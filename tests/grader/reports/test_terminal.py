@@ -72,11 +72,16 @@ def test_all_that_wait_for_the_same_share_a_line():
 def test_no_advice_of_a_check_contradicts_the_first_line():
     other = verdict("b", "failed", 0, evidence=[samples.evidence(run=1)])
     judged = samples.result(
-        verdict("a", "failed", 0), other, diagnosis=samples.diagnosis(), varied_runs=[samples.run()]
+        verdict("a", "failed", 0),
+        verdict("c", "failed", 0),
+        other,
+        diagnosis=samples.diagnosis(),
+        varied_runs=[samples.run()],
     )
     text = shown(judged)
-    assert "→ See the first line." in text
+    assert text.count("→ See the first line.") == 1
     assert "Help for a." not in text
+    assert "Help for c." not in text
     assert "→ Help for b." in text  # of a run in which there was no such cause
 
 
