@@ -20,6 +20,11 @@ def told(check: Check, tolerances: Mapping[str, Any]) -> str:
 
     Empty where the author has written no more than a title.
     """
+    return in_force(check.rubric, tolerances)
+
+
+def in_force(text: str, tolerances: Mapping[str, Any]) -> str:
+    """A text with the tolerances that it names in braces, as '{edge_m}'; all else is left."""
 
     def put_in(found: re.Match[str]) -> str:
         value = tolerances.get(found["name"])
@@ -27,7 +32,7 @@ def told(check: Check, tolerances: Mapping[str, Any]) -> str:
             return found[0] if value is None else str(value)
         return f"{100 * value:g} %" if found["percent"] else f"{value:g}"
 
-    return _PLACE.sub(put_in, check.rubric)
+    return _PLACE.sub(put_in, text)
 
 
 def rubric(exercise: Exercise) -> str:

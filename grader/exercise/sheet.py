@@ -43,7 +43,7 @@ class Start:
 def sheet(exercise: Exercise, scene: Scene, start: Start) -> str:
     """The sheet."""
     parts = (
-        [f"# {exercise.title}", exercise.task],
+        [f"# {exercise.title}", rubric.in_force(exercise.task, exercise.tolerances)],
         _judged(exercise, scene),
         _tolerances(exercise),
         ["## How to try it", scene.how_to_try(start.program, start.package)],
@@ -134,8 +134,10 @@ def _handed_in(start: Start) -> Iterator[str]:
     yield "Grade it yourself first, as often as you like, from the folder above this one:"
     yield f"    {start.grade}"
     yield _wrapped(
-        "The first line says what to mend first; `report.html`, whose place stands in the last "
-        "line, shows where. With `--watch` it is graded again whenever you save."
+        "The first line says what to mend first: the cause. `Where` below it is the place in your "
+        "file, as far as it is known, `What to do` the way out. `report.html`, whose place stands "
+        "in the last line, shows it in a picture. With `--watch` it is graded again whenever "
+        "you save."
     )
     yield _wrapped(
         "Hand in the .py file, the folder of the package, or a .zip of it, as your course asks. "

@@ -7,6 +7,7 @@ import yaml
 
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise, names
+from grader.exercise.rubric import in_force
 from grader.exercise.sheet import Start, sheet
 from grader.scenes import load_scene
 from tests.grader.testing import exercises
@@ -23,7 +24,8 @@ def sheet_of(where, start=START):
 def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_begin(name):
     exercise, text = load_exercise(name), sheet_of(name)
     assert text.startswith(
-        f"# {exercise.title}\n\n{exercise.task.strip()}\n\n## What it is worth: 100"
+        f"# {exercise.title}\n\n{in_force(exercise.task, exercise.tolerances).strip()}\n\n"
+        "## What it is worth: 100"
     )
     for check in exercise.checks:
         assert f"| {exercise.points[check.name]:g} | {check.title} | `{check.name}` |" in text
@@ -50,6 +52,7 @@ def test_numbers_are_those_in_force_and_keep_their_explanations(tmp_path):
     text = sheet_of(path)
     assert "\nedge_m: 1.25            # a stop this near a wall is near the edge" in text
     assert "\ncentres_m: [5.5]  # where students take the centre to be\n" in text
+    assert "whichever of the four it is, between 0 and 1.25 m from it" in " ".join(text.split())
     assert "240 simulated seconds" in " ".join(text.split())
 
 

@@ -26,11 +26,11 @@ class TurtleController(Node):
     def drive(self):
         """Called twice a second."""
         # TODO 2: publish a Twist: angular.z constant (1.0), linear.x a little larger
-        #         each time (0.05, 0.10, 0.15, ...). Once stopped, publish no more.
+        #         each time (0.05, 0.10, 0.15, ...). Once stopped, drive no more.
 
     def watch(self, pose: Pose):
         """Called with every pose of the turtle: pose.x and pose.y go from 0 to 11.09 metres."""
-        # TODO 3: near an edge (nearer than half a metre), stop: publish an empty Twist.
+        # TODO 3: near an edge (half a metre from it, say), stop: publish an empty Twist.
         #         On entering another quarter of the window, call set_pen once with its colour:
         #         white top right, red top left, green bottom left, blue bottom right.
 
