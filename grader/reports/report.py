@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Self
 
 from grader import text
-from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
-from grader.reports import origin
+from grader.reports import origin, readable
 from grader.reports.beside import Beside, StillInMemory
 from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, all_passed, title_of, where, word
-from grader.result.result import Result, RunSummary
+from grader.result.result import Result
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
-
-#: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
-_TEXT_LIMIT = 2000
-_LOOKED_AT = 10 * _TEXT_LIMIT  # of a text as it comes, with what is not shown of it
-_POINTS_LIMIT = 20
-_FLAGS_LIMIT = 50
 
 
 @dataclass(frozen=True)
@@ -71,18 +63,18 @@ class Report:
     """
 
     def __init__(self, result: Result, beside: Beside) -> None:
-        shown: Result = text.plain_all(result, _LOOKED_AT)
+        shown: Result = text.plain_all(result, readable.LOOKED_AT)
         self.beside = beside
-        self.exercise = text.clip(text.one_line(shown.exercise), _TEXT_LIMIT) or "(no name)"
-        self.submission = text.clip(text.one_line(shown.submission), _TEXT_LIMIT) or "(no name)"
+        self.exercise = readable.line(shown.exercise) or "(no name)"
+        self.submission = readable.line(shown.submission) or "(no name)"
         self.score = float(shown.score)
         self.max_score = float(shown.max_score)
-        self.run = _few_flags(shown.run)
-        self.varied_runs = tuple(map(_few_flags, shown.varied_runs))
+        self.run = readable.few_flags(shown.run)
+        self.varied_runs = tuple(map(readable.few_flags, shown.varied_runs))
         self.origin = origin.sentences(shown.provenance) if shown.provenance else []
-        names = _distinct([text.one_line(verdict.check) for verdict in shown.verdicts])
-        self.verdicts = tuple(map(_shown, shown.verdicts, names))
-        self.diagnosis = None if shown.diagnosis is None else _readable(shown.diagnosis)
+        names = readable.distinct([text.one_line(verdict.check) for verdict in shown.verdicts])
+        self.verdicts = tuple(map(readable.of_verdict, shown.verdicts, names))
+        self.diagnosis = None if shown.diagnosis is None else readable.of_diagnosis(shown.diagnosis)
         self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))
 
     @classmethod
@@ -269,49 +261,6 @@ class Report:
         return text.plain(self.beside.output)
 
 
-def _few_flags(run: RunSummary) -> RunSummary:
-    """A run with no more flags than anybody reads, none longer than that."""
-    flags = [text.clip(flag, _TEXT_LIMIT) for flag in run.flags[:_FLAGS_LIMIT]]
-    if more := len(run.flags) - len(flags):
-        flags.append(f"and {more} more")
-    return replace(run, flags=tuple(flags))
-
-
-def _shown(verdict: Verdict, name: str) -> Verdict:
-    return replace(
-        verdict,
-        check=name,
-        title=text.one_line(verdict.title),
-        score=float(verdict.score),
-        max_score=float(verdict.max_score),
-        rationale=text.clip(verdict.rationale, _TEXT_LIMIT),
-        help=text.clip(verdict.help, _TEXT_LIMIT),
-        evidence=tuple(
-            replace(item, note=text.clip(text.one_line(item.note), _TEXT_LIMIT))
-            for item in verdict.evidence[:_POINTS_LIMIT]
-        ),
-    )
-
-
-def _readable(found: Diagnosis) -> Diagnosis:
-    def line(value: str) -> str:
-        return text.clip(text.one_line(value), _TEXT_LIMIT)
-
-    key, cause = line(found.key), line(found.cause)
-    place = found.place
-    if place is not None:
-        file, function, said = map(line, (place.file, place.function, place.text))
-        place = replace(place, file=file, function=function, text=said)
-    return replace(
-        found,
-        key=key,
-        cause=cause or key or "(no cause)",
-        help=line(found.help),
-        place=place,
-        check=line(found.check),
-    )
-
-
 def _waits(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     """For each verdict, what it waited for."""
     status = {verdict.check: verdict.status for verdict in verdicts}
@@ -321,17 +270,3 @@ def _waits(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
         else ()
         for verdict in verdicts
     ]
-
-
-def _distinct(names: list[str]) -> list[str]:
-    """The names, none empty and no two alike: some systems drop what is called the same."""
-    seen: Counter[str] = Counter()
-    distinct: list[str] = []
-    for index, name in enumerate(names, 1):
-        base = name or f"check {index}"
-        seen[base] += 1
-        candidate = base if seen[base] == 1 else f"{base} ({seen[base]})"
-        while candidate in distinct:
-            candidate += "'"
-        distinct.append(candidate)
-    return distinct

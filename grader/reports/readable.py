@@ -1,0 +1,78 @@
+"""A result's parts as anybody reads them: no text, list or name of no end."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+from grader import text
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.exercise.verdict import Verdict
+from grader.result.result import RunSummary
+
+#: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
+_TEXT_LIMIT = 2000
+LOOKED_AT = 10 * _TEXT_LIMIT  # of a text as it comes, with what is not shown of it
+_POINTS_LIMIT = 20
+_FLAGS_LIMIT = 50
+
+
+def line(value: str) -> str:
+    """One line, no longer than anybody reads."""
+    return text.clip(text.one_line(value), _TEXT_LIMIT)
+
+
+def few_flags(run: RunSummary) -> RunSummary:
+    """A run with no more flags than anybody reads, none longer than that."""
+    flags = [text.clip(flag, _TEXT_LIMIT) for flag in run.flags[:_FLAGS_LIMIT]]
+    if more := len(run.flags) - len(flags):
+        flags.append(f"and {more} more")
+    return replace(run, flags=tuple(flags))
+
+
+def of_verdict(verdict: Verdict, name: str) -> Verdict:
+    """A verdict by a name of its own, its texts and evidence clipped."""
+    return replace(
+        verdict,
+        check=name,
+        title=text.one_line(verdict.title),
+        score=float(verdict.score),
+        max_score=float(verdict.max_score),
+        rationale=text.clip(verdict.rationale, _TEXT_LIMIT),
+        help=text.clip(verdict.help, _TEXT_LIMIT),
+        evidence=tuple(
+            replace(item, note=text.clip(text.one_line(item.note), _TEXT_LIMIT))
+            for item in verdict.evidence[:_POINTS_LIMIT]
+        ),
+    )
+
+
+def of_diagnosis(found: Diagnosis) -> Diagnosis:
+    """A diagnosis of single lines, none of them longer than anybody reads."""
+    key, cause = line(found.key), line(found.cause)
+    place = found.place
+    if place is not None:
+        file, function, said = map(line, (place.file, place.function, place.text))
+        place = replace(place, file=file, function=function, text=said)
+    return replace(
+        found,
+        key=key,
+        cause=cause or key or "(no cause)",
+        help=line(found.help),
+        place=place,
+        check=line(found.check),
+    )
+
+
+def distinct(names: list[str]) -> list[str]:
+    """The names, none empty and no two alike: some systems drop what is called the same."""
+    seen: Counter[str] = Counter()
+    distinct: list[str] = []
+    for index, name in enumerate(names, 1):
+        base = name or f"check {index}"
+        seen[base] += 1
+        candidate = base if seen[base] == 1 else f"{base} ({seen[base]})"
+        while candidate in distinct:
+            candidate += "'"
+        distinct.append(candidate)
+    return distinct
