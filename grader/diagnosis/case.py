@@ -112,10 +112,10 @@ def function(place: Place | None) -> str:
 
 
 def at(time_s: float | None) -> str:
-    """' at 6.0 s'; '' for no time."""
+    """' at 6.0 s', ' right at the start'; '' for no time."""
     if time_s is None:
         return ""
-    return f" at {time_s:.1f} s" if time_s >= _AT_ONCE_S else " at its start"
+    return f" at {time_s:.1f} s" if time_s >= _AT_ONCE_S else " right at the start"
 
 
 def after(time_s: float) -> str:
@@ -124,5 +124,5 @@ def after(time_s: float) -> str:
 
 
 def since(time_s: float) -> str:
-    """' from 1.5 s on'."""
-    return f"{at(time_s).replace(' at ', ' from ', 1)} on"
+    """' from 1.5 s on', ' from the start'."""
+    return f" from {time_s:.1f} s on" if time_s >= _AT_ONCE_S else " from the start"

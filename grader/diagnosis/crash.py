@@ -6,7 +6,7 @@ import re
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis import printed
+from grader.diagnosis import printed, usual
 from grader.diagnosis.case import Case, at, line, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.recording.conduct import Place, Raised
@@ -22,23 +22,6 @@ _PLACE, _PATH = (
 )
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 _NONE = "'NoneType'"
-_PARAMETERS = (
-    "A method takes self before all else, and a callback of a subscription the message: "
-    "def on_pose(self, pose)."
-)
-#: What Python says of usual mistakes -> what to do.
-_USUAL = {
-    "'NoneType' object is not callable": (
-        "A callback is handed over by its name, without brackets: self.on_timer, not "
-        "self.on_timer(), which calls it at once and hands over the None that it returns."
-    ),
-    "callback should be": _PARAMETERS,
-    "were given": _PARAMETERS,
-    "is not defined": "Import it, define it above, or write self. before it.",
-    "Executor is already spinning": (
-        "Do not spin in a callback: use call_async() and add_done_callback()."
-    ),
-}
 #: For people who do not know the kernel's words.
 _SIGNALS = {
     "SIGABRT": "a library gave up on a value that it cannot take",
@@ -67,9 +50,14 @@ def unreadable(case: Case) -> Diagnosis | None:
         text = _PLACE.sub("", text)
         cause = f"Python cannot read your file: {raised.type}: {text}{line(raised.place)}."
         help_ = (
-            "Mend that line, or the one above it: a bracket, quote or colon that is missing is "
+            "Look at that line and the one above it: a bracket, quote or colon that is missing is "
             "noticed only where something else begins."
         )
+        if raised.type != "SyntaxError":
+            help_ = (
+                "Look at the blanks at the beginning of that line and the one above it: what "
+                "belongs together begins in the same column, with blanks or with tabs, not both."
+            )
         return Diagnosis("unreadable", cause, help_, place=raised.place)
     return None
 
@@ -106,7 +94,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     what, help_ = _wanted(found["field"], told(found["what"]), place)
-    cause = f"The field {found['field']} of a message must be {what}; it got something else"
+    cause = f"The field {found['field']} of a message must be {what}; something else was given"
     cause = f"{cause}{at(when)}{line(place)}."
     return Diagnosis("wrong_value", cause, help_, time_s=when, place=place)
 
@@ -126,11 +114,11 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
         )
     if "'float'" in what:
         instead = f"Write {number}.0 instead of {number}" if number else "Write 2.0 instead of 2"
-        return "a float", f"{instead}, and float(...) round what may be an int."
+        return "a float", f"{instead}, and float(...) around what may be an int."
     if "'int'" in what:
         whole = number.partition(".")[0]
         instead = f"Write {whole} instead of {number}" if number else "Write 255 instead of 255.0"
-        return "an int", f"{instead}, and int(...) round what is calculated."
+        return "an int", f"{instead}, and int(...) around what is calculated."
     if "sub message" in what:
         kind = re.search(r"'(\w+)'", what)
         name = kind[1] if kind else "message"
@@ -192,28 +180,19 @@ def misses_message(case: Case) -> bool:
 
 def _error(raised: Raised) -> str:
     name, text = told(raised.type).rpartition(".")[2], told(raised.text).rstrip(".")
+    said = usual.known(raised)
+    if said is not None and said.text:
+        text = said.text
     return f"{name}: {text}" if text else name
 
 
 def _mending(raised: Raised) -> str:
     whole = "The whole traceback is in output.txt."
-    for said, help_ in _USUAL.items():
-        if said in raised.text:
-            return f"{help_} {whole}"
-    if _NONE in raised.text or "NoneType" in raised.text:
-        return (
-            "Something there is still None: a message that has not come yet, or a function that "
-            f"returns nothing. Return early as long as it is None. {whole}"
-        )
-    if "has no attribute" in raised.text:
-        return (
-            "Compare the name; `ros2 interface show TYPE` lists the fields of a message. An "
-            "attribute of your own (self. ...) has to be set in __init__, before the first "
-            f"callback. {whole}"
-        )
-    if raised.place is None:
-        return f"None of its lines is in your own files. {whole}"
-    return f"Mend that line. {whole}"
+    said = usual.known(raised)
+    help_ = said.help if said is not None else usual.meaning(raised)
+    if not help_ and raised.place is None:
+        help_ = "None of its lines is in your own files."
+    return f"{help_} {whole}".strip()
 
 
 def killed(case: Case) -> Diagnosis | None:

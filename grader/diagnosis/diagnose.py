@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
-from grader.diagnosis import connections, crash, standstill
-from grader.diagnosis.case import Case, told
+from grader.diagnosis import connections, crash, standstill, warned
+from grader.diagnosis.case import Case, line, told
 from grader.diagnosis.diagnosis import CHECK, Diagnosis
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recordings
@@ -32,6 +32,7 @@ RULES: Final[tuple[Rule, ...]] = (
     crash.thread_crashed,
     connections.waits_in_vain,
     connections.publishes_to_nobody,
+    warned.has_unfit_qos,
     connections.hears_nobody,
     connections.calls_nobody,
     standstill.does_nothing,
@@ -43,6 +44,7 @@ RULES: Final[tuple[Rule, ...]] = (
 )
 #: What only disturbs it; asked when nothing keeps any run from going on.
 DISTURBING: Final[tuple[Rule, ...]] = (
+    warned.never_awaits,
     standstill.publishes_without_waiting,
     standstill.slow_callback,
     standstill.hears_once,
@@ -66,7 +68,8 @@ def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagno
             found = _ask(rules, case)
             if found is not None:
                 return _in_run(found, number)
-    return _of_check(verdicts)
+    found = _of_check(verdicts)
+    return found if found is None else _with_unused(found, cases[found.run])
 
 
 def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
@@ -101,6 +104,23 @@ def _of_check(verdicts: Sequence[Verdict]) -> Diagnosis | None:
         time_s=first.time_s if first is not None else None,
         check=worst.check,
     )
+
+
+def _with_unused(found: Diagnosis, case: Case) -> Diagnosis:
+    """The finding of a check, with a question where an end that it speaks of was never used."""
+    if case.conduct.spun_s is None:
+        return found
+    there = {(each.name, each.type) for each in case.scene_has}
+    for end in case.conduct.ends:
+        is_meant = (end.name, end.type) in there and end.name in f"{found.cause} {found.help}"
+        if is_meant and not end.used and end.kind in ("publisher", "client"):
+            what = "request" if end.kind == "client" else "message"
+            asked = (
+                f"Your {end.kind}{line(end.place)} has sent no {what}: is that line of yours "
+                "reached, and does a try/except hide an error?"
+            )
+            return replace(found, help=one_line(f"{found.help} {asked}".strip()))
+    return found
 
 
 def _cost(failed: Verdict, verdicts: Sequence[Verdict]) -> float:

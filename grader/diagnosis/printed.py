@@ -48,6 +48,11 @@ def last_line(output: str) -> str:
     return next((line for line in reversed(end(output).splitlines()) if line.strip()), "")
 
 
+def is_library(file: str) -> bool:
+    """Whether a file is of Python's, of ROS's or our own, and no submission's."""
+    return any(part in file for part in _LIBRARIES)
+
+
 def in_thread(output: str) -> Raised | None:
     """The first exception that ended a thread, as Python tells of it."""
     found = _IN_THREAD.search(end(output))
@@ -94,7 +99,7 @@ def stuck(output: str) -> Stop | None:
 
 def _own_place(frames: list[re.Match[str]]) -> Place | None:
     """The last of the frames that is no library's."""
-    own = (f for f in reversed(frames) if not any(part in f["file"] for part in _LIBRARIES))
+    own = (f for f in reversed(frames) if not is_library(f["file"]))
     frame = next(own, None)
     if frame is None:
         return None

@@ -30,13 +30,15 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
         return None
     who = function(stop.place) or "a callback"
     cause = (
-        f"Your node is stuck{since(stop.time_s)} in {who}{line(stop.place)}: it waits in this "
+        f"Your node is stuck in {who}{line(stop.place)}{since(stop.time_s)}: it waits in this "
         f"callback{_for(stop.call)}, and while it waits no answer, message or timer is handed out."
     )
     help_ = (
-        "Do not wait in a callback: use call_async() and add_done_callback(), or an `async def` "
-        "callback that awaits the future; a timer instead of a sleep."
+        "Do not wait in a callback: send the request by call_async(request), and go on without "
+        "waiting for the answer."
     )
+    if "sleep" in stop.call:
+        help_ = "Do not sleep in a callback: return, and let create_timer() call you later."
     return Diagnosis("stuck_in_callback", cause, help_, time_s=stop.time_s, place=stop.place)
 
 

@@ -46,6 +46,14 @@ Current thread 0x00007f (most recent call first):
   File "/home/ada/drive.py", line 31 in colour
   File "/home/ada/drive.py", line 44 in <module>
 """
+UNFIT = (
+    "[WARN] [1.0] [spiral]: New subscription discovered on topic '/turtle1/cmd_vel', requesting "
+    "incompatible QoS. No messages will be sent to it. Last incompatible policy: RELIABILITY\n"
+)
+NEVER_AWAITED = (
+    "/home/ada/drive.py:31: RuntimeWarning: coroutine 'Spiral.set_pen' was never awaited\n"
+    "  self.set_pen(q)\n"
+)
 STAMPED = end("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped")
 NOT_A_POSE = end("subscription", "/pose", "geometry_msgs/msg/Pose", used=0)
 FLAG = "the node used 6 s of processor time without waiting for ROS"
@@ -80,7 +88,7 @@ CAUSES = {
     "an int in a float field": (
         field("The 'x' field must be of type 'float'", "twist.linear.x = 2"),
         "wrong_value",
-        "The field x of a message must be a float; it got something else at 6.0 s "
+        "The field x of a message must be a float; something else was given at 6.0 s "
         "(drive.py, line 39). Write 2.0 instead of 2",
     ),
     "a float in an int field": (
@@ -93,7 +101,7 @@ CAUSES = {
             said(returned_s=0.5), "exited", output="oh: The 'x' field must be of type 'float'\n"
         ),
         "wrong_value",
-        "The field x of a message must be a float; it got something else.",
+        "The field x of a message must be a float; something else was given.",
     ),
     "an exception in a thread": (
         run_of(said(), output=f"Exception in thread Thread-1 (go):\n{TRACEBACK}[INFO] on\n"),
@@ -126,7 +134,74 @@ CAUSES = {
     "a callback with brackets": (
         raising("TypeError", "'NoneType' object is not callable"),
         "crashed",
-        "is not callable (drive.py, line 39). .* self.on_timer, not self.on_timer()",
+        "is not callable (drive.py, line 39). .* self.NAME, not self.NAME()",
+    ),
+    "a callback without self": (
+        raising("TypeError", "Spiral.on_timer() takes 0 positional arguments but 1 was given"),
+        "crashed",
+        "takes 0 positional arguments .* Write def on_timer(self).",
+    ),
+    "a class that is published": (
+        raising("TypeError", "Expected <class 'g._twist.Twist'>, got <class 'g.Metaclass_Twist'>"),
+        "crashed",
+        "publish() was given the class Twist itself, not a message (drive.py, line 39). "
+        "The brackets are missing: Twist()",
+    ),
+    "a request's class": (
+        raising("TypeError", place=replace(LINE, text="self.pen.call_async(request)")),
+        "crashed",
+        "no request of this service (drive.py, line 39). Are brackets missing",
+    ),
+    "no super().__init__": (
+        raising("AttributeError", "'Spiral' object has no attribute '_default_callback_group'"),
+        "crashed",
+        "the Node is not made yet .* super().__init__('name_of_the_node') must come first",
+    ),
+    "a name that a Node has": (
+        raising("AttributeError", "property 'timers' of 'Spiral' object has no setter"),
+        "crashed",
+        "A Node has a `timers` of its own: choose another name",
+    ),
+    "no init": (
+        raising("NotInitializedException", "rclpy.init() has not been called. msg:cannot create"),
+        "crashed",
+        "rclpy.init() has not been called (drive.py, line 39). Call rclpy.init()",
+    ),
+    "no such entry": (
+        raising("KeyError", "4", replace(LINE, text="request.r = COLORS[q]")),
+        "crashed",
+        "KeyError: 4 (drive.py, line 39). COLORS has no entry 4:",
+    ),
+    "arguments in another order": (
+        raising(
+            "TypeError",
+            "rclpy_resolve_name(): incompatible function arguments. Invoked with: <grader.run",
+            replace(LINE, text="self.pub = self.create_publisher('/cmd', Twist, 10)"),
+        ),
+        "crashed",
+        "create_publisher() was given values of other types, or in another order (drive.py, "
+        "line 39). Compare the order: create_publisher(Twist,",
+    ),
+    "an indentation": (
+        raising("TabError", "inconsistent use of tabs and spaces in indentation"),
+        "unreadable",
+        "TabError: inconsistent .* begins in the same column",
+    ),
+    "an exception that says all": (
+        raising("ValueError", "math domain error"),
+        "crashed",
+        "a value of the right type that it cannot take. The whole traceback",
+    ),
+    "a QoS that does not fit": (
+        run_of(said(replace(VELOCITY, is_met=False, place=LINE), POSES), output=UNFIT),
+        "has_unfit_qos",
+        "Your publisher on /turtle1/cmd_vel (drive.py, line 39) is BEST_EFFORT, the turtle "
+        "listens RELIABLE: nothing arrives. Write 10 instead of the QoS profile.",
+    ),
+    "a coroutine that nobody awaits": (
+        run_of(said(), output=NEVER_AWAITED),
+        "never_awaits",
+        "An `async def` that nobody awaits was called (drive.py, line 31): nothing of set_pen()",
     ),
     "exit with a text": (
         raising("SystemExit", "bye"),
@@ -196,7 +271,7 @@ CAUSES = {
     "a wait in a callback": (
         run_of(said(stop=Stop("callback", 1.5, "Client.call", LINE)), "stalled"),
         "stuck_in_callback",
-        "Your node is stuck from 1.5 s on in on_pose() (drive.py, line 39): .* use call_async()",
+        "Your node is stuck in on_pose() (drive.py, line 39) from 1.5 s on: .* call_async(request)",
     ),
     "the same, known from the output alone": (
         run_of(outcome="stalled", output=STUCK),

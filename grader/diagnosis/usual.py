@@ -1,0 +1,220 @@
+"""What Python and rclpy say of usual mistakes, in plain words, and what to do about each.
+
+The first that fits is taken. What is said is about the exception's own text and the line that it
+came from, both of which a submission may have made up.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from grader.diagnosis.case import told
+from grader.recording.conduct import Place, Raised
+
+#: So much of an exception's text is looked at [characters].
+_LONGEST = 1000
+#: What a Node has under these names can only be read.
+_OF_A_NODE = frozenset(
+    {"publishers", "subscriptions", "clients", "services", "timers", "guards", "waitables"}
+)
+_NODE_ATTRIBUTE = (
+    r"'(?:_Node__\w{1,40}|_default_callback_group|_logger|_clock|_parameters|_context|_rate_group"
+    r"|_parameter_overrides|_descriptors|_allow_undeclared_parameters)'"
+)
+_GIVEN = re.compile(
+    r"(?:(\w{1,60})\.)?(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w"
+)
+_MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional arguments?:")
+_LOOKED_INTO = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
+_CREATES = re.compile(r"\b(create_(?:publisher|subscription|client|service))\(")
+_IN_ORDER = {
+    "create_publisher": "create_publisher(Twist, '/turtle1/cmd_vel', 10)",
+    "create_subscription": "create_subscription(Pose, '/turtle1/pose', self.on_pose, 10)",
+    "create_client": "create_client(SetPen, '/turtle1/set_pen')",
+    "create_service": "create_service(SetPen, 'my_service', self.on_request)",
+}
+_NOT_CALLED = (
+    "A callback is handed over by its name, without brackets: self.NAME, not self.NAME(), which "
+    "calls it at once and hands over what it returns."
+)
+#: What may be said of an exception of which no more is known.
+_MEANING = {
+    "KeyError": "What that line looks into has no such entry: compare it with those that it has.",
+    "IndexError": "That line asks for an element beyond the end of a list, or of an empty one.",
+    "ZeroDivisionError": "That line divides by what can be 0: look at it before dividing.",
+    "UnboundLocalError": (
+        "On the way that was taken the variable was given no value before that line: give it one "
+        "at the start of the function, or write self. before it where it is the node's."
+    ),
+    "NameError": "Import it, define it above, or write self. before it.",
+    "ValueError": "That line was given a value of the right type that it cannot take.",
+    "TypeError": "That line was given something of another type, or another number of values.",
+    "RecursionError": "A function goes on calling itself: look for what should end that.",
+}
+
+
+@dataclass(frozen=True)
+class Said:
+    """A mistake in words.
+
+    Attributes:
+        help: what to do.
+        text: in place of what the exception says; '' where that is good as it is.
+    """
+
+    help: str
+    text: str = ""
+
+
+def known(raised: Raised) -> Said | None:
+    """What is known of an exception; None where only its name is."""
+    name, text = raised.type.rpartition(".")[2], raised.text[:_LONGEST]
+    return next((said for rule in _RULES if (said := rule(name, text, raised.place))), None)
+
+
+def meaning(raised: Raised) -> str:
+    """What an exception of this name means; '' where that says no more than its name."""
+    return _MEANING.get(raised.type.rpartition(".")[2], "")
+
+
+def _without_init(name: str, text: str, _: Place | None) -> Said | None:
+    """ROS or the node has not been started."""
+    if name == "NotInitializedException" or "rclpy.init() has not been called" in text:
+        return Said(
+            "Call rclpy.init() at the start of main(), before the node is made.",
+            "rclpy.init() has not been called",
+        )
+    if name == "AttributeError" and re.search(f"has no attribute {_NODE_ATTRIBUTE}", text):
+        return Said(
+            "super().__init__('name_of_the_node') must come first in __init__.",
+            "the Node is not made yet when that line uses it",
+        )
+    if "__init__() missing" in text and "'node_name'" in text:
+        return Said("Give the node a name: super().__init__('name_of_the_node').")
+    return None
+
+
+def _taken_name(_: str, text: str, __: Place | None) -> Said | None:
+    """An attribute that can only be read."""
+    found = re.search(r"property '(\w{1,60})' of .{1,80} object has no setter", text) or re.search(
+        r"can't set attribute '?(\w{1,60})", text
+    )
+    if found is None:
+        return None
+    if found[1] in _OF_A_NODE:
+        return Said(
+            f"A Node has a `{found[1]}` of its own: choose another name, as self.my_{found[1]}."
+        )
+    return Said(f"`{found[1]}` can only be read: choose another name for what you keep.")
+
+
+def _class_for_instance(name: str, text: str, place: Place | None) -> Said | None:
+    """A class stands where something that was made of it has to."""
+    line = place.text if place is not None else ""
+    got = re.search(r"got <class '[\w.]{0,100}\.Metaclass_(\w{1,60})'>", text)
+    if got is not None:
+        return Said(
+            f"The brackets are missing: {got[1]}() makes a message.",
+            f"publish() was given the class {got[1]} itself, not a message",
+        )
+    wrong = re.search(r"Expected <class '[\w.]+\.(\w{1,60})'>, got <class '([\w.]{1,100})'>", text)
+    if wrong is not None:
+        was = wrong[2].rpartition(".")[2]
+        return Said(
+            f"Give it a {wrong[1]}.", f"{wrong[1]} is what can be sent there, it was given: {was}"
+        )
+    if name == "TypeError" and not text and "call" in line:
+        return Said(
+            "Are brackets missing where the request is made? SetPen.Request() makes one, "
+            "SetPen.Request is only its class.",
+            "the call was given something that is no request of this service",
+        )
+    if "'property' object" in text or "'getset_descriptor' object" in text:
+        if "spin" in line:
+            return Said("The brackets are missing where the node is made: node = MyNode().")
+        return Said("The brackets are missing where the message is made, as in Twist().")
+    return None
+
+
+def _callback(_: str, text: str, place: Place | None) -> Said | None:
+    """A callback that cannot be called as rclpy calls it."""
+    if "object is not callable" in text and ("'NoneType'" in text or "'coroutine'" in text):
+        return Said(_NOT_CALLED)
+    if "callback should be" in text:
+        return Said(
+            "A method takes self before all else, and a callback of a subscription the message: "
+            "def on_pose(self, pose).",
+            "this callback of a subscription takes no message",
+        )
+    if found := _GIVEN.search(text):
+        owner, name, takes, given = found.groups()
+        if owner and takes == "0":
+            return Said(f"Write def {name}(self{', msg' if int(given) > 1 else ''}).")
+        if owner and (takes, given) == ("1", "2"):
+            return Said(
+                f"Write def {name}(self, msg): the callback of a subscription is given the "
+                "message, one that add_done_callback() was given the future."
+            )
+        return Said(f"Compare that call with what stands at `def {name}`.")
+    if found := _MISSING.search(text):
+        is_called_by_rclpy = place is None or "spin" in place.text or "def " in place.text
+        timer = "; the callback of a timer is given nothing but self" if is_called_by_rclpy else ""
+        return Said(f"Compare with what stands at `def {found[1]}`{timer}.")
+    return None
+
+
+def _arguments(_: str, text: str, place: Place | None) -> Said | None:
+    """What a library in C++ was given."""
+    line = place.text if place is not None else ""
+    if "incompatible function arguments" in text:
+        if found := _CREATES.search(line):
+            return Said(
+                f"Compare the order: {_IN_ORDER[found[1]]}.",
+                f"{found[1]}() was given values of other types, or in another order",
+            )
+        return Said(
+            "Compare the order and the types with ROS's documentation.",
+            "a function of rclpy's was given values of other types, or in another order",
+        )
+    if "create_timer(" in line and "float() argument" in text:
+        return Said("The time comes first: create_timer(0.1, self.on_timer).")
+    return None
+
+
+def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
+    """A dict that has no such key."""
+    if name != "KeyError" or not text:
+        return None
+    found = _LOOKED_INTO.search(place.text if place is not None else "")
+    if found is None:
+        return None
+    return Said(
+        f"{told(found[1])} has no entry {told(text)}: compare with those that it has, and with "
+        "what can come."
+    )
+
+
+def _none_or_unknown(_: str, text: str, __: Place | None) -> Said | None:
+    """None, a name that is not there, a spin within a spin."""
+    if "NoneType" in text:
+        return Said(
+            "Something there is still None: a message that has not come yet, or a function that "
+            "returns nothing. Return early as long as it is None."
+        )
+    if "has no attribute" in text:
+        return Said(
+            "Compare the name; `ros2 interface show TYPE` lists the fields of a message. An "
+            "attribute of your own (self. ...) has to be set in __init__, before the first "
+            "callback."
+        )
+    if "Executor is already spinning" in text:
+        return Said("Do not spin in a callback: use call_async() and add_done_callback().")
+    return None
+
+
+_RULES: tuple[Callable[[str, str, Place | None], Said | None], ...] = (
+    *(_without_init, _taken_name, _class_for_instance, _callback, _arguments, _no_entry),
+    _none_or_unknown,
+)
