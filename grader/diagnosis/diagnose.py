@@ -39,6 +39,7 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.stuck_in_callback,
     standstill.stuck_in_call,
     standstill.endless_loop,
+    standstill.stays_in_init,
     standstill.never_spins,
     standstill.ends_early,
 )

@@ -5,6 +5,8 @@ from __future__ import annotations
 from grader.diagnosis import printed
 from grader.diagnosis.case import Case, after, function, line, since, told
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.recording.conduct import Place
+from grader.text import clip
 
 #: A program that comes to its end by itself before this has hardly spun [s].
 _SOON_S = 5.0
@@ -17,6 +19,8 @@ _WITHOUT_WAITING = "without waiting for ROS"
 _FLOOD_PER_S = 500.0
 #: Of a run so long [s], so few messages are hardly any.
 _LONG_S, _ONCE = 5.0, 2
+#: So much of a line of code is shown [characters].
+_LONGEST_CODE = 60
 _SPIN = (
     "Make the node and then call rclpy.spin(node): it hands out messages and timers until the node "
     "ends."
@@ -88,6 +92,26 @@ def endless_loop(case: Case) -> Diagnosis | None:
     return None
 
 
+def stays_in_init(case: Case) -> Diagnosis | None:
+    """It makes its node, and never gets to what comes after: the rest of it, or the spin."""
+    stop, conduct = case.stop, case.conduct
+    if stop is None or stop.kind != "init" or stop.place is None:
+        return None
+    publishers = [end for end in conduct.ends if end.kind == "publisher"]
+    is_mute = bool(publishers) and not any(end.used for end in publishers)
+    if not is_mute and never_spins(case) is None:
+        return None
+    cause = (
+        f"Your program never leaves __init__(): it stays at {_code(stop.place)}"
+        f"{line(stop.place)}, and what comes after is never reached."
+    )
+    help_ = (
+        "Let __init__ only make the publisher, the subscription and a timer, and return; main() "
+        "then calls rclpy.spin(node), and create_timer() lets you act again and again."
+    )
+    return Diagnosis("stays_in_init", cause, help_, place=stop.place)
+
+
 def does_nothing(case: Case) -> Diagnosis | None:
     """It came to its end without having made anything of ROS."""
     if case.ended_s is None or case.conduct.ends or case.conduct.spun_s is not None:
@@ -117,7 +141,13 @@ def never_spins(case: Case) -> Diagnosis | None:
         return None
     none = "none of its subscriptions and timers is ever called"
     place = deaf[0].place if deaf else None
-    if case.ended_s is None:
+    if (loop := _loop_at_end(case)) is not None:
+        place = loop
+        cause = (
+            f"Your program stays in the loop {_code(loop)}{line(loop)} and never spins its node, "
+            f"so {none}."
+        )
+    elif case.ended_s is None:
         cause = f"Your program never spins its node, so {none}{line(place)}."
     else:
         cause = f"Your program ended {after(case.ended_s)} and never spun its node, so {none}."
@@ -175,15 +205,16 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
         rate = end.used / max(run_s, 1.0)
         if end.kind != "publisher" or not case.conduct.is_told or rate < _FLOOD_PER_S:
             continue
-        cause = (
-            f"You published {end.used} messages on {told(end.name)} in {run_s:.0f} s"
-            f"{line(end.place)}: nothing in that loop waits."
-        )
+        loop = _loop_at_end(case)
+        where = f": nothing in the loop {_code(loop)}{line(loop)} waits" if loop is not None else ""
+        cause = f"You published {end.used} messages on {told(end.name)} in {run_s:.0f} s"
+        cause += f"{where or f'{line(end.place)}: nothing in that loop waits'}."
         help_ = (
             "A few commands a second are enough: publish in the callback of create_timer(), and "
             "let rclpy.spin(node) call it."
         )
-        return Diagnosis("publishes_without_waiting", cause, help_, place=end.place)
+        place = loop or end.place
+        return Diagnosis("publishes_without_waiting", cause, help_, place=place)
     return None
 
 
@@ -201,12 +232,29 @@ def hears_once(case: Case) -> Diagnosis | None:
                 f"Your node has heard {told(end.name)} hardly more than once in {run_s:.0f} s"
                 f"{line(end.place)}, though it is published all the time."
             )
+            loop = _loop_at_end(case)
+            if loop is not None:
+                cause = (
+                    f"Your node stays in the loop {_code(loop)}{line(loop)}, so it has heard "
+                    f"{told(end.name)} hardly more than once in {run_s:.0f} s."
+                )
             help_ = (
                 "The next message is handed out when the callback has returned: no loop may wait "
                 "in it; let create_timer() call you. And rclpy.spin(node) has to go on meanwhile."
             )
-            return Diagnosis("hears_once", cause, help_, place=end.place)
+            return Diagnosis("hears_once", cause, help_, place=loop or end.place)
     return None
+
+
+def _loop_at_end(case: Case) -> Place | None:
+    """The loop that its main thread was in when the run ended."""
+    stop = case.stop
+    return stop.place if stop is not None and stop.kind == "going" else None
+
+
+def _code(place: Place) -> str:
+    """'`while True:`', a line as it stands there."""
+    return f"`{clip(told(place.text), _LONGEST_CODE)}`"
 
 
 def _for(call: str) -> str:

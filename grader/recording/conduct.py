@@ -21,7 +21,7 @@ MOST = 100
 LONGEST = 300
 
 EndKind = Literal["subscription", "publisher", "client", "action_client"]
-StopKind = Literal["callback", "call", "loop"]
+StopKind = Literal["callback", "call", "loop", "init", "going"]
 
 
 @dataclass(frozen=True)
@@ -93,11 +93,13 @@ class Slow:
 
 @dataclass(frozen=True)
 class Stop:
-    """Where the program was when it went no further.
+    """Where the program was when it went no further, or the run ended.
 
     Attributes:
         kind: `callback` - it waits in a callback for what only another could bring; `call` - it
-            waits in a call while nobody spins; `loop` - it computes without end.
+            waits in a call while nobody spins; `loop` - it computes without end. At the end of a
+            run, of its main thread: `init` - it was still in an `__init__`; `going` - it was in a
+            loop of its own, and did not just spin.
         call: the last function of a library that it was in, as 'Client.call'; '' for none.
     """
 

@@ -6,12 +6,12 @@ mistake that the kernel ends it for. Like all evidence it is the submission's ow
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from grader.run.student import loops
 from grader.run.student.telling import FOREIGN
 from grader.submission.opening import Submission
 
@@ -32,11 +32,6 @@ WAITS = {
     ("action/client.py", "_get_result"): "ActionClient.get_result",
     ("action/client.py", "_cancel_goal"): "ActionClient.cancel_goal",
 }
-#: How a loop begins, one that has no condition, and what else is looked no further than.
-LOOP = re.compile(r"\s*(?:async\s+)?(?:while|for)\b")
-ENDLESS = re.compile(r"while\s*\(?(?:True|1)\)?\s*:.*")
-BLOCK = re.compile(r"\s*(?:async\s+)?(?:def|class)\b")
-MOST_INDENT = 10_000
 LONGEST = 300
 MOST_SOURCE_BYTES = 1_000_000
 _FATAL = re.compile(r"Fatal Python error: ([\w\- ]{1,40})")
@@ -138,11 +133,11 @@ def ending(dump: Dump, own: Own, ended_s: float, *, computes: bool) -> dict[str,
         return {"raised": {"type": kind, "text": "", "time_s": ended_s, "place": place}}
     found = _loop(dump.threads, own) if computes else _standstill(dump.threads, own)
     if found is None:
-        return {}
+        return {} if computes else _standing(dump.threads, own, ended_s)
     kind, thread, at = found
     frame, call = thread[at], _call(thread[at - 1]) if at else ""
-    if kind == "loop" and (head := _head(thread[at:], own)):
-        frame, call = head, ""
+    if kind == "loop" and (head := loops.head([_seen(each, own) for each in thread[at:]])):
+        frame, call = replace(thread[at + head[0]], line=head[1]), ""
     return {
         "stop": {"kind": kind, "time_s": ended_s, "call": call, "place": own.place(frame)},
     }
@@ -170,41 +165,19 @@ def _standstill(threads: list[Thread], own: Own) -> tuple[str, Thread, int] | No
     return None
 
 
-def _head(thread: Thread, own: Own) -> Frame | None:
-    """Where the loop begins in which a thread is; None where there seems to be none.
-
-    Where in it the thread is, is chance; where it begins, is not. Of several it is the innermost
-    that has no condition, else the outermost.
-    """
-    own_run: list[Frame] = list(itertools.takewhile(own.name, thread))
-    heads = [
-        Frame(frame.file, number, frame.function)
-        for frame in own_run
-        for number in loops(own.text(own.name(frame)), frame.line)
-    ]
-    text = {head: own.text(own.name(head))[head.line - 1].split("#")[0].strip() for head in heads}
-    endless = [head for head in heads if ENDLESS.fullmatch(text[head])]
-    whiles = [head for head in heads if text[head].startswith("while")]
-    return next(iter(endless or whiles[::-1] or heads[::-1]), None)
+def _standing(threads: list[Thread], own: Own, ended_s: float) -> dict[str, Any]:
+    """Where the main thread was, which is the last; nothing where it just spun."""
+    thread = threads[-1] if threads else []
+    found = loops.standing([_seen(frame, own) for frame in thread])
+    if found is None:
+        return {}
+    place = own.place(replace(thread[found.at], line=found.line))
+    return {"stop": {"kind": found.kind, "time_s": ended_s, "call": "", "place": place}}
 
 
-def loops(lines: Sequence[str], number: int) -> list[int]:
-    """The first lines of the loops that a line is in, innermost first, by indentation.
-
-    Nothing is parsed: a file can be made so that Python's parser does not survive it.
-    """
-    found, indent = [], MOST_INDENT
-    for at in range(min(number, len(lines)), 0, -1):
-        text = lines[at - 1].expandtabs()
-        blanks = len(text) - len(text.lstrip())
-        if blanks == len(text) or blanks >= indent or text.lstrip().startswith("#"):
-            continue
-        indent = blanks
-        if LOOP.match(text):
-            found.append(at)
-        elif BLOCK.match(text):
-            break
-    return found
+def _seen(frame: Frame, own: Own) -> loops.Seen:
+    name = own.name(frame)
+    return loops.Seen(frame.file, frame.function, frame.line, own.text(name) if name else None)
 
 
 def _own(thread: Thread, own: Own) -> int:

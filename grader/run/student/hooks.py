@@ -34,6 +34,7 @@ def _install(witness: Witness) -> None:
     import rclpy.publisher
     import rclpy.subscription
     import rclpy.task
+    import rclpy.timer
 
     publisher, client = rclpy.publisher.Publisher, rclpy.client.Client
     subscription, executor = rclpy.subscription.Subscription, rclpy.executors.Executor
@@ -51,6 +52,15 @@ def _install(witness: Witness) -> None:
     is_done = inspect.unwrap(rclpy.task.Future.done)
     _awaits(witness, executor, "spin_until_future_complete", _first, lambda it, _: is_done(it))
     _watch_callbacks(witness, rclpy.task.Task)
+    _after(rclpy.timer.Timer, "__init__", lambda self, _: witness.is_given(self.callback))
+    add = rclpy.task.Future.add_done_callback
+
+    @functools.wraps(add)
+    def added(self: Any, callback: Any) -> Any:
+        quietly(witness.is_given, callback)
+        return add(self, callback)
+
+    rclpy.task.Future.add_done_callback = added
 
     take, look = executor._take_subscription, executor.wait_for_ready_callbacks
 

@@ -72,7 +72,7 @@ def install(
     link.on_standstill = lambda: _look_for_deadlock(
         scheduler, link, waiter, looks_on, runs_callback
     )
-    link.on_over = looks_on.sum_up
+    link.on_over = lambda: looks_on.over(scheduler.main.ident)
     threads.ON_ERROR = looks_on.thread_raised
     scheduler.on_waited = looks_on.callbacks.waited
     runs_callback = rclpy.task.Task.__call__.__code__

@@ -101,13 +101,17 @@ class Teller:
             "text": self._text(file, number),
         }
 
-    def _text(self, file: str, number: int) -> str:
+    def source(self, file: str) -> list[str]:
+        """The lines of a file of the submission's own."""
         if file not in self._sources:
             self._sources[file] = []
             with suppress(OSError):
                 data = Path(file).read_bytes()[:MOST_SOURCE_BYTES]
                 self._sources[file] = data.decode("utf-8", "replace").splitlines()
-        lines = self._sources[file]
+        return self._sources[file]
+
+    def _text(self, file: str, number: int) -> str:
+        lines = self.source(file)
         return lines[number - 1].strip()[:LONGEST] if 0 < number <= len(lines) else ""
 
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from types import FrameType
+from types import CodeType, FrameType
 from typing import Any
 
 from grader.run.lockstep import faults
-from grader.run.student import telling
+from grader.run.student import loops, telling
 from grader.run.student.delays import Callbacks, Waits
 from grader.run.student.telling import Line, Teller
 
@@ -63,6 +63,8 @@ class Witness:
         self._ends: list[End] = []
         self._has_ended = False
         self._told: set[str] = set()
+        #: where something that cannot be called was first given for a callback
+        self._uncallable: dict[str, Any] | None = None
         self.waits = Waits(teller)
         self.callbacks = Callbacks(teller)
 
@@ -80,6 +82,11 @@ class Witness:
         place = self._teller.place(frame)
         told = {"kind": kind, "name": name, "type": ros_type}
         self._teller.tell("end", {**told, "place": place})
+
+    def is_given(self, callback: Any) -> None:
+        """A timer or a future is to call this."""
+        if self._uncallable is None and not callable(callback):
+            self._uncallable = self._teller.place(sys._getframe())
 
     def used(self, entity: Any) -> None:
         """A message was sent or received, or a request sent."""
@@ -125,6 +132,25 @@ class Witness:
         told = {"kind": kind, "time_s": self._teller.now_s(), "call": call, "place": place}
         self._end("stop", told)
 
+    def over(self, main: int) -> None:
+        """The run is over, and the program would have gone on; `main`: its main thread."""
+        if not self._has_ended:
+            quietly(self._tell_where, main)
+        self.sum_up()
+
+    def _tell_where(self, thread: int) -> None:
+        lines = telling.stack(sys._current_frames().get(thread))[::-1]
+        found = loops.standing([self._seen(*line) for line in lines])
+        if found is not None:
+            place = self._teller.line(lines[found.at][0].f_code, found.line)
+            told = {"kind": found.kind, "time_s": self._teller.now_s(), "call": ""}
+            self._tell_once("stop", {**told, "place": place})
+
+    def _seen(self, frame: FrameType, line: int) -> loops.Seen:
+        file, is_own = frame.f_code.co_filename, self._teller.is_own(frame.f_code.co_filename)
+        source = self._teller.source(file) if is_own else None
+        return loops.Seen(file, frame.f_code.co_name, line, source)
+
     def thread_raised(self, error: BaseException) -> None:
         """An exception has ended a thread: the program goes on, but not what that thread spun."""
         lines = telling.trace(error)
@@ -141,10 +167,25 @@ class Witness:
         place = self._teller.line(lines[at][0].f_code, lines[at][1]) if at >= 0 else None
         if at < 0 and isinstance(error, SyntaxError):
             place = self._of_syntax(error)
+        if isinstance(error, TypeError) and at < len(lines) - 1:
+            place = self._of_callback(error, lines[-1][0]) or place
         text = str(error.code) if isinstance(error, SystemExit) else _text(error)
         kind = type(error).__name__[: telling.LONGEST]
         told = {"type": kind, "text": text[: telling.LONGEST], "time_s": self._teller.now_s()}
         return {**told, "place": place}
+
+    def _of_callback(self, error: TypeError, frame: FrameType) -> dict[str, Any] | None:
+        """The callback that rclpy could not call: its `def`, or where it was given what is none."""
+        if frame.f_globals.get("__name__") not in ("rclpy.executors", "rclpy.task"):
+            return None
+        if "object is not callable" in _text(error):
+            return self._uncallable
+        called = frame.f_locals.get("callback")
+        code = getattr(getattr(called, "__func__", called), "__code__", None)
+        if not isinstance(code, CodeType) or not self._teller.is_own(code.co_filename):
+            return None
+        is_it = f"{code.co_name}() " in _text(error)
+        return self._teller.line(code, code.co_firstlineno) if is_it else None
 
     def _of_syntax(self, error: SyntaxError) -> dict[str, Any] | None:
         if not error.filename or not self._teller.is_own(error.filename):

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 import pytest
 
 from grader.recording.conduct import Conduct
-from grader.run import dumps
 from grader.run.evidence import MOST_BYTES, open_evidence
+from grader.run.student import loops
 from grader.submission.opening import Submission, open_submission
 
 PLACE = {"file": "a.py", "line": 2, "function": "", "text": "pass"}
@@ -140,4 +140,4 @@ x = 2
 
 @pytest.mark.parametrize(("line", "found"), [(7, [3, 2]), (3, [3, 2]), (2, [2]), (8, []), (10, [])])
 def test_the_loops_round_a_line_are_found_by_indentation(line: int, found: list[int]) -> None:
-    assert dumps.loops(NESTED, line) == found
+    assert loops.around(NESTED, line) == found
