@@ -18,7 +18,7 @@ _WITHOUT_WAITING = "without waiting for ROS"
 #: Messages a second that no program sends that waits between them.
 _FLOOD_PER_S = 500.0
 #: Of a run so long [s], so few messages are hardly any.
-_LONG_S, _ONCE = 5.0, 2
+_LONG_S, _LONG_IN_LOOP_S, _ONCE = 5.0, 1.0, 2
 #: So much of a line of code is shown [characters].
 _LONGEST_CODE = 60
 _SPIN = (
@@ -221,7 +221,9 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
 def hears_once(case: Case) -> Diagnosis | None:
     """A topic that the scene publishes all the time has reached it once, and then no more."""
     run_s = case.run.simulated_s
-    if not case.conduct.is_told or case.ended_s is not None or run_s < _LONG_S:
+    loop = _loop_at_end(case)
+    least_s = _LONG_S if loop is None else _LONG_IN_LOOP_S
+    if not case.conduct.is_told or case.ended_s is not None or run_s < least_s:
         return None
     published = {(e.name, e.type) for e in case.scene_has if e.kind == "publisher"}
     heard = [end for end in case.ends if end.kind == "subscription"]
@@ -232,7 +234,6 @@ def hears_once(case: Case) -> Diagnosis | None:
                 f"Your node has heard {told(end.name)} hardly more than once in {run_s:.0f} s"
                 f"{line(end.place)}, though it is published all the time."
             )
-            loop = _loop_at_end(case)
             if loop is not None:
                 cause = (
                     f"Your node stays in the loop {_code(loop)}{line(loop)}, so it has heard "
