@@ -10,6 +10,7 @@ from grader.diagnosis import printed, usual
 from grader.diagnosis.case import Case, at, line, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.recording.conduct import Place, Raised
+from grader.text import clip
 
 #: What generated messages say of a value that they refuse.
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
@@ -20,6 +21,8 @@ _PLACE, _PATH = (
     re.compile(r" \([^()]*, line \d+\)$"),
     re.compile(r" \((/[^()]*|unknown location)\)$"),
 )
+#: So much of an exception's text is in the cause, which is to be one short sentence [characters].
+_LONGEST_ERROR = 120
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 _NONE = "'NoneType'"
 #: For people who do not know the kernel's words.
@@ -183,6 +186,7 @@ def _error(raised: Raised) -> str:
     said = usual.known(raised)
     if said is not None and said.text:
         text = said.text
+    text = clip(text, _LONGEST_ERROR)
     return f"{name}: {text}" if text else name
 
 

@@ -117,8 +117,8 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis:
         if is_meant and not end.used and end.kind in ("publisher", "client"):
             what = "request" if end.kind == "client" else "message"
             asked = (
-                f"Your {end.kind}{line(end.place)} has sent no {what}: is that line of yours "
-                "reached, and does a try/except hide an error?"
+                f"Your {end.kind}{line(end.place)} has sent no {what}: does a try/except hide an "
+                "error?"
             )
             return replace(found, help=one_line(f"{found.help} {asked}".strip()))
     return found

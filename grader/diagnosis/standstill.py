@@ -19,7 +19,7 @@ _WITHOUT_WAITING = "without waiting for ROS"
 _FLOOD_PER_S = 500.0
 #: Of a run so long [s], so few messages are hardly any.
 _LONG_S, _LONG_IN_LOOP_S, _ONCE = 5.0, 1.0, 2
-#: So much of a line of code is shown [characters].
+#: So much of a line of code, or of what was printed, is shown [characters].
 _LONGEST_CODE = 60
 _SPIN = (
     "Make the node and then call rclpy.spin(node): it hands out messages and timers until the node "
@@ -162,7 +162,7 @@ def ends_early(case: Case) -> Diagnosis | None:
     sent = sum(end.used for end in case.conduct.ends if end.kind == "publisher")
     what = {0: "nothing", 1: "one message"}.get(sent, f"{sent} messages")
     if last := printed.last_line(case.recording.output):
-        what = f"{what}, and the last that it printed is: {told(last)!r}"
+        what = f"{what}, and the last that it printed is: {clip(told(last), _LONGEST_CODE)!r}"
     raised = case.conduct.raised
     place = raised.place if raised is not None else None
     cause = (

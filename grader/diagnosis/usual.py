@@ -30,10 +30,10 @@ _MISSING = re.compile(r"(\w{1,60})\(\) missing \d{1,3} required positional argum
 _LOOKED_INTO = re.compile(r"(\b[A-Za-z_][\w.]{0,60})\[")
 _CREATES = re.compile(r"\b(create_(?:publisher|subscription|client|service))\(")
 _IN_ORDER = {
-    "create_publisher": "create_publisher(Twist, '/turtle1/cmd_vel', 10)",
-    "create_subscription": "create_subscription(Pose, '/turtle1/pose', self.on_pose, 10)",
-    "create_client": "create_client(SetPen, '/turtle1/set_pen')",
-    "create_service": "create_service(SetPen, 'my_service', self.on_request)",
+    "create_publisher": "create_publisher(Twist, '/topic', 10)",
+    "create_subscription": "create_subscription(Pose, '/topic', self.on_pose, 10)",
+    "create_client": "create_client(SetPen, '/service')",
+    "create_service": "create_service(SetPen, '/service', self.on_request)",
 }
 _NOT_CALLED = (
     "A callback is handed over by its name, without brackets: self.NAME, not self.NAME(), which "
@@ -196,12 +196,18 @@ def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
     )
 
 
-def _none_or_unknown(_: str, text: str, __: Place | None) -> Said | None:
+def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
     """None, a name that is not there, a spin within a spin."""
     if "NoneType" in text:
         return Said(
             "Something there is still None: a message that has not come yet, or a function that "
             "returns nothing. Return early as long as it is None."
+        )
+    own = re.search(r"has no attribute '(\w{1,60})'", text)
+    if own is not None and place is not None and f"self.{own[1]}" in place.text:
+        return Said(
+            f"self.{own[1]} has no value when that line runs: write self.{own[1]} = ... in "
+            "__init__, before the first callback; or compare the name."
         )
     if "has no attribute" in text:
         return Said(

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from grader.diagnosis.diagnose import diagnose
+from grader.exercise.verdict import Verdict
 from grader.recording.conduct import End, Place, Raised, Slow, Stop, Wait
 from grader.recording.recording import PublishedTopic, Recordings
 from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
@@ -360,6 +361,19 @@ SILENT = {
     "the end of a long run": run_of(said(returned_s=40.0)),
     "a program in another language": run_of(outcome="exited"),
 }
+
+
+def test_a_check_that_found_an_end_unused_asks_for_a_hidden_error():
+    recording = run_of(said(VELOCITY, POSES, replace(PEN, used=0, place=LINE)))
+    verdict = Verdict(
+        "pen", "Pen", "failed", 0, 20, "The pen was never changed.", "Call /turtle1/set_pen."
+    )
+    found = diagnose(Recordings(recording), [verdict])
+    assert found is not None
+    assert found.help == (
+        "Call /turtle1/set_pen. Your client (drive.py, line 39) has sent no request: does a "
+        "try/except hide an error?"
+    )
 
 
 @pytest.mark.parametrize("name", SILENT)

@@ -141,3 +141,31 @@ x = 2
 @pytest.mark.parametrize(("line", "found"), [(7, [3, 2]), (3, [3, 2]), (2, [2]), (8, []), (10, [])])
 def test_the_loops_round_a_line_are_found_by_indentation(line: int, found: list[int]) -> None:
     assert loops.around(NESTED, line) == found
+
+
+SPIN = loops.Seen("/x/rclpy/executors.py", "spin_once", 9, None)
+CALLBACK = loops.Seen("/x/rclpy/task.py", "__call__", 9, None)
+SLEEP = loops.Seen("/x/time.py", "sleep", 9, None)
+
+
+def at(line: int, function: str = "drive") -> loops.Seen:
+    return loops.Seen("/a/a.py", function, line, NESTED)
+
+
+@pytest.mark.parametrize(
+    ("frames", "found"),
+    [
+        ([SPIN, at(8)], None),
+        ([SPIN, at(7)], None),
+        ([SLEEP, at(7)], loops.Standing("going", 1, 3)),
+        ([SLEEP, at(7), CALLBACK, SPIN, at(8)], loops.Standing("going", 1, 3)),
+        ([SLEEP, at(8)], None),
+        ([SPIN, at(8, "__init__"), at(10, "<module>")], loops.Standing("init", 1, 8)),
+        ([SLEEP, at(8), at(7, "__init__")], loops.Standing("init", 2, 3)),
+        ([SLEEP], None),
+    ],
+)
+def test_where_a_main_thread_is_at_the_end_is_told_unless_it_just_spins(
+    frames: list[loops.Seen], found: loops.Standing | None
+) -> None:
+    assert loops.standing(frames) == found
