@@ -35,7 +35,7 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
     who = function(stop.place) or "a callback"
     cause = (
         f"Your node is stuck in {who}{line(stop.place)}{since(stop.time_s)}: it waits in this "
-        f"callback{_for(stop.call)}, and while it waits no answer, message or timer is handed out."
+        f"callback{_for(stop.call)}, and meanwhile no answer, message or timer is handed out."
     )
     help_ = (
         "Do not wait in a callback: send the request by call_async(request), and go on without "
@@ -141,8 +141,13 @@ def never_spins(case: Case) -> Diagnosis | None:
         return None
     none = "none of its subscriptions and timers is ever called"
     place = deaf[0].place if deaf else None
+    help_ = _SPIN
     if (loop := _loop_at_end(case)) is not None:
         place = loop
+        help_ = (
+            "Instead of the loop take create_timer() with a callback, and then rclpy.spin(node): "
+            "it hands out messages and timers until the node ends."
+        )
         cause = (
             f"Your program stays in the loop {_code(loop)}{line(loop)} and never spins its node, "
             f"so {none}."
@@ -151,7 +156,7 @@ def never_spins(case: Case) -> Diagnosis | None:
         cause = f"Your program never spins its node, so {none}{line(place)}."
     else:
         cause = f"Your program ended {after(case.ended_s)} and never spun its node, so {none}."
-    return Diagnosis("never_spins", cause, _SPIN, time_s=case.ended_s, place=place)
+    return Diagnosis("never_spins", cause, help_, time_s=case.ended_s, place=place)
 
 
 def ends_early(case: Case) -> Diagnosis | None:

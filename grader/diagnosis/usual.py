@@ -198,6 +198,11 @@ def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
 
 def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
     """None, a name that is not there, a spin within a spin."""
+    if "NoneType" in text and place is not None and ".result()" in place.text:
+        return Said(
+            "The answer has not come yet when that line runs: go on without it, or use it in a "
+            "callback that is given to add_done_callback()."
+        )
     if "NoneType" in text:
         return Said(
             "Something there is still None: a message that has not come yet, or a function that "
