@@ -144,7 +144,6 @@ def _one_wall_only(stops: list[Stop]) -> Finding | None:
         f"It stopped at the {walls} wall{'s' if len(at) > 1 else ''}, but not at the {worst.wall} "
         f"one. In {where}: {worst.finding.rationale}",
         f"Is the {worst.wall} wall watched? There are four: x and y each have a smallest and a "
-        "largest value. The stop must depend on the pose, not on the time or on how often "
-        "something was done.",
+        "largest value.",
         worst.finding.evidence,
     )
