@@ -8,6 +8,7 @@ from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.stops import (
+    HALF_OF_IT,
     Stop,
     is_told_to_stop_at,
     judge_stop,
@@ -18,6 +19,11 @@ from turtlesim_py.world.turtle import TICK_S
 
 #: Who is told to stop this near to the same moment, wherever it started, counts [ticks].
 SAME_MOMENT_TICKS = 32
+
+
+_BY_THE_POSE = (
+    "The stop must depend on the pose, not on the time or on how often something was done."
+)
 
 
 def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
@@ -40,7 +46,7 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
             f"It {first.finding.rationale}, but at the same moment, after "
             f"{first.path.stop_tick * TICK_S:.2f} s, from wherever it started: that it was near a "
             "wall each time is chance.",
-            "The stop must depend on the pose, not on the time or on how often something was done.",
+            _BY_THE_POSE,
             first.finding.evidence,
         )
     if worst.finding.share >= 1:
@@ -80,7 +86,7 @@ def _judge_varied(path: Path, tolerances: Tolerances) -> Stop:
         "",
         stop.finding.evidence,
     )
-    return replace(stop, kind="other", finding=finding)
+    return replace(stop, kind="far", finding=finding)
 
 
 def _all_right(stops: list[Stop]) -> str:
@@ -100,10 +106,10 @@ def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
     nominal = stops[0].finding.rationale.removesuffix(".")
     before = "" if stops[0].kind == "late" else f"From the centre it {nominal}, but "
     if stops[0].kind == "halfway":
-        before = f"{nominal}, but only when it started in the centre: "
+        before = f"{stops[0].finding.rationale.removesuffix(HALF_OF_IT)} "
     if worst.kind == "void":
         told = f"The turtle started elsewhere (run {worst.path.number}). {worst.finding.rationale}"
-        lead = "" if stops[0].kind == "late" else f"{before.removesuffix(', but ')}. "
+        lead = f"{before.removesuffix(', but ')}. " if stops[0].kind == "stopped" else before
         return replace(worst.finding, rationale=lead + told)
     here = stops[0]
     if here.kind == "stopped" and is_told_to_stop_at(
@@ -114,17 +120,21 @@ def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
             f"{before}when it started elsewhere (run {worst.path.number}) it was told to stop at "
             f"the same moment, at {here.path.stop_tick * TICK_S:.1f} s, wherever it was: "
             f"{worst.finding.rationale}",
-            "The stop must depend on the pose, not on the time or on how often something was done.",
+            _BY_THE_POSE,
             worst.finding.evidence,
         )
     only = _one_wall_only(stops)
     if only is not None:
         return only
+    lead = "not when it started" if here.kind == "stopped" else "When it started"
+    told = worst.finding.rationale
+    if worst.finding.help == here.finding.help and worst.kind == "other":  # one cause, told once
+        gap = float(worst.path.wall_distance[worst.path.last])
+        told = f"it stood {gap:.2f} m from the nearest wall."
     return Finding(
-        0,
-        f"{before}not when it started elsewhere (run {worst.path.number}): "
-        f"{worst.finding.rationale}",
-        "The stop must depend on the pose, not on the time or on how often something was done.",
+        worst.finding.share,
+        f"{before}{lead} elsewhere (run {worst.path.number}): {told}",
+        _BY_THE_POSE if worst.kind == "far" else worst.finding.help,
         worst.finding.evidence,
     )
 

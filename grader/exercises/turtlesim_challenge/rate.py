@@ -7,12 +7,10 @@ import numpy as np
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge import shape
+from grader.exercises.turtlesim_challenge.commands import WATCHDOG_TICKS
 from grader.exercises.turtlesim_challenge.path import Path
 from turtlesim_py.world.events import CmdVel
-from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
-
-#: Ticks after which a command moves the turtle no more.
-WATCHDOG_TICKS = int(COMMAND_TIMEOUT_NS / 1e9 / TICK_S) + 1
+from turtlesim_py.world.turtle import TICK_S
 
 
 def judge_rate(path: Path, tolerances: Tolerances) -> Finding:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
+from grader.exercises.turtlesim_challenge.commands import why_no_wider
 from grader.exercises.turtlesim_challenge.path import Path
 
 
@@ -22,13 +23,18 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
         growth = shape.growth(path)
         sizes = f"{growth.min():.2f} to {growth.max():.2f} m"
         return Finding(1, f"{turns:.1f} turns from the centre, each wider by {sizes}.")
+    cause = why_no_wider(path) if parts["growth"][1] else None
+    if cause is not None:
+        missed.insert(0, cause.text)
     good = {name: share for name, (share, text, _) in parts.items() if not text}
     earned = [f"{100 * share:.0f} % for the {name}" for name, share in good.items()]
     told = " and ".join(earned) if earned else "nothing"
     return Finding(
         sum(good.values()),
         f"{' '.join(missed)} Of the points it earned {told}.",
-        "A constant angular velocity with a slowly growing linear velocity makes a spiral.",
+        cause.help
+        if cause is not None
+        else "A constant angular velocity with a slowly growing linear velocity makes a spiral.",
         tuple(item for _, _, evidence in parts.values() for item in evidence),
     )
 
@@ -70,9 +76,11 @@ def _growth(path: Path, tolerances: Tolerances) -> Part:
     if not len(growth):
         return "With fewer than two turns nobody can tell whether they grow.", ()
     if growth.min() < tolerances["growth_m"]:
+        least = round(float(growth.min()), 2)
+        changed = f"it changed by {least:+.2f} m" if least else "it stayed the same"
         return (
-            f"Its mean distance from the centre must grow with each turn; from one turn to the "
-            f"next it changed by {growth.min():+.2f} m."
+            "Its mean distance from the centre must grow with each turn; from one turn to the "
+            f"next {changed}."
         ), ()
     loops = shape.loops(path)
     goes_round = loops.rounds >= tolerances["turns"] - shape.BEHIND_TURNS

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -12,18 +11,26 @@ from grader.exercise.check import Tolerances
 from grader.exercise.sentences import how_it_ended
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge import shape
+from grader.exercises.turtlesim_challenge.commands import (
+    drove_on,
+    overruled_stop,
+    stands_still,
+    why_no_wider,
+)
 from grader.exercises.turtlesim_challenge.path import Path
+from grader.scenes.turtlesim.driving import REST_TICKS
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 
 #: What is left of the points of a stop near an edge that is not quite one: because no commands
 #: came any more, or while the turtle turns on and on.
 HALF = 0.5
+HALF_OF_IT = " That is half of the points."
 WALLS = ("left", "bottom", "right", "top")
 
 #: How a run ended. `late`: the time was up while a spiral still grew, and had not
-#: touched a wall.
-Kind = Literal["stopped", "halfway", "wall", "late", "other", "void"]
+#: touched a wall; `far`: told to stop where no wall is near.
+Kind = Literal["stopped", "halfway", "wall", "late", "far", "other", "void"]
 
 
 @dataclass(frozen=True)
@@ -56,18 +63,11 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
         if _is_on_its_way(path, tolerances):
             return Stop("late", _late(path), path)
         return Stop("other", _moving(path, tolerances), path)
-    end = path.at(path.stop_tick, "the last place it moved to")
     gap = float(path.wall_distance[path.last])
-    ending = how_it_ended(path.recording)
     if gap > tolerances["edge_m"]:
-        finding = Finding(
-            0,
-            f"The turtle came to rest {gap:.2f} m from the nearest wall; "
-            f"{tolerances['edge_m']:g} m or less is near.{ending}",
-            "What should make it stop is the pose, near an edge.",
-            (end,),
-        )
-        return Stop("other", finding, path)
+        if _goes_on(path):
+            return Stop("other", _moving(path, tolerances), path)
+        return _far(path, gap, tolerances)
     finding = _told_to_rest(path, gap)
     kind: Kind = "stopped" if finding.share >= 1 else "halfway" if finding.share else "other"
     return Stop(kind, finding, path, nearest_wall(path, path.last))
@@ -107,11 +107,6 @@ def is_told_to_stop_at(path: Path, tick: int, within_ticks: int) -> bool:
     )
 
 
-def stands_still(command: CmdVel) -> bool:
-    """Whether a command says to stand still."""
-    return not command.linear[0] and not command.angular[2]
-
-
 def _to_walls(path: Path) -> np.ndarray:
     """How far each reading is from each of `WALLS` [m], float64 (n, 4)."""
     return np.column_stack((path.x, path.y, path.size_m - path.x, path.size_m - path.y))
@@ -120,15 +115,22 @@ def _to_walls(path: Path) -> np.ndarray:
 def _touched(path: Path, wall: str, tolerances: Tolerances) -> Finding:
     touched = path.at(int(path.ticks[path.wall or 0]), "it touches the wall here")
     text = f"The turtle ran into the {wall} wall at {touched.time_s:.1f} s"
-    drove_on = _drove_on(path, touched.tick, tolerances)
-    if drove_on is None:
+    pair = drove_on(path, touched.tick, tolerances["edge_m"])
+    if pair is None and not any(stands_still(call) for call in path.calls(CmdVel)):
+        text += ", and no Twist of zeros was ever sent"
+        return Finding(0, f"{text}.", _IS_IT_EVER_TRUE, (touched,))
+    if pair is None:
         help_ = "Watch the pose, and stop before a wall is reached."
         return Finding(0, f"{text}.", help_, (touched,))
-    stop, further = drove_on
+    stop, further = pair
     told = path.at(stop.tick, "told to stop here")
     return Finding(0, f"{text}: {_stop_and_go(stop, further)}.", _ONE_SAYS_STOP, (told, touched))
 
 
+_IS_IT_EVER_TRUE = (
+    "Watch the pose, and stop before a wall is reached. If your node does so: is the condition "
+    "ever true? `and` or `or`? How far from the walls, at 0 and 11.09, are its limits?"
+)
 _ONE_SAYS_STOP = (
     "Who stops must also cease to drive: what else in your node publishes velocities, and how does "
     "it learn that the turtle is to stand?"
@@ -140,18 +142,6 @@ def _stop_and_go(stop: CmdVel, further: CmdVel) -> str:
         f"your node stopped it at {stop.tick * TICK_S:.2f} s and then sent another command, to "
         f"drive on, at {further.tick * TICK_S:.2f} s"
     )
-
-
-def _drove_on(path: Path, until: int, tolerances: Tolerances) -> tuple[CmdVel, CmdVel] | None:
-    """The first command to stop near an edge that was followed by one to drive, and that one."""
-    commands = [call for call in path.calls(CmdVel) if call.tick <= until]
-    for stop, further in pairwise(commands):
-        if stop.linear[0] or not further.linear[0]:
-            continue
-        row = int(np.clip(np.searchsorted(path.ticks, stop.tick), 0, len(path) - 1))
-        if path.wall_distance[row] <= tolerances["edge_m"]:
-            return stop, further
-    return None
 
 
 def _lost(path: Path, tick: int) -> Finding:
@@ -169,7 +159,7 @@ def _is_on_its_way(path: Path, tolerances: Tolerances) -> bool:
     """Whether a spiral grew until the time was up: how near to a wall it stops is not known."""
     if path.recording.run.outcome != "time_limit" or not len(path):
         return False
-    if _drove_on(path, path.stop_tick, tolerances) is not None:
+    if drove_on(path, path.stop_tick, tolerances["edge_m"]) is not None:
         return False
     growth = shape.growth(path)
     return len(growth) > 0 and bool(growth.min() >= tolerances["growth_m"])
@@ -191,20 +181,23 @@ def _late(path: Path) -> Finding:
 
 def _moving(path: Path, tolerances: Tolerances) -> Finding:
     seconds = f"{path.recording.run.simulated_s:.0f} s"
-    limit = ", the limit of a run" if path.recording.run.outcome == "time_limit" else ""
     end = path.at(path.stop_tick, "the last place it moved to")
-    text = f"The turtle was still moving after {seconds}{limit}"
-    drove_on = _drove_on(path, path.stop_tick, tolerances)
-    if drove_on is not None:
-        stop, further = drove_on
+    text = f"The turtle was still moving after {seconds}"
+    if path.recording.run.outcome == "time_limit":
+        text = f"The turtle was still going when the time ({seconds}) was up"
+    pair = drove_on(path, path.stop_tick, tolerances["edge_m"])
+    if pair is not None:
+        stop, further = pair
         told = path.at(stop.tick, "told to stop here")
         return Finding(0, f"{text}: {_stop_and_go(stop, further)}.", _ONE_SAYS_STOP, (told, end))
     nearest = float(path.wall_distance.min()) if len(path) else 0.0
     if nearest > tolerances["edge_m"]:
+        text = f"{text}, and never came nearer to a wall than {nearest:.2f} m."
+        cause = why_no_wider(path)
         return Finding(
             0,
-            f"{text}, and never came nearer to a wall than {nearest:.2f} m.",
-            "The spiral has to grow until it is near an edge.",
+            text if cause is None else f"{cause.text} {text}",
+            "The spiral has to grow until it is near an edge." if cause is None else cause.help,
             (end,),
         )
     return Finding(
@@ -213,6 +206,47 @@ def _moving(path: Path, tolerances: Tolerances) -> Finding:
         "Compare x and y of the pose with the size of the window, and publish a zero Twist.",
         (end,),
     )
+
+
+def _goes_on(path: Path) -> bool:
+    """Whether the time was up before a pause was long enough to be a rest."""
+    run = path.recording.run
+    return run.outcome == "time_limit" and run.ticks - path.stop_tick < REST_TICKS
+
+
+def _far(path: Path, gap: float, tolerances: Tolerances) -> Stop:
+    """It came to rest far from every wall: told so, or carried there by its last command."""
+    end = path.at(path.stop_tick, "the last place it moved to")
+    rested = (
+        f"{gap:.2f} m from the nearest wall; {tolerances['edge_m']:g} m or less is near."
+        f"{how_it_ended(path.recording)}"
+    )
+    unstopped = _unstopped(path)
+    if unstopped is None:
+        text = f"The turtle came to rest {rested}"
+        return Stop(
+            "far",
+            Finding(0, text, "What should make it stop is the pose, near an edge.", (end,)),
+            path,
+        )
+    text, help_ = unstopped
+    return Stop("other", Finding(0, f"{text} It came to rest {rested}", help_, (end,)), path)
+
+
+def _unstopped(path: Path) -> tuple[str, str] | None:
+    """Why no command to stop was in force when it drove no more, with help; None: one was."""
+    drove = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
+    if drove and not drove[-1].linear[0]:
+        return None
+    stop = overruled_stop(drove)
+    if stop is not None:
+        return (
+            f"The turtle was told to stop at {stop.tick * TICK_S:.2f} s, and in the same moment to "
+            "drive on: the last command counts."
+        ), "After the Twist of zeros the same callback publishes once more: is a `return` missing?"
+    return (
+        "The turtle came to rest because no more commands came, not because it was told to stop."
+    ), "Publish a Twist of zeros to stop."
 
 
 def _told_to_rest(path: Path, gap: float) -> Finding:
@@ -224,22 +258,23 @@ def _told_to_rest(path: Path, gap: float) -> Finding:
     # then turned on the spot, when it turned no more.
     rest_tick = int(path.ticks[path.rest])
     commands = path.calls(CmdVel)
-    drove = [call for call in commands if call.tick <= path.stop_tick + 1]
     turned = [call for call in commands if call.tick <= rest_tick + 1]
-    if not drove or drove[-1].linear[0]:
+    unstopped = _unstopped(path)
+    if unstopped is not None:
         by_error = run.outcome in ("crashed", "killed", "stalled")
+        text, help_ = unstopped
         return Finding(
             0 if by_error else HALF,
-            f"The turtle came to rest {gap:.2f} m from the wall because no more commands came, "
-            f"not because it was told to stop.{ending}" + ("" if by_error else _HALF_OF_IT),
-            "Publish a Twist of zeros to stop.",
+            f"{text} It stood {gap:.2f} m from the wall.{ending}"
+            + ("" if by_error else HALF_OF_IT),
+            help_,
             (end,),
         )
     if path.rest >= len(path) - 2:
         return Finding(
             HALF,
             f"The turtle drove no farther {gap:.2f} m from the wall, but it turned on the spot "
-            f"until the run was over.{_HALF_OF_IT}",
+            f"until the run was over.{HALF_OF_IT}",
             "A Twist of zeros stops turning, too: what does angular.z say?",
             (end,),
         )
@@ -247,11 +282,8 @@ def _told_to_rest(path: Path, gap: float) -> Finding:
         return Finding(
             HALF,
             f"The turtle was told to drive no farther {gap:.2f} m from the wall, and to turn on "
-            f"the spot; that ended only because no more commands came.{ending}{_HALF_OF_IT}",
+            f"the spot; that ended only because no more commands came.{ending}{HALF_OF_IT}",
             "Publish a Twist of zeros to stop, angular.z as well.",
             (end,),
         )
     return Finding(1, f"stopped by a command, {gap:.2f} m from the wall", evidence=(end,))
-
-
-_HALF_OF_IT = " That is half of the points."

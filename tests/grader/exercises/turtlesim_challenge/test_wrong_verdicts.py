@@ -16,6 +16,9 @@ from turtlesim_py.world.turtle import SIZE_M
 EXERCISE = load_exercise("turtlesim_challenge")
 
 
+LIMIT = 11250  # ticks in 180 s
+
+
 def verdicts(controller, varied=True, ticks=4000, seed=None, **tolerances):
     starts = EXERCISE.starts(seed) if varied else []
     runs = tuple(drive(controller(), ticks, start) for start in starts)
@@ -104,6 +107,100 @@ def test_who_stops_and_then_drives_on_is_told_when():
     assert "what else in your node publishes" in found.help
 
 
+class ForgetsToReturn(Spiral):
+    """Publishes zeros and then, in the same callback, a speed; nothing after that."""
+
+    def stop(self, arena):
+        self.stopped = True
+        twist(arena, 0.0, 0.0)
+        twist(arena, self.speed)
+
+    def near_edge(self, tick, pose):
+        return min(pose.x, pose.y, SIZE_M - pose.x, SIZE_M - pose.y) < 1.5
+
+
+class SilentAtTheEdge(ForgetsToReturn):
+    def stop(self, arena):
+        self.stopped = True
+
+
+def test_who_drives_on_in_the_moment_of_the_stop_is_asked_for_a_return():
+    found = verdicts(ForgetsToReturn)["edge_stop"]
+    assert "was told to stop at" in found.rationale
+    assert "in the same moment to drive on" in found.rationale
+    assert "is a `return` missing" in found.help
+
+
+def test_who_falls_silent_is_told_to_publish_zeros_wherever_that_carries_the_turtle():
+    found = verdicts(SilentAtTheEdge)["edge_stop"]
+    assert found.rationale.startswith("The turtle came to rest because no more commands came")
+    assert found.help == "Publish a Twist of zeros to stop."
+
+
+class NeverStops(Spiral):
+    def near_edge(self, tick, pose):
+        return False
+
+
+def test_who_runs_into_a_wall_without_any_stop_is_asked_whether_the_condition_is_ever_true():
+    found = verdicts(NeverStops, varied=False)["edge_stop"]
+    assert "no Twist of zeros was ever sent" in found.rationale
+    assert "`and` or `or`" in found.help
+
+
+class PausesEachTime(Spiral):
+    def __call__(self, tick, pose, arena):
+        if tick % 125 == 1:
+            self.speed += 0.01
+            twist(arena, self.speed, 1.5)
+
+
+class InDegrees(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.05
+        twist(arena, self.speed, 90.0)
+
+
+class NeverFaster(Spiral):
+    def drive(self, tick, arena):
+        twist(arena, 0.51, 1.5)
+
+
+class TurnsFasterToo(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.05
+        twist(arena, self.speed, self.speed)
+
+
+class TwoTimers(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.005
+        twist(arena, self.speed)
+
+    def __call__(self, tick, pose, arena):
+        super().__call__(tick, pose, arena)
+        if tick % 31 == 2:
+            twist(arena, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("controller", "told", "help_"),
+    [
+        (PausesEachTime, "A command came every 2.00 s only", "faster than once a second"),
+        (InDegrees, "angular.z is 90 rad/s", "not in degrees"),
+        (NeverFaster, "linear.x was 0.51 in every command", "grow a little"),
+        (TurnsFasterToo, "angular.z grew with linear.x", "constant angular.z"),
+        (TwoTimers, "took turns", "one place"),
+    ],
+)
+def test_who_never_comes_near_a_wall_is_told_what_the_commands_show(controller, told, help_):
+    found = verdicts(controller, varied=False, ticks=LIMIT // 2)
+    assert told in found["edge_stop"].rationale.partition(". ")[0]
+    assert help_ in found["edge_stop"].help
+    assert "came to rest" not in found["edge_stop"].rationale
+    assert "-0.00" not in found["spiral"].rationale
+
+
 class WatchesTheRightWallOnly(Spiral):
     def near_edge(self, tick, pose):
         return pose.x > SIZE_M - 0.5
@@ -187,9 +284,6 @@ class VerySlow(Spiral):
     def drive(self, tick, arena):
         self.speed += 0.005
         twist(arena, self.speed)
-
-
-LIMIT = 11250  # ticks in 180 s
 
 
 def test_a_slow_right_spiral_is_judged_by_the_runs_that_come_near_a_wall():

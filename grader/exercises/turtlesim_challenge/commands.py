@@ -1,0 +1,125 @@
+"""What a run's velocity commands say: to stop, to drive on, and why no circle grows wider."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from grader.exercises.turtlesim_challenge.path import Path
+from turtlesim_py.world.events import CmdVel
+from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
+
+#: Ticks after which a command moves the turtle no more.
+WATCHDOG_TICKS = int(COMMAND_TIMEOUT_NS / 1e9 / TICK_S) + 1
+#: Two full turns a second: who asks for more thinks in degrees [rad/s].
+DEGREES = 4 * math.pi
+#: What one callback publishes arrives so near together: the simulator takes one message a step.
+ONE_MOMENT_TICKS = 2
+#: From this part of all commands on, those of linear.x 0 between others are no accident.
+TAKE_TURNS = 0.25
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What is wrong with the commands: a sentence with numbers, and what to do."""
+
+    text: str
+    help: str
+
+
+def stands_still(command: CmdVel) -> bool:
+    """Whether a command says to stand still."""
+    return not command.linear[0] and not command.angular[2]
+
+
+def drove_on(path: Path, until: int, edge_m: float) -> tuple[CmdVel, CmdVel] | None:
+    """The first command to stop near an edge that was followed by one to drive, and that one."""
+    commands = [call for call in path.calls(CmdVel) if call.tick <= until]
+    for stop, further in pairwise(commands):
+        if stop.linear[0] or not further.linear[0]:
+            continue
+        row = int(np.clip(np.searchsorted(path.ticks, stop.tick), 0, len(path) - 1))
+        if path.wall_distance[row] <= edge_m:
+            return stop, further
+    return None
+
+
+def overruled_stop(drove: Sequence[CmdVel]) -> CmdVel | None:
+    """The command to stand that the last of some commands overruled in the same moment."""
+    if len(drove) < 2 or not drove[-1].linear[0]:
+        return None
+    before, last = drove[-2:]
+    in_one = last.tick - before.tick <= ONE_MOMENT_TICKS
+    return before if in_one and stands_still(before) else None
+
+
+def why_no_wider(path: Path) -> Cause | None:
+    """Why the turtle draws no wider circles, where the commands tell; None: they do not."""
+    commands = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
+    if len(commands) < 3:
+        return None
+    return _paused(commands) or _degrees(commands) or _takes_turns(commands) or _same(commands)
+
+
+def _paused(commands: Sequence[CmdVel]) -> Cause | None:
+    gap = float(np.median(np.diff([call.tick for call in commands])))
+    if gap <= WATCHDOG_TICKS:
+        return None
+    return Cause(
+        f"A command came every {gap * TICK_S:.2f} s only, and the turtle paused each time: a "
+        "command moves it for 1 s.",
+        "Publish faster than once a second.",
+    )
+
+
+def _degrees(commands: Sequence[CmdVel]) -> Cause | None:
+    turn = float(np.median([call.angular[2] for call in commands]))
+    if not math.isfinite(turn) or abs(turn) <= DEGREES or abs(turn) > 360:
+        return None
+    return Cause(
+        f"angular.z is {turn:g} rad/s: {abs(turn) / (2 * math.pi):.1f} turns a second.",
+        "angular.z is in radians a second, not in degrees.",
+    )
+
+
+def _takes_turns(commands: Sequence[CmdVel]) -> Cause | None:
+    driving = [bool(call.linear[0]) for call in commands]
+    between = sum(
+        before and after and not now
+        for before, now, after in zip(driving, driving[1:], driving[2:], strict=False)
+    )
+    if between < TAKE_TURNS * len(commands):
+        return None
+    return Cause(
+        "Commands to drive and commands with linear.x 0 took turns: each overrules the one before.",
+        "Publish from one place in your node, linear.x and angular.z in one Twist.",
+    )
+
+
+def _same(commands: Sequence[CmdVel]) -> Cause | None:
+    speeds, turns = (
+        np.array([v for v in values if v])
+        for values in zip(*((c.linear[0], c.angular[2]) for c in commands), strict=True)
+    )
+    if not len(speeds) or not (np.isfinite(speeds).all() and np.isfinite(turns).all()):
+        return None
+    if np.ptp(speeds) < 1e-9:
+        return Cause(
+            f"linear.x was {speeds[0]:.3g} in every command.",
+            "For a spiral linear.x has to grow a little with each command: does your node keep "
+            "the greater value?",
+        )
+    if len(turns) != len(speeds):
+        return None
+    radii = np.abs(speeds / turns)
+    if np.ptp(radii) > 0.01 * float(radii.mean()):
+        return None
+    return Cause(
+        f"angular.z grew with linear.x, from {turns[0]:.3g} to {turns[-1]:.3g}: the radius "
+        f"stays {radii.mean():.2f} m.",
+        "Let linear.x grow alone: with a constant angular.z the radius grows.",
+    )
