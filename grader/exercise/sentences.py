@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import PurePath
 
-from grader.recording.recording import Recording
+from grader.exercise.verdict import Finding
+from grader.recording.recording import Recording, Recordings
 from grader.scenes import load_scene
 from grader.text import without_controls
 
@@ -56,6 +58,28 @@ def last_error(output: str) -> str:
     where = frames[-1]
     place = f"({PurePath(where['file']).name}, line {where['line']})"
     return without_controls(f"{error.rstrip('.')} {place}", "?")
+
+
+def counted(number: int, one: str, many: str = "") -> str:
+    """So many of something: '1 entry', '2 entries'; `many` is the plural, `one` with an s if ''."""
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def error_first(recordings: Recordings, finding: Finding) -> Finding:
+    """A finding of a run that an error ended: its facts, and the error as what to mend first.
+
+    That of a varied run counts where the finding's evidence is of that run.
+    """
+    if finding.share >= 1:
+        return finding
+    # a varied run may not be there yet, and is looked at by a finding that is of it only
+    run = finding.evidence[0].run if finding.evidence else 0
+    crashed = recordings.nominal.run.outcome == "crashed" or (
+        run > 0 and recordings.varied[run - 1].run.outcome == "crashed"
+    )
+    if not crashed:
+        return finding
+    return replace(finding, help="See the error first: what would have come after it is not there.")
 
 
 def remarks(recording: Recording, all_passed: bool = False) -> list[str]:

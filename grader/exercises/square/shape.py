@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from grader.exercise.check import Tolerances
+from grader.exercise.sentences import counted
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.square.way import Way
 
@@ -155,11 +156,6 @@ def judge_square(way: Way, tolerances: Tolerances) -> tuple[float, str, list[Evi
 def part(good: int, found: int) -> float:
     """The share for so many good ones out of so many, where four are wanted."""
     return min(good, SIDES) / max(found, SIDES)
-
-
-def counted(number: int, thing: str) -> str:
-    """A number of things, in words."""
-    return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
 def some(texts: list[str]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.sentences import how_it_ended
+from grader.exercise.sentences import error_first, how_it_ended
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.calls import judge_calls
 from grader.exercises.turtlesim_challenge.edge import judge_edge
@@ -106,7 +106,7 @@ def spiral(recordings: Recordings, tolerances: Tolerances) -> Finding:
       turn before; and no more than half of the growth comes from driving straight outwards, as
       between concentric circles.
     """
-    return judge_spiral(Path(recordings.nominal), tolerances)
+    return error_first(recordings, judge_spiral(Path(recordings.nominal), tolerances))
 
 
 @checks(after=("moves",))
@@ -119,7 +119,7 @@ def steady_rate(recordings: Recordings, tolerances: Tolerances) -> Finding:
     nothing, but for a path with fewer than {turns} turns: half of them are worth nothing, all of
     them everything, and between it goes in proportion.
     """
-    return judge_rate(Path(recordings.nominal), tolerances)
+    return error_first(recordings, judge_rate(Path(recordings.nominal), tolerances))
 
 
 @checks(after=("moves",))
@@ -135,7 +135,7 @@ def edge_stop(recordings: Recordings, tolerances: Tolerances) -> Finding:
     come from the pose, nor does one that comes at the same moment in all of three or more runs.
     Where the time was up while the spiral still grew, the other runs decide.
     """
-    return judge_edge(recordings, tolerances)
+    return error_first(recordings, judge_edge(recordings, tolerances))
 
 
 @checks(after=("moves",))
@@ -153,7 +153,7 @@ def pen_per_quadrant(recordings: Recordings, tolerances: Tolerances) -> Finding:
     In a run that starts elsewhere the quadrants that were entered count instead of four; the worst
     run counts.
     """
-    return judge_pens(recordings, tolerances)
+    return error_first(recordings, judge_pens(recordings, tolerances))
 
 
 @checks(after=("moves",))
@@ -165,7 +165,7 @@ def picture(recordings: Recordings, tolerances: Tolerances) -> Finding:
     that a colour may take does not count as mixed, and what has the colour of the background is
     not there. Another background is allowed. All or nothing.
     """
-    return judge_picture(recordings.nominal, tolerances)
+    return error_first(recordings, judge_picture(recordings.nominal, tolerances))
 
 
 @checks(after=("moves",))
@@ -176,4 +176,4 @@ def no_redundant_calls(recordings: Recordings, tolerances: Tolerances) -> Findin
     {spare_calls} times more. Calls that switch the pen off are worth nothing. All or nothing, but
     for a path with fewer than {turns} turns, as for the rate.
     """
-    return judge_calls(Path(recordings.nominal), tolerances)
+    return error_first(recordings, judge_calls(Path(recordings.nominal), tolerances))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from grader.exercises.turtlesim_challenge.cause import Cause
 from grader.exercises.turtlesim_challenge.path import Path
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
@@ -21,14 +21,6 @@ DEGREES = 4 * math.pi
 ONE_MOMENT_TICKS = 2
 #: From this part of all commands on, those of linear.x 0 between others are no accident.
 TAKE_TURNS = 0.25
-
-
-@dataclass(frozen=True)
-class Cause:
-    """What is wrong with the commands: a sentence with numbers, and what to do."""
-
-    text: str
-    help: str
 
 
 def stands_still(command: CmdVel) -> bool:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from grader.exercise.check import Tolerances
+from grader.exercise.sentences import counted
 from grader.exercise.verdict import Evidence, Finding
-from grader.exercises.turtlesim_challenge import colours, pens
+from grader.exercises.turtlesim_challenge import colours, mistakes, pens
 from grader.exercises.turtlesim_challenge.edge import in_varied_runs_too
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Entry, Path
 from grader.exercises.turtlesim_challenge.stops import judge_start
@@ -16,6 +15,8 @@ from grader.recording.recording import Recordings
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.turtle import TICK_S
 
+#: With this share or less the run from the centre shows by itself what is wrong.
+SHOWS_IT_TOO = 0.9
 #: So many entries are shown.
 SHOWN = 5
 
@@ -37,17 +38,25 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
         return away
     telling = [n for n, coloring in enumerate(colorings) if coloring.tells or n == 0]
     worst = min(telling, key=lambda n: colorings[n].share)
-    found, path = colorings[worst], paths[worst]
-    if found.share >= 1:
-        entries = len(nominal.judged)
-        rationale = f"All {entries} entries gave the pen its quadrant's colour"
-        return Finding(1, f"{rationale}{in_varied_runs_too(recordings)}.")
-    sentences = _seen(found, tolerances)
-    if worst:
+    share = colorings[worst].share
+    if share >= 1:
+        return Finding(
+            1, _all_right(path, nominal, tolerances) + in_varied_runs_too(recordings) + "."
+        )
+    # What the run from the centre shows as well is told of that one.
+    shown = 0 if nominal.share <= SHOWS_IT_TOO else worst
+    found, path = colorings[shown], paths[shown]
+    sentences, help_ = _told(path, found, tolerances)
+    if shown:
         sentences[0] = f"When the turtle started elsewhere (run {worst}): {sentences[0]}"
-    return Finding(
-        found.share, " ".join(sentences), _help(found), _evidence(path, found, tolerances)
-    )
+    sentences += _points(colorings[worst], worst)
+    return Finding(share, " ".join(sentences), help_, _evidence(path, found, tolerances))
+
+
+def _all_right(path: Path, nominal: pens.Coloring, tolerances: Tolerances) -> str:
+    right, entered = len(nominal.judged), len(path.entries(tolerances["band_m"]))
+    short = "" if right == entered else " (short stays not counted)"
+    return f"All {counted(right, 'entry', 'entries')} gave the pen its quadrant's colour{short}"
 
 
 def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pens.Coloring:
@@ -69,52 +78,44 @@ def first_moved_away(recordings: Recordings) -> Finding | None:
     return None
 
 
-def told_alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> list[str]:
-    """Sentences about quadrants with one colour: 'Quadrants II and IV are both red ...'."""
-    return [
-        f"Quadrants {_and([ROMAN[q] for q in group])} "
-        f"{'are both' if len(group) == 2 else 'all are'} {colours.name(own[group[0]])}."
-        for group in groups
-        if len(group) > 1
-    ]
-
-
-def _seen(found: pens.Coloring, tolerances: Tolerances) -> list[str]:
+def _told(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple[list[str], str]:
+    """What was seen, the cause first, and what to do."""
     if not found.judged:
-        return ["The turtle left no quadrant in which there was time to change the colour."]
-    right, of = len(found.judged) - len(found.bad), len(found.judged)
-    sentences = [
-        f"{right} of {of} entries into a quadrant gave the pen that quadrant's colour in time."
-    ]
-    lifted = [ROMAN[q] for q, color in sorted(found.own.items()) if color is None]
-    if lifted:
-        where = "everywhere" if len(lifted) == len(found.own) else f"in quadrant {_and(lifted)}"
-        sentences.append(f"The pen is off {where}: it draws nothing there.")
-    sentences += told_alike(found.alike, found.own)
-    sentences += _told_late(found, tolerances)
+        seen = "The turtle left no quadrant in which there was time to change the colour."
+        return [seen], mistakes.SPIRAL_FIRST
+    causes = list(mistakes.causes(path, found, tolerances))
+    sentences = [cause.text for cause in causes]
+    help_ = causes[0].help if causes else _LOOK_THERE if found.bad else mistakes.SPIRAL_FIRST
+    if found.bad:
+        right, of = len(found.judged) - len(found.bad), len(found.judged)
+        sentences.append(
+            f"{right} of {counted(of, 'entry', 'entries')} into a quadrant gave the pen that "
+            "quadrant's colour in time."
+        )
     sentences += _told_demanded(found, tolerances)
     if found.wanted > len(found.own):
-        sentences.append(f"Of the four quadrants {len(found.own)} were entered for long enough.")
-    if 0 < found.share < 1:
-        wanted = max(found.wanted, len(found.own))
-        sentences.append(
-            f"Of the points that is {right}/{of} for the entries times {found.different}/{wanted} "
-            "for colours that differ."
-        )
-    elif not found.tells:
+        entered = len(found.own)
+        were = "was" if entered == 1 else "were"
+        sentences.append(f"Of the four quadrants {entered} {were} entered for long enough.")
+    if not found.tells:
         sentences.append("One quadrant alone tells nothing.")
-    return sentences
+    return sentences, help_
 
 
-def _told_late(found: pens.Coloring, tolerances: Tolerances) -> list[str]:
-    """How late the colours are that come at all."""
-    delays = [pens.came_after(entry, found, tolerances["color_distance"]) for entry in found.bad]
-    late = [delay for delay in delays if delay]
-    if not late:
+_LOOK_THERE = (
+    "Look at the first moment that is named: in which quadrant is the turtle, and which colour "
+    "does your node ask for?"
+)
+
+
+def _points(found: pens.Coloring, run: int) -> list[str]:
+    """How the points come about, where there are some."""
+    if not 0 < found.share < 1:
         return []
-    typical = float(np.median(late)) * TICK_S
-    allowed = float(np.median([found.waits[entry] for entry in found.bad])) * TICK_S
-    return [f"The colour comes {typical:.2f} s after the turtle; {allowed:.2f} s are allowed."]
+    right, of = len(found.judged) - len(found.bad), len(found.judged)
+    wanted = max(found.wanted, len(found.own))
+    where = f" in run {run}" if run else ""
+    return [f"Points{where}: {right}/{of} (entries) times {found.different}/{wanted} (colours)."]
 
 
 def _told_demanded(found: pens.Coloring, tolerances: Tolerances) -> list[str]:
@@ -123,14 +124,6 @@ def _told_demanded(found: pens.Coloring, tolerances: Tolerances) -> list[str]:
         f"Quadrant {ROMAN[quadrant]} is to be {colours.name(asked[quadrant])}."
         for quadrant in sorted({entry.quadrant for entry in found.bad} & asked.keys())
     ]
-
-
-def _help(found: pens.Coloring) -> str:
-    if None in found.own.values():
-        return "What do your requests say of `off`? 0 is a pen that draws."
-    if found.judged and not found.bad and len(found.alike) < len(found.own):
-        return "Give each quadrant a colour of its own, one that an eye tells from the others."
-    return "Compare the quadrant of each pose with the one before. Which is where?"
 
 
 def _evidence(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple[Evidence, ...]:
@@ -156,7 +149,3 @@ def _note(entry: Entry, found: pens.Coloring, tolerances: Tolerances) -> str:
     if delay <= found.waits[entry]:
         return f"{enters}; its colour, {colours.name(own)}, does not stay"
     return f"{enters}; {colours.name(own)} comes {delay * TICK_S:.2f} s later, until then {before}"
-
-
-def _and(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

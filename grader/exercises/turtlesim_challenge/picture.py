@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
-from grader.exercises.turtlesim_challenge import colours, ink, pens
+from grader.exercises.turtlesim_challenge import colours, ink, mistakes, pens, shape
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path
-from grader.exercises.turtlesim_challenge.penning import told_alike
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.events import SetPen
@@ -43,11 +42,9 @@ def judge_picture(recording: Recording, tolerances: Tolerances) -> Finding:
     own = {quadrant: quarter.color for quadrant, quarter in quarters.items()}
     groups = colours.groups(own, near)
     if len(groups) < QUADRANTS:
-        return Finding(
-            0,
-            " ".join(told_alike(groups, own)),
-            "Give each quadrant a colour of its own, one that an eye tells from the others.",
-        )
+        cause = mistakes.alike(groups, own)
+        hardly_driven = not shape.shown(Path(recording), tolerances)
+        return Finding(0, cause.text, mistakes.SPIRAL_FIRST if hardly_driven else cause.help)
     total = sum(quarter.pixels for quarter in quarters.values())
     return Finding(1, f"Four quarters, four colours, {total} painted pixels.")
 

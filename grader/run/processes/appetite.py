@@ -22,8 +22,9 @@ PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 EVERY_S = 0.2
 #: Memory that has gone since the last close look, wherever to, and makes the next one due.
 HURRY_BYTES = 256 * MIB
-#: So near to the limit of processes the kernel has refused one; some are not a submission's own.
-NEAR = 4
+#: So near to the limit of processes the kernel has refused one: some are not a submission's own,
+#: and some have ended since.
+NEAR = 12
 
 
 class Usage(NamedTuple):
@@ -86,8 +87,8 @@ class Appetite:
         found = self._family.look()
         if found.tasks > limits.tasks - NEAR:
             self.remark = (
-                f"the node and what it started had {limits.tasks} processes and threads at once:"
-                " a run may have no more"
+                "the node and what it started came to the limit of"
+                f" {limits.tasks} processes and threads: a run may have no more at once"
             )
         if found.tasks > limits.tasks + NEAR:
             return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import pytest
@@ -406,7 +407,7 @@ def test_two_quadrants_of_one_colour_are_named_with_it():
     told = "Quadrants II and IV are both red (255, 0, 0)."
     assert told in found["pen_per_quadrant"].rationale
     assert told in found["picture"].rationale
-    assert "times 3/4 for colours" in found["pen_per_quadrant"].rationale
+    assert found["pen_per_quadrant"].rationale.endswith("times 3/4 (colours).")
     assert found["pen_per_quadrant"].score == 15
 
 
@@ -463,6 +464,101 @@ def test_a_colour_that_is_late_is_told_how_late_and_what_is_allowed():
     note = found.evidence[0].note
     assert note.startswith("enters quadrant IV (bottom right); blue (0, 0, 255) comes 0.67 s later")
     assert note.endswith("until then green (0, 255, 0)")
+
+
+class DividesAtFive(Spiral):
+    def quadrant_of(self, pose):
+        if pose.y >= 5.0:
+            return 1 if pose.x >= 5.0 else 2
+        return 3 if pose.x < 5.0 else 4
+
+
+class DividesAtSixAndAHalf(Spiral):
+    def quadrant_of(self, pose):
+        if pose.y >= CENTRE:
+            return 1 if pose.x >= 6.5 else 2
+        return 3 if pose.x < 6.5 else 4
+
+
+class ColourOfTheQuadrantBefore(Spiral):
+    def watch(self, tick, pose, arena):
+        self.before = self.quadrant
+        super().watch(tick, pose, arena)
+
+    def entered(self, quadrant, arena):
+        if self.before:
+            pen(arena, self.colors[self.before])
+
+    def drive(self, tick, arena):
+        self.speed += 0.03
+        twist(arena, self.speed, 1.5)
+
+
+class LooksOnceASecond(Spiral):
+    def watch(self, tick, pose, arena):
+        if tick % 62 == 0 or self.near_edge(tick, pose):
+            super().watch(tick, pose, arena)
+
+
+@pytest.mark.parametrize(
+    ("controller", "told", "help_"),
+    [
+        (DividesAtFive, "The colour changes at x = 5.0 and y = 5.0; the middle", "Which limits"),
+        (DividesAtSixAndAHalf, "The colour changes at x = 6.5; the middle", "Which limits"),
+        (LooksOnceASecond, "The colour comes now and then only", "not in a slow timer"),
+        (NineTenthsLate, "The colour comes 0.8", "what does your node wait for"),
+        (TwoAlike, "Quadrants II and IV are both red", "II is x < middle and y > middle; IV is"),
+    ],
+)
+def test_wrong_colours_are_told_by_their_cause_first(controller, told, help_):
+    found = verdicts(controller)["pen_per_quadrant"]
+    assert found.rationale.startswith(told)
+    assert help_ in found.help
+    assert found.rationale.endswith("(colours).")  # how the points come about is told last
+
+
+def test_the_colour_of_the_quadrant_before_is_told_as_that():
+    found = verdicts(ColourOfTheQuadrantBefore, seed=2022)["pen_per_quadrant"]
+    assert "the quadrant that the turtle came from" in found.rationale
+    assert "for which does it ask the colour" in found.help
+
+
+class AlmostRed(Spiral):
+    colors = {1: RED, 2: WHITE, 3: (250, 0, 5), 4: BLUE}
+
+
+def test_colours_that_look_the_same_are_both_named_by_their_numbers():
+    found = verdicts(AlmostRed, varied=False)
+    told = "I and III are red (255, 0, 0) and red (250, 0, 5): no eye tells them apart."
+    assert told in found["pen_per_quadrant"].rationale
+    assert told in found["picture"].rationale
+
+
+class LiftsThePenFirst(Spiral):
+    def entered(self, quadrant, arena):
+        arena.set_pen("turtle1", 0, 0, 0, 3, 1)
+        super().entered(quadrant, arena)
+
+
+def test_two_calls_at_each_entry_are_told_as_one_too_many():
+    found = verdicts(LiftsThePenFirst, varied=False)["no_redundant_calls"]
+    assert "more than once at each entry" in found.rationale
+    assert "One call at each entry is enough" in found.help
+
+
+def test_who_drives_through_few_quadrants_is_sent_to_the_spiral_first():
+    found = verdicts(NeverFaster, varied=False)["pen_per_quadrant"]
+    assert found.help.startswith("Look at the spiral first")
+
+
+def test_after_a_crash_no_check_blames_what_did_not_come_any_more():
+    recording = drive(CrashesAtSixSeconds(), 1000)
+    crashed = dataclasses.replace(recording.run, outcome="crashed", exit_code=1)
+    recordings = Recordings(dataclasses.replace(recording, run=crashed))
+    found = judge(recordings, EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
+    failed = [verdict for verdict in found if verdict.status == "failed"]
+    assert failed
+    assert all(verdict.help.startswith("See the error first") for verdict in failed)
 
 
 def test_an_exercise_may_allow_more_than_half_of_a_stay():

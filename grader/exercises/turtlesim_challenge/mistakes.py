@@ -1,0 +1,171 @@
+"""What is behind wrong colours: a dividing line elsewhere, the quadrant before, a slow timer."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from grader.exercise.check import Tolerances
+from grader.exercises.turtlesim_challenge import colours
+from grader.exercises.turtlesim_challenge.cause import Cause
+from grader.exercises.turtlesim_challenge.path import CENTRE_M, QUADRANTS, ROMAN, Path
+from grader.exercises.turtlesim_challenge.pens import Coloring, came_after
+from turtlesim_py.world.events import SetPen
+from turtlesim_py.world.trajectory import Floats
+from turtlesim_py.world.turtle import TICK_S
+
+#: A call this far from both dividing lines was made by something else [m].
+OFF_THE_LINES_M = 0.3
+#: Calls for one line lie this near to it [m]: a turtle drives so far in a step or two.
+ON_ONE_LINE_M = 0.12
+#: So many calls are needed to see a line, and this part of them, or of a pattern, has to fit.
+LEAST_CALLS, MOST = 3, 0.8
+#: Delays that differ by more are no fixed delay: something looks now and then [s].
+NOW_AND_THEN_S = 0.35
+
+WHERE = {
+    1: "x > middle and y > middle",
+    2: "x < middle and y > middle",
+    3: "x < middle and y < middle",
+    4: "x > middle and y < middle",
+}
+MIDDLE = f"the middle of the window is at {int(100 * CENTRE_M) / 100:g}"
+
+
+SPIRAL_FIRST = "Look at the spiral first: colours are judged in the quadrants that it goes through."
+
+
+def causes(path: Path, found: Coloring, tolerances: Tolerances) -> Iterator[Cause]:
+    """What explains the wrong entries, the likeliest first."""
+    if None in found.own.values():
+        yield _lifted(found)
+    elsewhere = found.bad and (_other_line(path) or _quadrant_before(path, found, tolerances))
+    if elsewhere:  # it explains late colours and quadrants of one colour, too
+        yield elsewhere
+        return
+    if len(found.alike) < len([color for color in found.own.values() if color is not None]):
+        yield alike(found.alike, found.own)
+    if found.bad:
+        late = _late(found, tolerances)
+        if late is not None:
+            yield late
+
+
+def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Cause:
+    """Quadrants with one colour: 'Quadrants II and IV are both red ...'."""
+    same = [group for group in groups if len(group) > 1]
+    told = []
+    for group in same:
+        names = list(dict.fromkeys(colours.name(own[quadrant]) for quadrant in group))
+        of_two = "are both" if len(group) == 2 else "all are"
+        told.append(
+            f"Quadrants {listed([ROMAN[q] for q in group])} "
+            + (f"{of_two} {names[0]}." if len(names) == 1 else f"are {listed(names)}:")
+            + ("" if len(names) == 1 else " no eye tells them apart.")
+        )
+    help_ = "Give each quadrant a colour of its own, one that an eye tells from the others."
+    if all(len({own[quadrant] for quadrant in group}) == 1 for group in same):
+        where = "; ".join(f"{ROMAN[q]} is {WHERE[q]}" for group in same for q in group)
+        if max(map(len, same)) == QUADRANTS:
+            where = "is each of them ever true?"
+        help_ = (
+            "Give each quadrant a colour of its own. If your node has four colours, look at its "
+            f"conditions: {where}; {MIDDLE}."
+        ).replace("?;", "? As for limits,")
+    return Cause(" ".join(told), help_)
+
+
+def listed(words: list[str]) -> str:
+    """Words as a sentence names them: 'I, II and IV'."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _lifted(found: Coloring) -> Cause:
+    lifted = [ROMAN[q] for q, color in sorted(found.own.items()) if color is None]
+    where = "everywhere" if len(lifted) == len(found.own) else f"in quadrant {listed(lifted)}"
+    return Cause(
+        f"The pen is off {where}: it draws nothing there.",
+        "What do your requests say of `off`? 0 is a pen that draws.",
+    )
+
+
+def _other_line(path: Path) -> Cause | None:
+    """Calls that come where x or y has one value, and that is not the middle."""
+    x, y = _where_the_colour_changes(path)
+    off = np.minimum(np.abs(x - CENTRE_M), np.abs(y - CENTRE_M)) > OFF_THE_LINES_M
+    if off.sum() < LEAST_CALLS:
+        return None
+    explained = np.zeros(int(off.sum()), dtype=bool)
+    lines = []
+    for name, values in (("x", x[off]), ("y", y[off])):
+        near = np.abs(values[:, None] - values[None, :]) <= ON_ONE_LINE_M
+        best = near[int(np.argmax(near.sum(axis=1)))]
+        if best.sum() >= LEAST_CALLS:
+            lines.append(f"{name} = {float(np.median(values[best])):.1f}")
+            explained |= best
+    if not lines or explained.mean() < MOST:
+        return None
+    return Cause(
+        f"The colour changes at {' and '.join(lines)}; {MIDDLE}.",
+        "Which limits does your node compare x and y of the pose with?",
+    )
+
+
+def _where_the_colour_changes(path: Path) -> tuple[Floats, Floats]:
+    calls = path.calls(SetPen)
+    # the first one gives the turtle the colour of where it starts
+    changes = [b for a, b in pairwise(calls) if (a.r, a.g, a.b, a.off) != (b.r, b.g, b.b, b.off)]
+    rows = np.searchsorted(path.ticks, [call.tick for call in changes]).clip(0, len(path) - 1)
+    return path.x[rows], path.y[rows]
+
+
+def _quadrant_before(path: Path, found: Coloring, tolerances: Tolerances) -> Cause | None:
+    """The colour fits the quadrant that the turtle came from, each time."""
+    by_before: dict[int, Counter[colours.Color | None]] = {}
+    by_itself: dict[int, Counter[colours.Color | None]] = {}
+    for before, entry in pairwise(path.entries(tolerances["band_m"])):
+        if entry in found.judged:
+            # at the end of the stay: a colour that is only late is there by then
+            color = found.colors[entry.last_tick]
+            by_before.setdefault(before.quadrant, Counter())[color] += 1
+            by_itself.setdefault(entry.quadrant, Counter())[color] += 1
+    total = sum(count.total() for count in by_before.values())
+    fits_before, fits_itself = (
+        sum(count.most_common(1)[0][1] for count in shown.values())
+        for shown in (by_before, by_itself)
+    )
+    # Who goes round one way only comes into each quadrant from one other: then both fit.
+    if total < LEAST_CALLS or fits_before < 0.95 * total or fits_itself >= fits_before:
+        return None
+    return Cause(
+        "The pen has the colour of the quadrant that the turtle came from, not of the one that it "
+        "came into.",
+        "Of the two quadrants that your node compares, the one before and the new one: for which "
+        "does it ask the colour?",
+    )
+
+
+def _late(found: Coloring, tolerances: Tolerances) -> Cause | None:
+    """How late the colours are that come too late, and whether that varies."""
+    near = tolerances["color_distance"]
+    delays = {entry: came_after(entry, found, near) for entry in found.judged}
+    late = [d for e in found.bad if (d := delays[e]) is not None and d > found.waits[e]]
+    if not late:
+        return None
+    typical = float(np.median(late)) * TICK_S
+    allowed = float(np.median([found.waits[entry] for entry in found.bad])) * TICK_S
+    text = f"The colour comes {typical:.2f} s after the turtle; {allowed:.2f} s are allowed."
+    came = [delay * TICK_S for delay in delays.values() if delay is not None]
+    low, high = np.percentile(came, [10, 90])
+    if high - low <= NOW_AND_THEN_S:
+        return Cause(
+            text, "Call set_pen in the pose callback, at once: what does your node wait for?"
+        )
+    return Cause(
+        f"The colour comes now and then only, {low:.2f} to {high:.2f} s after the turtle; "
+        f"{allowed:.2f} s are allowed.",
+        "Look at the quadrant in the pose callback, not in a slow timer.",
+    )
