@@ -133,9 +133,23 @@ def _class_for_instance(name: str, text: str, place: Place | None) -> Said | Non
         )
     if "'property' object" in text or "'getset_descriptor' object" in text:
         if "spin" in line:
-            return Said("The brackets are missing where the node is made: node = MyNode().")
+            return Said(
+                "The brackets are missing where the node is made: node = MyNode().",
+                "spin was given a class, not a node that was made of it",
+            )
         return Said("The brackets are missing where the message is made, as in Twist().")
     return None
+
+
+def _no_node(_: str, text: str, place: Place | None) -> Said | None:
+    """Something is spun that is no node."""
+    found = re.search(r"'([\w.]{1,60})' object has no attribute '(subscriptions|executor)'", text)
+    if found is None or place is None or "spin" not in place.text:
+        return None
+    return Said(
+        "Make a node and spin that: node = MyNode(), then rclpy.spin(node).",
+        f"spin has to be given the node, it was given: {found[1]}",
+    )
 
 
 def _callback(_: str, text: str, place: Place | None) -> Said | None:
@@ -226,6 +240,6 @@ def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
 
 
 _RULES: tuple[Callable[[str, str, Place | None], Said | None], ...] = (
-    *(_without_init, _taken_name, _class_for_instance, _callback, _arguments, _no_entry),
+    *(_without_init, _taken_name, _class_for_instance, _no_node, _callback, _arguments, _no_entry),
     _none_or_unknown,
 )

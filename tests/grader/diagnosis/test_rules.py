@@ -148,6 +148,15 @@ CAUSES = {
         "publish() was given the class Twist itself, not a message (drive.py, line 39). "
         "The brackets are missing: Twist()",
     ),
+    "a function that is spun": (
+        raising(
+            "AttributeError",
+            "'function' object has no attribute 'subscriptions'",
+            place=replace(LINE, text="rclpy.spin(main)"),
+        ),
+        "crashed",
+        "spin has to be given the node, it was given: function (drive.py, line 39). Make a node",
+    ),
     "a request's class": (
         raising("TypeError", place=replace(LINE, text="self.pen.call_async(request)")),
         "crashed",
