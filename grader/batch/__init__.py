@@ -1,0 +1,1 @@
+"""A whole class: found in an export, graded in parallel, looked at together."""

@@ -1,0 +1,115 @@
+"""What a graded class holds of one hand-in: DIR/submissions/ID/.
+
+    entry.json     this, but for the result
+    result.json    report.html  canvas.png  output.txt  recording/      where there is a result
+
+`entry.json` is written last: a folder without it is not finished, and made anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from grader import files
+from grader.batch.hand_in import HandIn, Person
+from grader.errors import UsageError
+from grader.result import json_file
+from grader.result.result import RESULT, Result
+
+SCHEMA = "turtlesim-grader/entry/v1"
+ENTRY = "entry.json"
+SUBMISSIONS = "submissions"
+
+#: judged: there is a result. unusable: the submission cannot be started, which is the student's
+#: doing and worth 0 points. nothing: nobody handed anything in. failed: the grader's own failure.
+State = Literal["judged", "unusable", "nothing", "failed"]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One hand-in, graded.
+
+    Attributes:
+        hand_in: whose; its path is None, for what was handed in lies elsewhere.
+        state: see `State`.
+        key: of its run in the store; '' where there was none. See `grader.batch.store`.
+        message: why there is no result; '' where there is one.
+        max_score: what the exercise is worth [points].
+        exercise_sha256: of what it was judged by.
+        result: what was judged; None where `state` is not "judged".
+        folder: where its files are.
+    """
+
+    hand_in: HandIn
+    state: State
+    max_score: float
+    key: str = ""
+    message: str = ""
+    exercise_sha256: str = ""
+    result: Result | None = None
+    folder: Path = Path()
+
+    @property
+    def id(self) -> str:
+        """The hand-in's."""
+        return self.hand_in.id
+
+    @property
+    def score(self) -> float | None:
+        """What the gradebook says [points]; None where the grader failed, which nobody pays for."""
+        if self.state == "failed":
+            return None
+        return 0.0 if self.result is None else self.result.score
+
+    def put(self) -> None:
+        """Write entry.json; the result is there already.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
+        data = asdict(replace(self, result=None, folder=Path()))
+        for name in ("result", "folder"):
+            del data[name]
+        hand_in = data["hand_in"]
+        hand_in["at"] = None if self.hand_in.at is None else self.hand_in.at.isoformat()
+        del hand_in["path"]
+        text = json_file.text({"schema": SCHEMA, **data})
+        files.put(self.folder / ENTRY, text.encode("utf-8"))
+
+    @classmethod
+    def read(cls, folder: Path) -> Self:
+        """What lies in the folder of a hand-in.
+
+        Raises:
+            UsageError: it is not finished, or not one of ours.
+        """
+        path = folder / ENTRY
+        entry: Self = json_file.made(cls._from_json, path, json_file.read(path))
+        result = Result.read(folder / RESULT) if entry.state == "judged" else None
+        return replace(entry, result=result, folder=folder)
+
+    @classmethod
+    def _from_json(cls, data: Mapping[str, Any]) -> Self:
+        if data.get("schema") != SCHEMA:
+            raise ValueError(f"is no entry of a class: expected the schema {SCHEMA}")
+        values = {key: value for key, value in data.items() if key != "schema"}
+        hand_in = dict(values.pop("hand_in"))
+        people = tuple(Person(**person) for person in hand_in.pop("people"))
+        at = hand_in.pop("at")
+        when = None if at is None else datetime.fromisoformat(at)
+        return cls(hand_in=HandIn(people=people, at=when, **hand_in), **values)
+
+
+def entries(out: Path) -> list[Entry]:
+    """All that are finished in the folder of a class, by id."""
+    found = []
+    for folder in sorted((out / SUBMISSIONS).glob("*/")):
+        try:
+            found.append(Entry.read(folder))
+        except UsageError:
+            continue  # begun and not ended, or gone bad: the next `grader batch` makes it anew
+    return found

@@ -1,0 +1,33 @@
+"""What a class keeps of a hand-in is read back as it was written."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+from grader.batch.entry import SUBMISSIONS, Entry, entries
+from grader.batch.hand_in import HandIn, Person
+
+ZOE = HandIn(
+    "zoe.mueller",
+    (Person("4711", "Zoë Müller", {"Email": "zoe@example.org"}), Person("4712")),
+    attempt=2,
+    at=datetime(2026, 11, 1, 12, tzinfo=UTC),
+    problem="The folder is empty.",
+)
+
+
+def test_an_entry_comes_back_as_it_was(tmp_path: Path) -> None:
+    folder = tmp_path / SUBMISSIONS / ZOE.id
+    folder.mkdir(parents=True)
+    entry = Entry(ZOE, "unusable", 100.0, key="ab", message="There is nothing.", folder=folder)
+    entry.put()
+    assert entries(tmp_path) == [entry]
+    assert (entry.score, ZOE.name) == (0.0, "Zoë Müller, 4712")
+
+
+def test_a_folder_that_was_not_finished_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / SUBMISSIONS / "begun").mkdir(parents=True)
+    assert entries(tmp_path) == []
+
+
+def test_nobody_pays_for_a_failure_of_the_grader(tmp_path: Path) -> None:
+    assert Entry(ZOE, "failed", 100.0).score is None
