@@ -58,6 +58,7 @@ def test_what_was_told_line_by_line_is_put_together(submission: Submission) -> N
         *(say(used=[7, 1, True]), say(used=[0]), say(used=None), say(stop={"place": None})),
         *(say(end={**END, "kind": "friend"}), say(end={**END, "name": "x" * 301})),
         *(say(end={**END, "place": {**PLACE, "line": "2"}}), say(wait=[-3, {}]), say(slow=[0, 1])),
+        say(blind=True),
         *(b'{"end": ' + b"[" * 5000 + b"]" * 5000 + b"}", b'{"is_told": false}'),
     ],
 )
