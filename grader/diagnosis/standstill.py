@@ -234,7 +234,10 @@ def hears_once(case: Case) -> Diagnosis | None:
     heard = [end for end in case.ends if end.kind == "subscription"]
     for end in heard:
         is_alone = sum(each.name == end.name for each in heard) == 1  # not one for each message
-        if (end.name, end.type) in published and 0 < end.used <= _ONCE and is_alone:
+        asked_once = end.place is not None and "wait_for_message" in end.place.text
+        if asked_once or not is_alone:
+            continue
+        if (end.name, end.type) in published and 0 < end.used <= _ONCE:
             cause = (
                 f"Your node has heard {told(end.name)} hardly more than once in {run_s:.0f} s"
                 f"{line(end.place)}, though it is published all the time."

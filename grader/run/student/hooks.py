@@ -35,6 +35,7 @@ def _install(witness: Witness) -> None:
     import rclpy.subscription
     import rclpy.task
     import rclpy.timer
+    import rclpy.wait_for_message
 
     publisher, client = rclpy.publisher.Publisher, rclpy.client.Client
     subscription, executor = rclpy.subscription.Subscription, rclpy.executors.Executor
@@ -79,6 +80,21 @@ def _install(witness: Witness) -> None:
 
     executor._take_subscription = taken
     executor.wait_for_ready_callbacks = first_look
+    _watch_single_messages(witness, rclpy.wait_for_message)
+
+
+def _watch_single_messages(witness: Witness, module: Any) -> None:
+    """Have `wait_for_message` tell what it hears: it takes its message past all executors."""
+    wait = module.wait_for_message
+
+    @functools.wraps(wait)  # it is told by its name where a program is stuck in it
+    def wait_for_message(msg_type: Any, node: Any, topic: Any, *args: Any, **kwargs: Any) -> Any:
+        found = wait(msg_type, node, topic, *args, **kwargs)
+        if found[0]:
+            quietly(lambda: witness.heard(node.resolve_topic_name(topic)))
+        return found
+
+    module.wait_for_message = wait_for_message
 
 
 def _install_actions(witness: Witness) -> None:

@@ -91,8 +91,16 @@ class Witness:
     def used(self, entity: Any) -> None:
         """A message was sent or received, or a request sent."""
         end: End | None = getattr(entity, "_witnessed", None)
-        if end is None:
-            return
+        if end is not None:
+            self._count(end)
+
+    def heard(self, topic: str) -> None:
+        """A message has come to the last subscription to a topic, which is no more."""
+        end = next((end for end in reversed(self._ends) if end.name == topic), None)
+        if end is not None:
+            self._count(end)
+
+    def _count(self, end: End) -> None:
         end.used += 1
         if end.used >= STEP * end.told[0]:
             self._tell_of(end)

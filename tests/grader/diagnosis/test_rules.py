@@ -365,6 +365,9 @@ SILENT = {
     ),
     "a wait that has ended": run_of(said(waits=(Wait("/turtle1/set_pen", PEN.type, 0, 3.0),))),
     "a subscription for each message": run_of(said(*[replace(POSES, used=1)] * 9)),
+    "one message, and it was asked for one": run_of(
+        said(replace(POSES, used=1, place=replace(LINE, text="wait_for_message(Pose, node, t)")))
+    ),
     "a last pause": run_of(said(slow=(Slow(LINE, 2.0, 1),))),
     "no spin, and none is needed": run_of(said(VELOCITY, spun_s=None, returned_s=40.0)),
     "the end of a long run": run_of(said(returned_s=40.0)),

@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
+from grader.diagnosis import standstill
+from grader.diagnosis.case import Case
 from grader.recording.conduct import Conduct, End, Place, Slow, Stop, Wait
 from grader.recording.recording import Recording
 from grader.run import real_time
@@ -148,6 +150,14 @@ def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
     conduct = recorded(f"conduct/{name}").conduct
     place = Place(f"{name}.py", line, function, text)
     assert conduct.waits == (Wait("/set_pen", "turtlesim/srv/SetPen", 0.0, None, place),)
+
+
+@pytest.mark.records("conduct/waits_for_message")
+def test_who_waits_for_messages_without_spinning_has_heard_them(recorded: Recorded) -> None:
+    recording = recorded("conduct/waits_for_message")
+    heard = [(end.name, end.used) for end in recording.conduct.ends if end.kind == "subscription"]
+    assert heard == [("/turtle1/pose", 1)] * 3
+    assert standstill.never_spins(Case(recording)) is None
 
 
 @pytest.mark.records("conduct/sleeps_in_callback")
