@@ -41,12 +41,13 @@ def grade(args: argparse.Namespace) -> int:
 
 def graded(args: argparse.Namespace) -> Result:
     """Grade once: run, judge, write, show."""
-    exercise = load_exercise(args.exercise)
     out = out_of(args)
     if args.out is None:
         files.check_leads_nowhere_else(out, Path.cwd())
     handed_in: Path = args.submission
     files.check_leads_nowhere_else(out, handed_in if handed_in.is_dir() else handed_in.parent)
+    _withdraw(out, args.json, error_file.inputs(args))
+    exercise = load_exercise(args.exercise)
     with ExitStack() as held:
         with open_submission(args.submission, args.executable) as submission:
             result, recordings = _run_and_judge(args, submission, exercise, out, held)
@@ -68,7 +69,7 @@ def _run_and_judge(
     messages.print(Text(for_terminal(f"Found: {submission.found}")), soft_wrap=True)
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
     origin = grading.provenance(submission, exercise, args.seed)
-    _prepare(out, args.json, error_file.inputs(args), held)
+    _make_folders(out, args.json, held)
     messages.print(f"Running it beside a simulator, in {args.time} time ...")
 
     def tell(nominal: Recording) -> None:
@@ -137,11 +138,10 @@ def _default_out(submission: Path) -> Path:
     return Path("graded") / absolute.parent.name / absolute.name
 
 
-def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path], held: ExitStack) -> None:
-    """Find out before the run whether its result can be written, then make the folders.
+def _withdraw(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
+    """Find out whether a result can be written, and remove an older one.
 
-    An older result goes now: it must not outlive a run that fails. Nobody else writes into the
-    folder for as long as `held` is open.
+    It must outlive neither a call that is refused nor a run that fails.
 
     Raises:
         UsageError: one of the places cannot be written; nothing has changed then.
@@ -154,10 +154,18 @@ def _prepare(out: Path, copy: Path | None, inputs: Iterable[Path], held: ExitSta
     if copy:
         files.check_writable(copy)
         files.check_replaceable(copy, FAMILY, read)
+    if out.is_dir():
+        with files.sole_writer(out):
+            files.clear(out / RESULT)
+    if copy:
+        files.withdraw(copy)
+
+
+def _make_folders(out: Path, copy: Path | None, held: ExitStack) -> None:
+    """Make what is not there; nobody else writes into it for as long as `held` is open."""
+    if copy:
         files.make_folder(copy.parent)
     files.make_folder(out)
     held.enter_context(files.sole_writer(out))
-    files.clear(out / RESULT)
+    files.clear(out / RESULT)  # another grading may have written one meanwhile
     files.clear(out / ARTIFACTS["recording"])
-    if copy:
-        files.withdraw(copy)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -118,6 +119,37 @@ def test_a_run_that_cannot_be_made_leaves_an_older_recording_and_no_result(
         grade(call())
     assert not (out / "result.json").exists()
     assert {path: path.read_bytes() for path in (out / "recording").rglob("*.*")} == before
+
+
+def hand_in_nothing(folder):
+    (folder / "node.py").unlink()
+    (folder / "node.py").mkdir()
+
+
+@pytest.mark.parametrize(
+    ("spoil", "whose"),
+    [
+        (hand_in_nothing, "submission"),
+        (lambda folder: (folder / "mine.yaml").write_text("points: [1"), "exercise"),
+        (lambda folder: (folder / "node.py").unlink(), "call"),
+    ],
+)
+def test_a_call_that_is_refused_leaves_no_older_result(
+    submission, monkeypatch, drawn, tmp_path, spoil, whose
+):
+    monkeypatch.setitem(
+        grading.RUNNERS, "virtual", lambda _, plan, __=None: replace(drawn, start=plan.start)
+    )
+    (tmp_path / "mine.yaml").write_text("exercise: turtlesim_challenge")
+    monkeypatch.chdir(tmp_path)
+    words = "run node.py --exercise mine.yaml --out out --json copy.json --error-json error.json"
+    results = [tmp_path / "out" / "result.json", tmp_path / "copy.json"]
+    assert main(words.split()) == 0
+    assert all(result.exists() for result in results)
+    spoil(tmp_path)
+    assert main(words.split()) == 2
+    assert json.loads((tmp_path / "error.json").read_text())["whose"] == whose
+    assert not any(result.exists() for result in results)
 
 
 def test_ctrl_c_between_two_runs_leaves_nothing(submission, monkeypatch, drawn, tmp_path, capsys):
