@@ -63,7 +63,7 @@ def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
 
 
 def _overview(report: Report) -> str:
-    parts = [f"<p><strong>{html.escape(report.headline)}</strong></p>"]
+    parts = [f"<p><strong>{html.escape(report.first_line)}</strong></p>"]
     parts += [f"<p>{html.escape(line)}</p>" for line in report.advice]
     picture = pictures.canvas_uri(report)
     if picture:

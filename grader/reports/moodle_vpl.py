@@ -11,7 +11,7 @@ from grader.reports.wording import score_text, title_of, word
 
 def render(report: Report) -> str:
     """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
-    lines = ["<|--", "-What to do", f"Now: {_quote(report.headline)}"]
+    lines = ["<|--", "-What to do", _quote(report.first_line)]
     lines += map(_quote, report.advice)
     for verdict in report.verdicts:
         lines += _verdict(report, verdict)

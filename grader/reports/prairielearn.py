@@ -38,7 +38,7 @@ def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> di
     return {
         "gradable": True,
         "score": _share(report),
-        "message": text.clip("\n".join([report.headline, *report.advice]), 1000),
+        "message": text.clip("\n".join([report.first_line, *report.advice]), 1000),
         "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
         "images": images,
         "tests": [_test(report, verdict, in_full) for verdict in report.verdicts],

@@ -219,6 +219,15 @@ def test_every_format_says_the_cause_before_anything_that_was_seen(name, classro
         assert "drive.py, line 39, in on_pose: 1 / 0" in content
 
 
+@pytest.mark.parametrize("name", set(FORMATS) - {"csv", "junit"})
+def test_every_format_that_people_read_calls_the_first_line_what_it_is(name, classroom):
+    content = render(name, [samples.report(diagnosis=samples.diagnosis())])
+    if name == "github-autograding":
+        content = base64.b64decode(content).decode()
+    content = re.sub(r"</?\w[^<>]*>|[*\\\n]", " ", content)
+    assert re.search(r"First (thing )?to mend[: ]\s*You crashed at 6.0 s", content)
+
+
 @pytest.mark.parametrize("name", FORMATS)
 @settings(
     deadline=None,
