@@ -14,6 +14,8 @@ from grader.text import clip
 
 #: What generated messages say of a value that they refuse.
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
+#: A package of messages, as its name goes, that is not there.
+_INTERFACES = re.compile(r"No module named '\w{1,60}_(?:interfaces|msgs|srvs)'")
 _RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
 _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
 #: What Python adds to some texts, and what is said in other words here.
@@ -85,6 +87,12 @@ def not_importable(case: Case) -> Diagnosis | None:
         "Compare the name with the one in the exercise or in ROS's documentation. A module of your "
         "own has to be in what you hand in, beside the file or in its package."
     )
+    if _INTERFACES.match(text):
+        help_ = (
+            "Compare the name. If it is right, this package is not installed where your node was "
+            "graded: take std_msgs, std_srvs or geometry_msgs instead, or ask whoever runs the "
+            "grader to install it."
+        )
     return Diagnosis("not_importable", f"{cause}{line(raised.place)}.", help_, place=raised.place)
 
 
