@@ -18,6 +18,39 @@ def test_every_link_leads_somewhere(page):
     assert [link for link in links if not (page.parent / link).exists()] == []
 
 
+#: examples/ci/NAME -> what its system is called.
+SYSTEMS = {
+    "github": "GitHub Actions",
+    "gitlab": "GitLab CI",
+    "gradescope": "Gradescope",
+    "classroom50": "Classroom 50",
+    "prairielearn": "PrairieLearn",
+    "autolab": "Autolab",
+    "vpl": "Moodle VPL",
+}
+
+
+def test_the_readme_names_every_ci_system_that_there_are_files_for():
+    assert {path.name for path in (ROOT / "examples/ci").iterdir() if path.is_dir()} == set(SYSTEMS)
+    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert [name for name in SYSTEMS.values() if name not in readme] == []
+
+
+#: Page -> what it must not leave out.
+SAID = {
+    "README.md": ["docs/for-students.md", "folder with two files", "with a third one"],
+    "docs/course-ci.md": ["`make install`, which copies it into `.venv`"],
+    "docs/write-an-exercise.md": ["after `make install`, which copies it into `.venv`"],
+    "docs/reports.md": ["`graded/*/result.json` does not find"],
+}
+
+
+@pytest.mark.parametrize("page", SAID)
+def test_what_newcomers_have_missed_is_said(page):
+    text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
+    assert [words for words in SAID[page] if words not in text] == []
+
+
 def test_every_file_on_the_way_through_the_code_is_there():
     """A path with folders stands for itself, a bare name for a file of that name."""
     text = (ROOT / "docs" / "the-way-through-the-code.md").read_text(encoding="utf-8")

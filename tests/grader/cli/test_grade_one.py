@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import subprocess
@@ -14,7 +15,7 @@ import pytest
 
 from grader import files, grading
 from grader.cli import main
-from grader.cli.grade_one import grade
+from grader.cli.grade_one import grade, out_of
 from grader.errors import GraderFailure, UsageError
 from grader.recording import folder
 from grader.reports.page import html
@@ -119,6 +120,22 @@ def test_a_run_that_cannot_be_made_leaves_an_older_recording_and_no_result(
         grade(call())
     assert not (out / "result.json").exists()
     assert {path: path.read_bytes() for path in (out / "recording").rglob("*.*")} == before
+
+
+@pytest.mark.parametrize(
+    ("handed_in", "out"),
+    [
+        ("alice.py", "graded/alice.py"),
+        ("subs/alice", "graded/subs/alice"),
+        ("../elsewhere/bob.zip", "graded/elsewhere/bob.zip"),
+        (".", "graded/{parent}/{here}"),
+    ],
+)
+def test_every_submission_has_a_folder_for_its_result(tmp_path, monkeypatch, handed_in, out):
+    monkeypatch.chdir(tmp_path)
+    args = argparse.Namespace(out=None, submission=Path(handed_in))
+    expected = out.format(parent=tmp_path.parent.name, here=tmp_path.name)
+    assert out_of(args) == Path(expected)
 
 
 def hand_in_nothing(folder):
