@@ -7,15 +7,19 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from pathlib import Path
 
 from grader.run import virtual_time
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
+from tests.grader.run.conftest import SUBMISSIONS
 
-STYLES = Path(__file__).parents[2] / "submissions" / "styles"
-NAMES = ("timer", "multi_threaded", "rate_with_spin_thread")
+NAMES = (
+    "styles/timer",
+    "styles/multi_threaded",
+    "styles/rate_with_spin_thread",
+    "services/floods_pens",
+)
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=25))
 
 
@@ -31,7 +35,7 @@ def busy_loops(count: int) -> Iterator[None]:
 
 
 def trace(name: str) -> tuple[str, str]:
-    with open_submission(STYLES / f"{name}.py") as submission:
+    with open_submission(SUBMISSIONS / f"{name}.py") as submission:
         recording = virtual_time.run(submission, PLAN)
     assert (recording.run.time, recording.run.flags) == ("virtual", ())
     return name, recording.run.trace_sha256

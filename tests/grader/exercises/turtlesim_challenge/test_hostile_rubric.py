@@ -198,7 +198,17 @@ class Zigzag:
             twist(arena, 1.0 + tick / 500, 0.0)
 
 
-@pytest.mark.parametrize("controller", [Pirouettes, SmallLoops, SmallSpiralAndALine, Zigzag])
+class Wobbly:
+    """A line that bends to the left and to the right."""
+
+    def __call__(self, tick, pose, arena):
+        if tick % 5 == 1:
+            twist(arena, 0.25, 2.0 * math.sin(tick / 60))
+
+
+@pytest.mark.parametrize(
+    "controller", [Pirouettes, SmallLoops, SmallSpiralAndALine, Zigzag, Wobbly]
+)
 def test_turns_alone_make_no_spiral(controller):
     found = verdicts(controller, varied=False, ticks=2500)["spiral"]
     assert found.score <= 15

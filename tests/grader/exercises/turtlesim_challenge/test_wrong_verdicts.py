@@ -12,7 +12,7 @@ from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
 from grader.testing import drive, pen, twist
 from tests.grader.driving import BLUE, CENTRE, GREEN, RED, WHITE, Spiral
-from turtlesim_py.world.turtle import SIZE_M
+from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 EXERCISE = load_exercise("turtlesim_challenge")
 
@@ -361,6 +361,17 @@ class FloodsCommands(Spiral):
                 twist(arena, self.speed)
 
 
+class PublishesWithoutWaiting(Spiral):
+    """A loop without end, of which the turtle takes one command a step."""
+
+    def __call__(self, tick, pose, arena):
+        twist(arena, 0.55)
+
+
+def test_a_loop_that_only_publishes_earns_a_quarter():
+    assert total(verdicts(PublishesWithoutWaiting, varied=False)) <= 25
+
+
 def test_what_was_hardly_driven_earns_next_to_nothing_for_how_it_was_driven():
     found = verdicts(CrashesAtSixSeconds, varied=False)
     assert found["steady_rate"].score + found["no_redundant_calls"].score < 2
@@ -521,6 +532,25 @@ def test_the_colour_of_the_quadrant_before_is_told_as_that():
     found = verdicts(ColourOfTheQuadrantBefore, seed=2022)["pen_per_quadrant"]
     assert "the quadrant that the turtle came from" in found.rationale
     assert "for which does it ask the colour" in found.help
+
+
+class ColoursByTheCommands(Spiral):
+    """Takes the angle that it has turned by for the quadrant that it is in."""
+
+    def watch(self, tick, pose, arena):
+        self.angle = tick * TICK_S - math.pi / 2
+        super().watch(tick, pose, arena)
+
+    def quadrant_of(self, pose):
+        return int(self.angle % math.tau // (math.pi / 2)) + 1
+
+
+def test_colours_by_the_commands_are_right_in_the_run_from_the_centre_only():
+    nominal = verdicts(ColoursByTheCommands, varied=False)["pen_per_quadrant"]
+    found = verdicts(ColoursByTheCommands)["pen_per_quadrant"]
+    assert nominal.score > 15
+    assert found.score < 10
+    assert found.rationale.startswith("When the turtle started elsewhere")
 
 
 class AlmostRed(Spiral):
