@@ -7,32 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from grader.scenes.turtlesim import words
+from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.trajectory import Floats
 
 Color = tuple[int, int, int]
 
-#: What students call colours; a colour is called by the nearest.
-NAMES: dict[str, Color] = {
-    "black": (0, 0, 0),
-    "white": (255, 255, 255),
-    "grey": (128, 128, 128),
-    "red": (255, 0, 0),
-    "dark red": (128, 0, 0),
-    "green": (0, 255, 0),
-    "dark green": (0, 128, 0),
-    "blue": (0, 0, 255),
-    "dark blue": (0, 0, 128),
-    "yellow": (255, 255, 0),
-    "cyan": (0, 255, 255),
-    "magenta": (255, 0, 255),
-    "orange": (255, 165, 0),
-    "purple": (128, 0, 128),
-    "pink": (255, 192, 203),
-    "brown": (150, 75, 0),
-    "the pen's first colour": (179, 184, 255),
-}
-#: A colour that is farther from all of these has no name.
-NAMED = 20.0
+#: What is drawn in by whoever never asks for a pen.
+FIRST: Color = (Pen.r, Pen.g, Pen.b)
 
 # sRGB to XYZ (IEC 61966-2-1), and the white D65 that it goes with
 _TO_XYZ = np.array(
@@ -85,9 +67,8 @@ def groups(colors: Mapping[int, Color | None], distance: float) -> list[list[int
 
 
 def name(color: Color | None) -> str:
-    """What to call a colour: 'red (255, 0, 0)'."""
+    """What to call a colour, as its page does: 'red (255, 0, 0)'; 'off' for none."""
     if color is None:
         return "off"
-    far = distances(list(NAMES.values()), color)
-    numbers = f"({', '.join(str(int(channel)) for channel in color)})"
-    return f"{list(NAMES)[int(np.argmin(far))]} {numbers}" if far.min() < NAMED else numbers
+    said = words.color(*map(int, color))
+    return f"the pen's first colour, {said}" if tuple(color) == FIRST else said

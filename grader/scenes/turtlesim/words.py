@@ -37,7 +37,7 @@ QUADRANTS = {
 }
 #: Up to which hue [degrees] a colour is called so.
 _HUES = ((15, "red"), (45, "orange"), (70, "yellow"), (165, "green"), (200, "cyan"))
-_MORE_HUES = ((260, "blue"), (290, "purple"), (345, "pink"), (360, "red"))
+_MORE_HUES = ((260, "blue"), (290, "purple"), (320, "magenta"), (345, "pink"), (360, "red"))
 #: A text that a submission has chosen is not shown beyond this.
 _NAME_LIMIT = 80
 

@@ -9,6 +9,7 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
+from grader.exercises.turtlesim_challenge import colours
 from grader.recording.recording import Recordings
 from grader.testing import drive, pen, twist
 from tests.grader.driving import BLUE, CENTRE, GREEN, RED, WHITE, Spiral
@@ -562,6 +563,18 @@ def test_colours_that_look_the_same_are_both_named_by_their_numbers():
     told = "I and III are red (255, 0, 0) and red (250, 0, 5): no eye tells them apart."
     assert told in found["pen_per_quadrant"].rationale
     assert told in found["picture"].rationale
+
+
+@pytest.mark.parametrize(
+    ("color", "said"),
+    [
+        (None, "off"),
+        ((0, 128, 0), "dark green (0, 128, 0)"),
+        ((179, 184, 255), "the pen's first colour, light blue (179, 184, 255)"),
+    ],
+)
+def test_a_colour_is_called_as_on_the_page(color, said):
+    assert colours.name(color) == said
 
 
 class LiftsThePenFirst(Spiral):
