@@ -9,13 +9,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from datetime import datetime
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, Self
 
 from grader import files
-from grader.batch.hand_in import HandIn, Person
+from grader.batch.hand_in import HandIn
 from grader.errors import UsageError
 from grader.result import json_file
 from grader.result.result import RESULT, Result
@@ -23,6 +22,8 @@ from grader.result.result import RESULT, Result
 SCHEMA = "turtlesim-grader/entry/v1"
 ENTRY = "entry.json"
 SUBMISSIONS = "submissions"
+#: What entry.json holds besides the hand-in.
+OWN = ("state", "max_score", "key", "message", "exercise_sha256")
 
 #: judged: there is a result. unusable: the submission cannot be started, which is the student's
 #: doing and worth 0 points. nothing: nobody handed anything in. failed: the grader's own failure.
@@ -71,14 +72,9 @@ class Entry:
         Raises:
             UsageError: it cannot be written.
         """
-        data = asdict(replace(self, result=None, folder=Path()))
-        for name in ("result", "folder"):
-            del data[name]
-        hand_in = data["hand_in"]
-        hand_in["at"] = None if self.hand_in.at is None else self.hand_in.at.isoformat()
-        del hand_in["path"]
-        text = json_file.text({"schema": SCHEMA, **data})
-        files.put(self.folder / ENTRY, text.encode("utf-8"))
+        own = {name: getattr(self, name) for name in OWN}
+        data = {"schema": SCHEMA, **own, "hand_in": self.hand_in.to_json()}
+        files.put(self.folder / ENTRY, json_file.text(data).encode("utf-8"))
 
     @classmethod
     def read(cls, folder: Path) -> Self:
@@ -96,12 +92,8 @@ class Entry:
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
         if data.get("schema") != SCHEMA:
             raise ValueError(f"is no entry of a class: expected the schema {SCHEMA}")
-        values = {key: value for key, value in data.items() if key != "schema"}
-        hand_in = dict(values.pop("hand_in"))
-        people = tuple(Person(**person) for person in hand_in.pop("people"))
-        at = hand_in.pop("at")
-        when = None if at is None else datetime.fromisoformat(at)
-        return cls(hand_in=HandIn(people=people, at=when, **hand_in), **values)
+        own = {name: data[name] for name in OWN}
+        return cls(hand_in=HandIn.from_json(data["hand_in"]), **own)
 
 
 def entries(out: Path) -> list[Entry]:

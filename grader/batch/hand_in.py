@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from pathlib import Path
+from typing import Any, Self
 
 
 @dataclass(frozen=True)
@@ -51,3 +52,22 @@ class HandIn:
     def name(self) -> str:
         """For people: the names, else the ids."""
         return ", ".join(person.name or person.id for person in self.people)
+
+    def to_json(self) -> dict[str, Any]:
+        """As files hold it; without its path, which is that of one machine."""
+        return {
+            "id": self.id,
+            "people": [asdict(person) for person in self.people],
+            "filename": self.filename,
+            "attempt": self.attempt,
+            "at": None if self.at is None else self.at.isoformat(),
+            "problem": self.problem,
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """What `to_json` has written."""
+        at = data["at"]
+        when = None if at is None else datetime.fromisoformat(at)
+        people = tuple(Person(**person) for person in data["people"])
+        return cls(**{**data, "people": people, "at": when})

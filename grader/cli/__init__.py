@@ -33,6 +33,8 @@ VERBS = {
     "report": "Show a result in another format.",
     "new": "Write the exercise sheet and the starter package of the challenge, or of another "
     "exercise.",
+    "batch": "Grade a class: find the submissions, grade them in parallel, and look at them "
+    "together.",
     "check-exercise": "Try an exercise on its right solutions and mutants: who catches what, and "
     "what is to mend.",
 }

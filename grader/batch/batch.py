@@ -1,0 +1,199 @@
+"""A class, graded: what is still to be done is done, everything else stays as it is."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from grader.batch import grade, key
+from grader.batch.class_file import CLASS, ClassFile
+from grader.batch.entry import Entry
+from grader.batch.hand_in import HandIn
+from grader.batch.store import STUDENTS, Store
+from grader.batch.task import Answer, Task
+from grader.errors import UsageError
+from grader.exercise.loading import Exercise
+from grader.recording.recording import Clock
+
+#: Does tasks, in any order; `grader.batch.pool.work` with a number of jobs, or a cluster.
+Work = Callable[[Iterable[Task]], Iterator[tuple[Task, Answer]]]
+
+
+@dataclass(frozen=True)
+class Order:
+    """How a class is graded.
+
+    Attributes:
+        exercise: by its loaded self, and as `--exercise` named it.
+        time: the clock that submissions live by.
+        seed: chooses where the varied runs start; None takes the exercise's own.
+        again: what is done anew although it is there: "", "failed", "all" or the id of a hand-in.
+        shard: (I, N): only the I-th of N parts, counted from 1.
+    """
+
+    exercise: Exercise
+    exercise_path: str
+    time: Clock = "virtual"
+    seed: int | None = None
+    again: str = ""
+    shard: tuple[int, int] = (1, 1)
+
+    @property
+    def class_file(self) -> ClassFile:
+        """What the folder is for."""
+        part, parts = self.shard
+        name = f"{part}/{parts}" if parts > 1 else ""
+        return ClassFile.of(self.exercise, self.time, self.seed, name)
+
+
+@dataclass(frozen=True)
+class Planned:
+    """What is to be done.
+
+    Attributes:
+        tasks: one a content; their `into` is not made yet.
+        trivial: hand-ins that need no worker.
+        done: hand-ins that are graded already.
+        alike: so many hand-ins share the run of another one.
+    """
+
+    tasks: tuple[Task, ...]
+    trivial: tuple[HandIn, ...]
+    done: tuple[HandIn, ...]
+    alike: int
+
+    @property
+    def hand_ins(self) -> int:
+        """How many there are."""
+        return sum(len(t.hand_ins) for t in self.tasks) + len(self.trivial) + len(self.done)
+
+
+def check_same_class(store: Store, order: Order) -> None:
+    """Refuse to grade into the folder of another class; write down what a new one is for.
+
+    Raises:
+        UsageError: it holds another class, or is no folder of one and not empty.
+    """
+    wanted = order.class_file
+    if not (store.out / CLASS).is_file():
+        wanted.put(store.out)
+        return
+    found = ClassFile.read(store.out)
+    if not (difference := wanted.difference(found)):
+        return
+    advice = "give another --out"
+    if wanted == replace(found, exercise_sha256=wanted.exercise_sha256):
+        advice = f"see what it would change: grader batch --regrade {store.out} --exercise ..."
+    raise UsageError(
+        f"{store.out} was graded by something else ({difference}). Nothing was changed; {advice}"
+    )
+
+
+def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
+    """What is to be done for these hand-ins.
+
+    Raises:
+        UsageError: `again` names nobody.
+    """
+    if order.again not in ("", "all", "failed", *(each.id for each in hand_ins)):
+        raise UsageError(f"--again {order.again}: there is no hand-in of this name")
+    by_key: dict[str, list[HandIn]] = {}
+    trivial, done = [], []
+    for hand_in, run in _with_keys(hand_ins, order):
+        if not is_in(run or hand_in.id, order.shard):
+            continue
+        if _is_done(_there(store.student(hand_in.id)), hand_in, run, order):
+            done.append(hand_in)
+            continue
+        if run:
+            by_key.setdefault(run, []).append(hand_in)
+        else:
+            trivial.append(hand_in)
+    tasks = tuple(_task(run, everybody, order, store) for run, everybody in by_key.items())
+    alike = sum(len(task.hand_ins) - (task.run is None) for task in tasks)
+    return Planned(tasks, tuple(trivial), tuple(done), alike)
+
+
+def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Iterator[HandIn]:
+    """Do what is to be done; yields each hand-in as soon as all of it is in its place."""
+    for hand_in in planned.trivial:
+        place = store.new_place()
+        grade.nothing(hand_in, order.exercise, place / STUDENTS / hand_in.id)
+        store.put("", place)
+        yield hand_in
+    tasks = (replace(task, into=store.new_place()) for task in planned.tasks)
+    for task, answer in work(tasks):
+        place = task.into
+        if answer.state != "done":
+            place = store.new_place()
+            said = answer.message
+            told = f"The exercise's own code failed: {said}" if answer.state == "exercise" else said
+            for hand_in in task.hand_ins:
+                folder = place / STUDENTS / hand_in.id
+                grade.failed(hand_in, order.exercise, folder, told)
+        store.put(task.key, place)
+        yield from task.hand_ins
+
+
+def is_in(name: str, shard: tuple[int, int]) -> bool:
+    """Whether something is in a part of a class: the same on every machine."""
+    part, parts = shard
+    return zlib.crc32(name.encode()) % parts == part - 1
+
+
+def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandIn, str]]:
+    """Each with the key of its run; '' where there is nothing to run."""
+    for hand_in in hand_ins:
+        if hand_in.path is None:
+            yield hand_in, ""
+            continue
+        try:
+            content = key.of_hand_in(hand_in.path, hand_in.filename)
+        except OSError as error:
+            why = f"It cannot be read: {error.strerror or error}"
+            yield replace(hand_in, problem=why, path=None), ""
+            continue
+        yield hand_in, key.of_run(content, order.exercise, order.time, order.seed)
+
+
+def _there(folder: Path) -> Entry | None:
+    try:
+        return Entry.read(folder)
+    except UsageError:
+        return None  # not there, not finished, or gone bad
+
+
+def _is_asked_again(entry: Entry, again: str) -> bool:
+    return again in ("all", entry.id) or (again == "failed" and entry.state == "failed")
+
+
+def _is_done(entry: Entry | None, hand_in: HandIn, run: str, order: Order) -> bool:
+    """Whether what is there is what would be made; of the grader's failures nothing is known."""
+    if entry is None or _is_asked_again(entry, order.again):
+        return False
+    is_same = entry.hand_in == replace(hand_in, path=None)
+    is_run = entry.key == run or entry.state == "failed"
+    return is_same and is_run and entry.exercise_sha256 == order.exercise.sha256
+
+
+def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> Task:
+    first = everybody[0]
+    assert first.path is not None
+    is_there = store.has(run) and not _is_run_again(everybody, order.again)
+    return Task(
+        run,
+        tuple(everybody),
+        first.path.absolute(),
+        first.filename,
+        order.exercise_path,
+        order.time,
+        order.seed,
+        store.run(run) if is_there else None,
+        Path(),
+    )
+
+
+def _is_run_again(everybody: Sequence[HandIn], again: str) -> bool:
+    return again == "all" or any(each.id == again for each in everybody)

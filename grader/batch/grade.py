@@ -1,0 +1,121 @@
+"""One task: run what was handed in, unless that was done; judge it for everybody who handed it in.
+
+Everything comes into the task's own folder. A worker does this (`grader.batch.worker`), on this
+machine or on another one.
+"""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+from grader import files, grading, scratch
+from grader.batch.entry import Entry
+from grader.batch.hand_in import HandIn
+from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
+from grader.batch.task import Task
+from grader.errors import SubmissionError, UsageError
+from grader.exercise.loading import Exercise, load_exercise
+from grader.recording.recording import Recordings
+from grader.reports import Report, render
+from grader.result import json_file
+from grader.result.error import ErrorResult
+from grader.result.result import ARTIFACTS, PAGE, RESULT
+from grader.submission.opening import open_submission
+from grader.text import plain
+
+
+def make(task: Task) -> None:
+    """Fill a task's folder.
+
+    Raises:
+        GraderFailure: a run could not be made.
+        CheckFailed: the exercise's code failed.
+        UsageError: something cannot be written.
+        RecordingError: the run that is said to be there cannot be read.
+    """
+    exercise = load_exercise(task.exercise)
+    found = _run(task, exercise) if task.run is None else _loaded(task.run)
+    for hand_in in task.hand_ins:
+        folder = task.into / STUDENTS / hand_in.id
+        files.make_folder(folder)
+        if isinstance(found, Recordings):
+            _judge(found, exercise, hand_in, task.key, folder)
+        else:
+            _refuse(found, exercise, hand_in, task.key, folder)
+
+
+def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
+    """Fill the folder of somebody who has handed in nothing that can be graded."""
+    files.make_folder(folder)
+    state = "nothing" if hand_in.path is None and not hand_in.filename else "unusable"
+    _entry(hand_in, exercise, folder, state, message=hand_in.problem).put()
+
+
+def failed(hand_in: HandIn, exercise: Exercise, folder: Path, message: str) -> None:
+    """Fill the folder of somebody whose hand-in the grader could not judge."""
+    files.make_folder(folder)
+    _entry(hand_in, exercise, folder, "failed", message=plain(message)).put()
+
+
+def _run(task: Task, exercise: Exercise) -> Recordings | str:
+    """What a run has left, which is saved; or why there is nothing to run."""
+    place = task.into / RUN
+    files.make_folder(place)
+    try:
+        with ExitStack() as held:
+            path = task.path
+            if task.filename and path.is_file() and path.name != task.filename:
+                path = held.enter_context(scratch.make_folder()) / task.filename
+                shutil.copyfile(task.path, path)
+            submission = held.enter_context(open_submission(path))
+            runner = grading.RUNNERS[task.time]
+            recordings = grading.run_all(submission, exercise, runner, seed=task.seed)
+    except (SubmissionError, UsageError) as error:
+        told = ErrorResult.of(error, exercise.max_score)
+        files.put(place / ERROR, json_file.text(told.to_json()).encode())
+        return told.message
+    grading.save_recordings(recordings, place / RECORDING)
+    return recordings
+
+
+def _loaded(run: Path) -> Recordings | str:
+    """What an earlier run has left."""
+    if (run / ERROR).is_file():
+        return ErrorResult.from_json(json_file.read(run / ERROR)).message
+    return grading.load_recordings(run / RECORDING)
+
+
+def _judge(
+    recordings: Recordings, exercise: Exercise, hand_in: HandIn, key: str, folder: Path
+) -> None:
+    """Everything about a student; the recording itself is linked when it comes to its place."""
+    result = grading.judge(recordings, exercise, submission=hand_in.name)
+    result = replace(result, artifacts=dict(ARTIFACTS))
+    nominal = recordings.nominal
+    files.put(folder / ARTIFACTS["canvas"], nominal.png["window"])
+    files.put(folder / ARTIFACTS["output"], nominal.output.encode("utf-8", "replace"))
+    result.put(folder / RESULT)
+    page = render("html", [Report.of(result, folder, recordings)])
+    files.put(folder / PAGE, page.encode("utf-8"))
+    _entry(hand_in, exercise, folder, "judged", key).put()
+
+
+def _refuse(message: str, exercise: Exercise, hand_in: HandIn, key: str, folder: Path) -> None:
+    _entry(hand_in, exercise, folder, "unusable", key, message).put()
+
+
+def _entry(
+    hand_in: HandIn, exercise: Exercise, folder: Path, state: str, key: str = "", message: str = ""
+) -> Entry:
+    return Entry(
+        hand_in,
+        state,  # type: ignore[arg-type]
+        exercise.max_score,
+        key,
+        message,
+        exercise.sha256,
+        folder=folder,
+    )

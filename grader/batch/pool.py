@@ -1,0 +1,161 @@
+"""Several workers at once on this machine.
+
+One that dies takes nothing with it: its task goes to a new one, once more, and is then told as
+failed.
+"""
+
+from __future__ import annotations
+
+import queue
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from grader.batch.task import Answer, Task
+
+#: No task takes longer, unless the grader hangs [s].
+MOST_S = 3600.0
+_TRIES = 2
+#: -P: no module of the current folder, where anything may lie.
+_COMMAND = (
+    *("-P", "-c"),
+    "import sys; sys.path.append(sys.argv[1]); from grader.batch import worker; worker.main()",
+    str(Path(__file__).parents[2]),
+)
+
+Done = tuple[Task, Answer]
+
+
+def work(tasks: Iterable[Task], jobs: int, patience_s: float = MOST_S) -> Iterator[Done]:
+    """Do tasks, each in one of `jobs` processes; yields each as soon as it is over.
+
+    A task is taken from the iterable when a process is free. The processes end with the iterator.
+    """
+    waiting = _Waiting(tasks)
+    over: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
+    workers = [_Worker(waiting, over, patience_s) for _ in range(jobs)]
+    try:
+        for worker in workers:
+            worker.start()
+        working = len(workers)
+        while working:
+            done = over.get()
+            if isinstance(done, BaseException):
+                raise done
+            if done is None:
+                working -= 1
+            else:
+                yield done
+    finally:
+        for worker in workers:
+            worker.stop()
+        for worker in workers:
+            worker.join()
+
+
+class _Waiting:
+    """Tasks that several threads take."""
+
+    def __init__(self, tasks: Iterable[Task]) -> None:
+        self._tasks = iter(tasks)
+        self._lock = threading.Lock()
+
+    def take(self) -> Task | None:
+        """The next one."""
+        with self._lock:
+            return next(self._tasks, None)
+
+
+class _Worker(threading.Thread):
+    """A process, and who waits for its answers."""
+
+    def __init__(
+        self,
+        waiting: _Waiting,
+        over: queue.SimpleQueue[Done | BaseException | None],
+        patience_s: float,
+    ) -> None:
+        super().__init__(daemon=True)
+        self._waiting, self._over, self._patience_s = waiting, over, patience_s
+        self._process: subprocess.Popen[bytes] | None = None
+        self._lock = threading.Lock()
+        self._is_over = False
+
+    def run(self) -> None:
+        try:
+            while not self._is_over and (task := self._waiting.take()) is not None:
+                self._over.put((task, self._done(task)))
+        except BaseException as error:  # in whoever makes tasks: for the thread that waits
+            self._over.put(error)
+        finally:
+            self._end()
+            self._over.put(None)
+
+    def stop(self) -> None:
+        """End it, and whatever it does."""
+        with self._lock:
+            self._is_over = True
+            if self._process is not None:
+                self._process.kill()
+
+    def _done(self, task: Task) -> Answer:
+        ended = ""
+        for _ in range(_TRIES):
+            if self._is_over:
+                break
+            line = self._ask(task)
+            with suppress(ValueError):
+                return Answer.from_line(line)
+            ended = self._end()
+        return Answer("failed", f"the process that graded it ended ({ended}), {_TRIES} times")
+
+    def _ask(self, task: Task) -> bytes:
+        """The line that the process answers; empty if it ends instead."""
+        with self._lock:
+            if self._process is None and not self._is_over:
+                self._process = start()
+        process = self._process
+        if process is None or process.stdin is None or process.stdout is None:
+            return b""
+        patience = threading.Timer(self._patience_s, process.kill)
+        patience.daemon = True
+        patience.start()
+        try:
+            with suppress(OSError):
+                process.stdin.write(task.to_line())
+                process.stdin.flush()
+                return process.stdout.readline()
+            return b""
+        finally:
+            patience.cancel()
+
+    def _end(self) -> str:
+        """Have it gone; how it ended."""
+        with self._lock:
+            process, self._process = self._process, None
+        if process is None:
+            return ""
+        for pipe in (process.stdin, process.stdout):
+            if pipe is not None:
+                with suppress(OSError):
+                    pipe.close()
+        if process.poll() is None and not self._is_over:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(10.0)  # it ends by itself where nobody asks any more
+        process.kill()
+        code = process.wait()
+        return signal.Signals(-code).name if code < 0 else f"exit code {code}"
+
+
+def start() -> subprocess.Popen[bytes]:
+    """Start a worker with our own modules; Ctrl-C in a terminal is not for it."""
+    return subprocess.Popen(
+        [sys.executable, *_COMMAND],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        start_new_session=True,
+    )

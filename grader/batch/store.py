@@ -1,0 +1,121 @@
+"""The folder of a class, as it is written: everything comes into its place whole or not at all.
+
+    store/KEY/          what one run has left: recording/, output.txt, source/; or error.json
+    submissions/ID/     what came of it for one hand-in; see `grader.batch.entry`
+    .unfinished/        what is being made; whatever an interrupted call has left there goes
+
+A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from grader import files
+from grader.batch.entry import SUBMISSIONS
+from grader.errors import UsageError
+from grader.removal import remove
+
+STORE, UNFINISHED = "store", ".unfinished"
+#: What a worker leaves: one run, and a folder for each hand-in.
+RUN, STUDENTS = "run", "students"
+RECORDING, ERROR = "recording", "error.json"
+
+
+class Store:
+    """The folder of a class; nobody else writes into it while `opened` holds."""
+
+    def __init__(self, out: Path) -> None:
+        self.out = out
+
+    @classmethod
+    @contextmanager
+    def opened(cls, out: Path) -> Iterator[Store]:
+        """Make the folder, if need be, and clear what an interrupted call has left.
+
+        Raises:
+            UsageError: it cannot be written, or another grading writes into it.
+        """
+        files.make_folder(out)
+        with files.sole_writer(out):
+            remove(out / UNFINISHED)
+            try:
+                for name in (STORE, SUBMISSIONS, UNFINISHED):
+                    files.make_folder(out / name)
+                yield cls(out)
+            finally:
+                remove(out / UNFINISHED)
+
+    def run(self, key: str) -> Path:
+        """Where a run is, or will be."""
+        return self.out / STORE / key[:2] / key
+
+    def has(self, key: str) -> bool:
+        """Whether a run is there; then it is whole."""
+        return bool(key) and self.run(key).is_dir()
+
+    def student(self, hand_in: str) -> Path:
+        """Where the folder of a hand-in is, or will be."""
+        return self.out / SUBMISSIONS / hand_in
+
+    def new_place(self) -> Path:
+        """An empty folder for a worker.
+
+        Raises:
+            UsageError: it cannot be made.
+        """
+        place = self.out / UNFINISHED / uuid.uuid4().hex[:12]
+        files.make_folder(place)
+        return place
+
+    def put(self, key: str, place: Path) -> None:
+        """Move what a worker has made to its place: the run first, then each hand-in.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
+        try:
+            _flush(place)
+            if (place / RUN).is_dir():
+                self.run(key).parent.mkdir(exist_ok=True)
+                _replace(place / RUN, self.run(key), place)
+            recording = self.run(key) / RECORDING
+            for made in sorted((place / STUDENTS).glob("*/")):
+                if recording.is_dir():
+                    _link_tree(recording, made / RECORDING)
+                _replace(made, self.student(made.name), place)
+        except OSError as error:
+            raise UsageError(f"cannot write into {self.out}: {error}") from None
+        remove(place)
+
+
+def _replace(made: Path, target: Path, place: Path) -> None:
+    if os.path.lexists(target):
+        target.rename(place / f"older-{target.name}")
+    made.rename(target)
+
+
+def _flush(place: Path) -> None:
+    """Have it on the disk before it gets its name: power may go at any moment."""
+    for at, _, names in os.walk(place):
+        for path in (Path(at, name) for name in names):
+            with suppress(OSError), path.open("rb") as file:  # what cannot be opened is a link
+                os.fsync(file.fileno())
+
+
+def _link_tree(source: Path, target: Path) -> None:
+    """The same files in another folder: links where the file system has them, else copies."""
+
+    def link(here: str, there: str) -> str:
+        try:
+            os.link(here, there)
+        except OSError:
+            shutil.copy2(here, there)
+        return there
+
+    shutil.copytree(source, target, copy_function=link)

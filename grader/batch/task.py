@@ -1,0 +1,98 @@
+"""What a worker is asked for, and what it answers: a line of JSON each."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from grader import strict_json
+from grader.batch.hand_in import HandIn
+from grader.recording.recording import Clock
+
+
+@dataclass(frozen=True)
+class Task:
+    """One content, to be run and judged for everybody who has handed it in.
+
+    Attributes:
+        key: the run's; see `grader.batch.key`.
+        hand_ins: everybody's; their paths are not carried along.
+        path: what was handed in.
+        filename: what it was called there.
+        exercise: its name or path.
+        time: the clock that it lives by.
+        seed: chooses where the varied runs start; None takes the exercise's own.
+        run: the folder of the run, if it is made already.
+        into: an empty folder for what is made; see `grader.batch.store`.
+    """
+
+    key: str
+    hand_ins: tuple[HandIn, ...]
+    path: Path
+    filename: str
+    exercise: str
+    time: Clock
+    seed: int | None
+    run: Path | None
+    into: Path
+
+    def to_line(self) -> bytes:
+        """As it is sent."""
+        data: dict[str, Any] = {
+            **{name: getattr(self, name) for name in ("key", "filename", "exercise", "time")},
+            "seed": self.seed,
+            "path": str(self.path),
+            "run": None if self.run is None else str(self.run),
+            "into": str(self.into),
+            "hand_ins": [each.to_json() for each in self.hand_ins],
+        }
+        return json.dumps(data).encode() + b"\n"
+
+    @classmethod
+    def from_line(cls, line: bytes) -> Self:
+        """What was sent."""
+        data: Mapping[str, Any] = strict_json.loads(line.decode())
+        return cls(
+            **{
+                **data,
+                "path": Path(data["path"]),
+                "run": None if data["run"] is None else Path(data["run"]),
+                "into": Path(data["into"]),
+                "hand_ins": tuple(map(HandIn.from_json, data["hand_ins"])),
+            }
+        )
+
+
+@dataclass(frozen=True)
+class Answer:
+    """How a task ended.
+
+    Attributes:
+        state: "done": everything is in its folder. "failed": the grader could not; "exercise":
+            the exercise's own code failed.
+        message: why.
+        ran: whether there was a run.
+    """
+
+    state: Literal["done", "failed", "exercise"]
+    message: str = ""
+    ran: bool = True
+
+    def to_line(self) -> bytes:
+        """As it is sent."""
+        return json.dumps(asdict(self)).encode() + b"\n"
+
+    @classmethod
+    def from_line(cls, line: bytes) -> Self:
+        """What was sent.
+
+        Raises:
+            ValueError: it is none.
+        """
+        try:
+            return cls(**strict_json.loads(line.decode()))
+        except (TypeError, UnicodeDecodeError) as error:
+            raise ValueError(f"is no answer: {error}") from None

@@ -1,0 +1,56 @@
+"""A process that grades one task after another; `grader.batch.pool` starts it.
+
+A task comes as a line on standard input, its answer goes as a line to what was standard output. It
+ends when nobody is there to ask it any more, in the middle of a task too: whoever is killed leaves
+nothing behind that goes on working.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import sys
+import threading
+import traceback
+from typing import IO
+
+from grader.batch.task import Answer, Task
+from grader.errors import CheckFailed, GraderError
+from grader.text import plain
+
+
+def main() -> None:
+    """Serve until standard input ends."""
+    # what anything prints by mistake must not look like an answer
+    answers = os.fdopen(os.dup(1), "wb", buffering=0)
+    os.dup2(2, 1)
+    tasks: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks), daemon=True).start()
+    from grader.run.processes import watched
+
+    watched.adopt_orphans()
+    while True:
+        answers.write(done(Task.from_line(tasks.get())).to_line())
+
+
+def done(task: Task) -> Answer:
+    """Do a task; whatever goes wrong is an answer."""
+    from grader.batch.grade import make  # here: it takes long, and a line may wait meanwhile
+
+    try:
+        make(task)
+    except CheckFailed as error:
+        return Answer("exercise", plain(error.message))
+    except GraderError as error:
+        return Answer("failed", plain(error.message))
+    except Exception as error:
+        traceback.print_exc()
+        what = "".join(traceback.format_exception_only(error)).strip()
+        return Answer("failed", plain(f"unexpected: {what}"))
+    return Answer("done", ran=task.run is None)
+
+
+def _listen(pipe: IO[bytes], tasks: queue.SimpleQueue[bytes]) -> None:
+    for line in pipe:
+        tasks.put(line)
+    os._exit(0)

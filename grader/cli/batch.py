@@ -1,0 +1,117 @@
+"""Grade a class: find the submissions, grade them in parallel, and look at them together."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.cli.run import CLOCKS, LEVELS
+from grader.errors import UsageError
+from grader.exercise import DEFAULT
+from grader.text import for_terminal
+
+JUDGED, GRADER_FAILED = 0, 3
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the verb's arguments."""
+    parser.add_argument(
+        "submissions",
+        type=Path,
+        nargs="?",
+        help="the folder or archive that a course system exports, or a folder with one file, "
+        "folder or archive a student",
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="the folder of the class")
+    parser.add_argument(
+        "--jobs", type=_jobs, metavar="N", help="so many gradings at once (as many as cores)"
+    )
+    parser.add_argument(
+        "--exercise",
+        default=DEFAULT,
+        metavar="NAME|FOLDER|FILE",
+        help="an installed one, the folder of another, or an edited exercise.yaml",
+    )
+    parser.add_argument(
+        "--time", choices=CLOCKS, default="virtual", help="the clock that submissions live by"
+    )
+    parser.add_argument(
+        "--seed", type=int, metavar="N", help="where the varied runs start (the exercise's own)"
+    )
+    parser.add_argument("--pattern", metavar="P", help="how names tell whose a submission is")
+    parser.add_argument("--roster", type=Path, metavar="FILE", help="names: a CSV with a column id")
+    parser.add_argument(
+        "--again",
+        default="",
+        metavar="failed|all|ID",
+        help="grade anew: where the grader failed, everything, or one",
+    )
+    parser.add_argument(
+        "--shard", type=_shard, default=(1, 1), metavar="I/N", help="only the I-th of N parts"
+    )
+    parser.add_argument(
+        "--isolation",
+        choices=LEVELS,
+        metavar="LEVEL",
+        help=f"refuse to run submissions confined less well: {', '.join(LEVELS)}",
+    )
+
+
+def main(args: argparse.Namespace) -> int:
+    """Grade a class; 0: all are judged, 3: the grader failed for some."""
+    if args.submissions is None or args.out is None:
+        raise UsageError("name the submissions, and a folder for the class: --out DIR")
+    if args.isolation:
+        from grader.run.processes import levels
+
+        levels.require(args.isolation)
+    from grader.batch import batch, outputs, pool
+    from grader.batch.entry import entries
+    from grader.batch.find import find
+    from grader.batch.store import Store
+    from grader.cli import class_progress
+    from grader.exercise.loading import load_exercise
+    from grader.run.processes import cores
+
+    exercise = load_exercise(args.exercise)
+    path = args.exercise if args.exercise == exercise.name else str(Path(args.exercise).absolute())
+    order = batch.Order(exercise, path, args.time, args.seed, args.again, args.shard)
+    jobs = args.jobs or max(1, round(cores.share()))
+    messages = Console(stderr=True, highlight=False)
+    with (
+        find(args.submissions, args.pattern, args.roster) as found,
+        Store.opened(args.out) as store,
+    ):
+        batch.check_same_class(store, order)
+        _tell(messages, found.notes)
+        planned = batch.plan(found.hand_ins, order, store)
+        with class_progress.shown(messages, planned, store) as show:
+            for hand_in in batch.carry_out(planned, order, store, lambda t: pool.work(t, jobs)):
+                show(hand_in)
+        graded = entries(args.out)
+        outputs.write(args.out, graded, exercise)
+    class_progress.summarise(messages, planned, graded, args.out)
+    return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
+
+
+def _tell(console: Console, notes: Sequence[str]) -> None:
+    for note in notes:
+        console.print(Text(for_terminal(note)), soft_wrap=True)
+
+
+def _jobs(text: str) -> int:
+    if not re.fullmatch(r"[1-9]\d{0,3}", text):
+        raise argparse.ArgumentTypeError(f"expected a number of processes, found {text}")
+    return int(text)
+
+
+def _shard(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    if match is None or not 1 <= int(match[1]) <= int(match[2]):
+        raise argparse.ArgumentTypeError(f"expected I/N with I from 1 to N, found {text}")
+    return int(match[1]), int(match[2])
