@@ -81,13 +81,22 @@ def check_same_class(store: Store, order: Order) -> None:
         wanted.put(store.out)
         return
     found = ClassFile.read(store.out)
-    if not (difference := wanted.difference(found)):
+    differences = wanted.differences(found)
+    if order.again == "all" and differences.keys() <= {"grader", "ros", "exercise_sha256"}:
+        wanted.put(store.out)
         return
-    advice = "give another --out"
-    if wanted == replace(found, exercise_sha256=wanted.exercise_sha256):
-        advice = f"see what it would change: grader batch --regrade {store.out} --exercise ..."
+    if not differences:
+        return
+    advice = "Give another --out."
+    if differences.keys() == {"exercise_sha256"}:
+        advice = (
+            f"See what the new one would change: grader batch --regrade {store.out} --exercise ..."
+        )
+    elif differences.keys() <= {"grader", "ros"}:
+        advice = "Give another --out, or have everything graded by this one: --again all."
+    told = "; ".join(differences.values())
     raise UsageError(
-        f"{store.out} was graded by something else ({difference}). Nothing was changed; {advice}"
+        f"{store.out} was graded by something else ({told}). Nothing was changed. {advice}"
     )
 
 

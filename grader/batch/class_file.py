@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from grader import files
+from grader import files, versions
 from grader.errors import UsageError
 from grader.exercise.loading import Exercise
 from grader.recording.recording import Clock
@@ -16,11 +16,15 @@ from grader.result import json_file
 FAMILY = "turtlesim-grader/class/"
 SCHEMA = f"{FAMILY}v1"
 CLASS = "class.json"
+#: Characters of a value in a message: enough of a hash to tell two apart.
+MOST_SHOWN = 24
 _NAMED = {
     "exercise": "the exercise",
     "exercise_sha256": "the exercise's rubric",
     "time": "the clock (--time)",
     "seed": "the seed (--seed)",
+    "grader": "the grader's version",
+    "ros": "the version of rclpy and the ROS release",
     "shard": "the shard (--shard)",
 }
 
@@ -34,6 +38,7 @@ class ClassFile:
         exercise_sha256: of all that it judges by.
         time: the clock that submissions lived by.
         seed: chose where the varied runs start; None: the exercise's own.
+        grader, ros: versions.
         shard: "I/N" where the folder holds one of several parts of a class; '' for all of it.
     """
 
@@ -41,12 +46,15 @@ class ClassFile:
     exercise_sha256: str
     time: Clock = "virtual"
     seed: int | None = None
+    grader: str = ""
+    ros: str = ""
     shard: str = ""
 
     @classmethod
     def of(cls, exercise: Exercise, time: Clock, seed: int | None, shard: str = "") -> Self:
         """Of a call."""
-        return cls(exercise.name, exercise.sha256, time, seed, shard)
+        ros = f"rclpy {versions.rclpy()} {versions.ros_distro()}".strip()
+        return cls(exercise.name, exercise.sha256, time, seed, versions.grader(), ros, shard)
 
     def put(self, out: Path) -> None:
         """Write it.
@@ -70,13 +78,14 @@ class ClassFile:
         found: Self = json_file.made(cls._from_json, path, json_file.read(path))
         return found
 
-    def difference(self, other: Self) -> str:
-        """What of two does not fit together: '' if they do."""
-        for name, told in _NAMED.items():
-            mine, others = getattr(self, name), getattr(other, name)
-            if mine != others:
-                return f"{told}: there {_shown(others)}, here {_shown(mine)}"
-        return ""
+    def differences(self, other: Self) -> dict[str, str]:
+        """What of two does not fit together: by its field, in words."""
+        pairs = {name: (getattr(self, name), getattr(other, name)) for name in _NAMED}
+        return {
+            name: f"{_NAMED[name]}: there {_shown(others)}, here {_shown(mine)}"
+            for name, (mine, others) in pairs.items()
+            if mine != others
+        }
 
     @classmethod
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
@@ -89,4 +98,4 @@ class ClassFile:
 
 
 def _shown(value: object) -> str:
-    return value[:12] if isinstance(value, str) and value else "none" if not value else str(value)
+    return str(value)[:MOST_SHOWN] if value else "none"

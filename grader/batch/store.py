@@ -17,6 +17,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from grader import files
+from grader.batch.class_file import CLASS
 from grader.batch.entry import SUBMISSIONS
 from grader.errors import UsageError
 from grader.removal import remove
@@ -41,6 +42,7 @@ class Store:
         Raises:
             UsageError: it cannot be written, or another grading writes into it.
         """
+        _check_is_ours(out)
         files.make_folder(out)
         with files.sole_writer(out):
             remove(out / UNFINISHED)
@@ -86,12 +88,24 @@ class Store:
                 _replace(place / RUN, self.run(key), place)
             recording = self.run(key) / RECORDING
             for made in sorted((place / STUDENTS).glob("*/")):
-                if recording.is_dir():
+                if key and recording.is_dir():
                     _link_tree(recording, made / RECORDING)
                 _replace(made, self.student(made.name), place)
         except OSError as error:
             raise UsageError(f"cannot write into {self.out}: {error}") from None
         remove(place)
+
+
+def _check_is_ours(out: Path) -> None:
+    """Refuse a folder in which somebody else's files have our names."""
+    if (out / CLASS).is_file():
+        return
+    for name in (STORE, SUBMISSIONS):
+        if (out / name).is_dir() and next((out / name).iterdir(), None) is not None:
+            raise UsageError(
+                f"cannot write into {out}: it is no folder of a class ({CLASS} is missing), and "
+                f"there is a folder {name} in it already. Give another --out. Nothing was changed."
+            )
 
 
 def _replace(made: Path, target: Path, place: Path) -> None:

@@ -6,6 +6,7 @@ import argparse
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
@@ -14,6 +15,10 @@ from grader.cli.run import CLOCKS, LEVELS
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.text import for_terminal
+
+if TYPE_CHECKING:
+    from grader.batch.batch import Order
+    from grader.batch.store import Store
 
 JUDGED, GRADER_FAILED = 0, 3
 
@@ -55,6 +60,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--shard", type=_shard, default=(1, 1), metavar="I/N", help="only the I-th of N parts"
     )
     parser.add_argument(
+        "--merge",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="DIR",
+        help="put parts together that --shard has made, instead of grading",
+    )
+    parser.add_argument(
         "--isolation",
         choices=LEVELS,
         metavar="LEVEL",
@@ -64,39 +77,54 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Grade a class; 0: all are judged, 3: the grader failed for some."""
-    if args.submissions is None or args.out is None:
-        raise UsageError("name the submissions, and a folder for the class: --out DIR")
+    if args.out is None or (args.submissions is None) == (not args.merge):
+        raise UsageError("name the submissions, or parts to --merge; and a folder: --out DIR")
     if args.isolation:
         from grader.run.processes import levels
 
         levels.require(args.isolation)
-    from grader.batch import batch, outputs, pool
+    from grader.batch import outputs
+    from grader.batch.batch import Order, check_same_class
     from grader.batch.entry import entries
-    from grader.batch.find import find
     from grader.batch.store import Store
     from grader.cli import class_progress
     from grader.exercise.loading import load_exercise
-    from grader.run.processes import cores
 
     exercise = load_exercise(args.exercise)
     path = args.exercise if args.exercise == exercise.name else str(Path(args.exercise).absolute())
-    order = batch.Order(exercise, path, args.time, args.seed, args.again, args.shard)
-    jobs = args.jobs or max(1, round(cores.share()))
+    order = Order(exercise, path, args.time, args.seed, args.again, args.shard)
     messages = Console(stderr=True, highlight=False)
-    with (
-        find(args.submissions, args.pattern, args.roster) as found,
-        Store.opened(args.out) as store,
-    ):
-        batch.check_same_class(store, order)
+    with Store.opened(args.out) as store:
+        check_same_class(store, order)
+        if args.merge:
+            _merge(args, store, messages)
+        else:
+            _grade(args, order, store, messages)
+        graded = entries(args.out)
+        outputs.write(args.out, graded, exercise)
+    class_progress.summarise(messages, graded, args.out)
+    return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
+
+
+def _grade(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> None:
+    from grader.batch import batch, pool
+    from grader.batch.find import find
+    from grader.cli import class_progress
+    from grader.run.processes import cores
+
+    jobs = args.jobs or max(1, round(cores.share()))
+    with find(args.submissions, args.pattern, args.roster) as found:
         _tell(messages, found.notes)
         planned = batch.plan(found.hand_ins, order, store)
         with class_progress.shown(messages, planned, store) as show:
             for hand_in in batch.carry_out(planned, order, store, lambda t: pool.work(t, jobs)):
                 show(hand_in)
-        graded = entries(args.out)
-        outputs.write(args.out, graded, exercise)
-    class_progress.summarise(messages, planned, graded, args.out)
-    return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
+
+
+def _merge(args: argparse.Namespace, store: Store, messages: Console) -> None:
+    from grader.batch.merge import merge
+
+    _tell(messages, merge(args.merge, store))
 
 
 def _tell(console: Console, notes: Sequence[str]) -> None:

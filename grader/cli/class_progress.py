@@ -32,6 +32,9 @@ _STATES: dict[State, str] = {
 def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable[[HandIn], None]]:
     """Show how far it is; yields the function that is told of each that is over."""
     total, before = planned.hand_ins, len(planned.done)
+    if planned.alike:
+        alike = count(planned.alike, "hand-in")
+        console.print(f"{alike} not run: the same content has been run already.")
     if before:
         console.print(f"{count(before, 'hand-in')} of {total} graded before.")
     if console.is_terminal:
@@ -85,15 +88,11 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
         yield tell
 
 
-def summarise(console: Console, planned: Planned, entries: Sequence[Entry], out: Path) -> None:
+def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
     """Say what came of it."""
     states = Counter(entry.state for entry in entries)
     told = ", ".join(f"{states[state]} {what}" for state, what in _STATES.items() if states[state])
     console.print(f"{count(len(entries), 'hand-in')}: {told}.")
-    if planned.alike:
-        console.print(
-            f"{count(planned.alike, 'hand-in')} not run: the same content has been run already."
-        )
     scores = [
         entry.score for entry in entries if entry.state == "judged" and entry.score is not None
     ]

@@ -21,9 +21,12 @@ def made(store: Store, text: str, *names: str) -> Path:
 def test_a_run_and_all_who_share_it_come_to_their_places(tmp_path: Path) -> None:
     with Store.opened(tmp_path / "class") as store:
         store.put("abcd", made(store, "one", "alice", "bob"))
+        (store.out / "class.json").touch()
         assert store.has("abcd")
         assert (store.student("bob") / RECORDING / "bag").read_text() == "one"
-    assert sorted(path.name for path in (tmp_path / "class").iterdir()) == ["store", "submissions"]
+    assert sorted(path.name for path in (tmp_path / "class").iterdir()) == [
+        *("class.json", "store", "submissions")
+    ]
 
 
 def test_a_later_grading_takes_the_place_of_an_earlier_one(tmp_path: Path) -> None:
@@ -40,6 +43,18 @@ def test_what_an_interrupted_call_left_is_gone_with_the_next(tmp_path: Path) -> 
     with Store.opened(tmp_path) as store:
         assert not leftover.exists()
         assert not store.student("alice").exists()
+
+
+def test_a_folder_with_the_submissions_themselves_is_refused(tmp_path: Path) -> None:
+    alice = tmp_path / "submissions" / "alice" / "node.py"
+    alice.parent.mkdir(parents=True)
+    alice.write_text("x = 1\n")
+    with (
+        pytest.raises(UsageError, match=r"it is no folder of a class .* Nothing was changed"),
+        Store.opened(tmp_path),
+    ):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["submissions"]
 
 
 def test_two_do_not_write_into_one_class(tmp_path: Path) -> None:
