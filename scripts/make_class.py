@@ -1,0 +1,103 @@
+"""Makes a class of hand-ins out of the test fixtures, as a course system would export it.
+
+    .venv/bin/python scripts/make_class.py FOLDER [--count 300] [--seed 1]
+
+The folder is like Moodle's "Download all submissions": `Full Name_ID_assignsubmission_file_/`.
+About half are right or lack one thing (the challenge's solution and its mutants), a third are
+beginners' mistakes, a tenth is hostile, some cannot be started, some handed in what somebody else
+did. The same seed makes the same class.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from grader.exercise.loading import load_exercise  # noqa: E402
+from grader.testing.solutions import read_solutions  # noqa: E402
+
+TESTS = ROOT / "tests"
+SUBMISSIONS, ATTACKS = TESTS / "submissions", TESTS / "attacks" / "submissions"
+FIRST = ("Zoë", "Li", "José", "Anna Maria", "O'Neil", "Søren", "Fatıma", "Jürgen", "Nguyễn", "Ada")
+LAST = ("Müller", "van der Berg", "Ødegård", "D'Angelo", "Çelik", "Smith", "Łukasz", "García")
+#: Neither needs real time nor a minute of a processor, so that it shows what a usual class costs.
+HOSTILE = (
+    *("imitates_results", "crashes", "fakes_a_traceback", "prints_escapes", "exits_oddly"),
+    *("lies_about_itself", "stops_itself", "turns_on_the_spot"),
+)
+UNUSABLE: dict[str, bytes] = {
+    "turtle_controller.zip": b"PK\x03\x04 and nothing more",
+    "notes.txt": b"I could not do it.\n",
+    "turtle_controller.py": b"import rclpy\ndef main()\n    pass\n",
+}
+#: Of ten hand-ins: (so many, what).
+SHARES = ((5, "right"), (3, "beginner"), (1, "hostile"), (1, "odd"))
+
+
+def right() -> list[str]:
+    """Sources that do what is asked, and those with one thing spoiled."""
+    texts = [each.text() for each in read_solutions(load_exercise("turtlesim_challenge"))]
+    return texts[:1] * (len(texts) // 2) + texts  # not all make a mistake
+
+
+def sources(folder: Path, names: tuple[str, ...] = ()) -> list[str]:
+    """The programs in a folder."""
+    paths = [folder / f"{name}.py" for name in names] or sorted(folder.glob("*.py"))
+    return [path.read_text(encoding="utf-8") for path in paths]
+
+
+def names(chance: random.Random) -> Iterator[str]:
+    """Names of people; some have the same."""
+    while True:
+        yield f"{chance.choice(FIRST)} {chance.choice(LAST)}"
+
+
+def make(folder: Path, count: int, seed: int) -> None:
+    """Write a class into a folder that is not there yet."""
+    chance = random.Random(seed)
+    kinds: dict[str, Callable[[], str]] = {}
+    for kind, texts in (
+        ("right", right()),
+        ("beginner", sources(SUBMISSIONS / "first_lines")),
+        ("hostile", sources(ATTACKS, HOSTILE)),
+    ):
+        kinds[kind] = lambda texts=texts: chance.choice(texts)  # type: ignore[misc]
+    pool = [kind for share, kind in SHARES for _ in range(share)]
+    earlier: list[str] = []
+    for number, name in zip(range(count), names(chance), strict=False):
+        at = folder / f"{name}_{100000 + number}_assignsubmission_file_"
+        at.mkdir(parents=True)
+        kind = chance.choice(pool)
+        if kind == "odd" and earlier and chance.random() < 0.5:
+            (at / "turtle_controller.py").write_text(chance.choice(earlier), encoding="utf-8")
+        elif kind == "odd":
+            file = chance.choice(sorted(UNUSABLE))
+            (at / file).write_bytes(UNUSABLE[file])
+        else:
+            text = f"{kinds[kind]()}\n# {number}\n"
+            earlier.append(text)
+            (at / "turtle_controller.py").write_text(text, encoding="utf-8")
+
+
+def main() -> int:
+    """Make one."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    args = parser.parse_args()
+    if args.folder.exists():
+        parser.error(f"{args.folder} exists already")
+    make(args.folder, args.count, args.seed)
+    print(f"{args.folder}: {args.count} hand-ins")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
