@@ -29,7 +29,7 @@ LAST = ("Müller", "van der Berg", "Ødegård", "D'Angelo", "Çelik", "Smith", "
 #: Neither needs real time nor a minute of a processor, so that it shows what a usual class costs.
 HOSTILE = (
     *("imitates_results", "crashes", "fakes_a_traceback", "prints_escapes", "exits_oddly"),
-    *("lies_about_itself", "stops_itself", "turns_on_the_spot"),
+    *("lies_about_itself", "turns_on_the_spot", "replaces_builtins", "drives_beyond_all_numbers"),
 )
 UNUSABLE: dict[str, bytes] = {
     "turtle_controller.zip": b"PK\x03\x04 and nothing more",
