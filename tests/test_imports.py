@@ -80,7 +80,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"turtlesim_py"},
     "grader.diagnosis": GROUND | below("grader", "recording", "scenes", "exercise.verdict"),
     "grader.result": GROUND
-    | below("grader", "recording", "scenes", "exercise", "diagnosis.diagnosis"),
+    | below("grader", "recording", "scenes", "exercise")
+    | below("grader.diagnosis", "diagnosis", "costliest"),
     "grader.reports": GROUND
     | below("grader", "recording", "scenes", "exercise.verdict", "result", "diagnosis.diagnosis"),
     "grader.grading": GROUND | STATIONS - below("grader", "reports"),

@@ -64,7 +64,7 @@ class Entry:
         """What the gradebook says [points]; None where the grader failed, which nobody pays for."""
         if self.state == "failed":
             return None
-        return 0.0 if self.result is None else self.result.score
+        return 0.0 if self.result is None else self.result.final
 
     def put(self) -> None:
         """Write entry.json; the result is there already.

@@ -14,7 +14,8 @@ from typing import Final
 
 from grader.diagnosis import connections, crash, standstill, warned
 from grader.diagnosis.case import Case, line, told
-from grader.diagnosis.diagnosis import CHECK, Diagnosis
+from grader.diagnosis.costliest import costliest
+from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recordings
 from grader.text import one_line
@@ -69,7 +70,7 @@ def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagno
             found = _ask(rules, case)
             if found is not None:
                 return _in_run(found, number)
-    found = _of_check(verdicts)
+    found = costliest(verdicts)
     return found if found is None else _with_unused(found, cases[found.run])
 
 
@@ -89,24 +90,6 @@ def _in_run(found: Diagnosis, number: int) -> Diagnosis:
     return replace(found, run=number, cause=cause, help=help_, place=place)
 
 
-def _of_check(verdicts: Sequence[Verdict]) -> Diagnosis | None:
-    """The finding of the check that costs most, with those that wait for it."""
-    failed = [verdict for verdict in verdicts if verdict.status == "failed"]
-    failed = failed or [verdict for verdict in verdicts if not verdict.passed]
-    if not failed:
-        return None
-    worst = max(failed, key=lambda verdict: _cost(verdict, verdicts))  # the first of equals
-    first = worst.evidence[0] if worst.evidence else None
-    return Diagnosis(
-        CHECK,
-        one_line(worst.rationale) or f"{worst.title}: not as asked for.",
-        one_line(worst.help),
-        run=first.run if first is not None else 0,
-        time_s=first.time_s if first is not None else None,
-        check=worst.check,
-    )
-
-
 def _with_unused(found: Diagnosis, case: Case) -> Diagnosis:
     """The finding of a check, with a question where an end that it speaks of was never used."""
     if case.conduct.spun_s is None:
@@ -122,13 +105,3 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis:
             )
             return replace(found, help=one_line(f"{found.help} {asked}".strip()))
     return found
-
-
-def _cost(failed: Verdict, verdicts: Sequence[Verdict]) -> float:
-    """What it costs, and all that is not judged because of it [points]."""
-    lost = {failed.check: failed.max_score - failed.score}
-    for _ in verdicts:  # one that waits may be waited for
-        for verdict in verdicts:
-            if verdict.status == "not_judged" and not lost.keys().isdisjoint(verdict.depends_on):
-                lost.setdefault(verdict.check, verdict.max_score)
-    return sum(lost.values())

@@ -9,6 +9,9 @@ from numbers import Real
 from typing import Any, Literal, Self
 
 Status = Literal["passed", "failed", "not_judged"]
+#: What students see of a check: all of it; all of it, when the exercise is over, and until then
+#: nothing; title, verdict and points; nothing.
+Visible = Literal["now", "after_due", "points_only", "never"]
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,7 @@ class Verdict:
         score, max_score: the points that it earned, and that it can earn.
         rationale, help, evidence: see `Finding`.
         depends_on: the checks that have to pass before it is judged.
+        visible: what students see of it.
     """
 
     check: str
@@ -84,9 +88,11 @@ class Verdict:
     help: str = ""
     evidence: tuple[Evidence, ...] = ()
     depends_on: tuple[str, ...] = ()
+    visible: Visible = "now"
 
     def to_json(self) -> dict[str, Any]:
         """The verdict as the result file holds it."""
+        visible = {} if self.visible == "now" else {"visible": self.visible}
         return {
             "check": self.check,
             "title": self.title,
@@ -97,6 +103,7 @@ class Verdict:
             "help": self.help,
             "evidence": [item.to_json() for item in self.evidence],
             "depends_on": list(self.depends_on),
+            **visible,
         }
 
     @classmethod

@@ -18,6 +18,7 @@ from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recording, Recordings, Run
 from grader.result import json_file
+from grader.result.handed_in import HandedIn
 from grader.result.provenance import Origin
 from grader.scenes.scene import Start
 
@@ -71,6 +72,26 @@ class RunSummary(Run):
 
 
 @dataclass(frozen=True)
+class NotShown:
+    """What a result for students leaves out.
+
+    Attributes:
+        checks: so many.
+        max_score: what they are worth together [points].
+        until_due: so many of them are shown when the exercise is over.
+    """
+
+    checks: int
+    max_score: float
+    until_due: int = 0
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """What a result file holds; it follows the schema."""
+        return cls(int(data["checks"]), data["max_score"], int(data["until_due"]))
+
+
+@dataclass(frozen=True)
 class Result:
     """One judged run.
 
@@ -84,6 +105,8 @@ class Result:
         provenance: where it comes from; equal results need not come from the same.
         diagnosis: the earliest cause of lost points; None where none is lost or, in older files,
             where nobody has looked.
+        handed_in: whose it is, and what its time costs; None where nobody has said it.
+        not_shown: what it lacks, being for students; None where it is whole.
     """
 
     exercise: str
@@ -96,17 +119,29 @@ class Result:
     artifacts: Mapping[str, str] = field(default_factory=dict)
     provenance: Origin | None = field(default=None, compare=False)
     diagnosis: Diagnosis | None = None
+    handed_in: HandedIn | None = None
+    not_shown: NotShown | None = None
+
+    @property
+    def final(self) -> float:
+        """The score after what handing in late costs [points]; never below 0."""
+        deducted = 0.0 if self.handed_in is None else self.handed_in.deducted
+        return max(round(self.score - deducted, 2), 0.0) if deducted else self.score
 
     def to_json(self) -> dict[str, Any]:
         """The result as its file holds it."""
         origin = {} if self.provenance is None else {"provenance": self.provenance.to_json()}
         diagnosis = {} if self.diagnosis is None else {"diagnosis": self.diagnosis.to_json()}
+        handed_in = {} if self.handed_in is None else {"handed_in": self.handed_in.to_json()}
+        not_shown = {} if self.not_shown is None else {"not_shown": asdict(self.not_shown)}
         return {
             "schema": SCHEMA,
             "exercise": self.exercise,
             "submission": self.submission,
             "score": self.score,
             "max_score": self.max_score,
+            **handed_in,
+            **not_shown,
             **diagnosis,
             "verdicts": [verdict.to_json() for verdict in self.verdicts],
             "run": self.run.to_json(),
@@ -123,7 +158,7 @@ class Result:
             ValueError: it does not follow the schema.
         """
         json_file.validate(data, "result", SCHEMA)
-        diagnosis = data.get("diagnosis")
+        diagnosis, handed_in, not_shown = map(data.get, ("diagnosis", "handed_in", "not_shown"))
         return cls(
             data["exercise"],
             data["submission"],
@@ -135,6 +170,8 @@ class Result:
             data["artifacts"],
             provenance=Origin.from_json(data["provenance"]) if "provenance" in data else None,
             diagnosis=None if diagnosis is None else Diagnosis.from_json(diagnosis),
+            handed_in=None if handed_in is None else HandedIn.from_json(handed_in),
+            not_shown=None if not_shown is None else NotShown.from_json(not_shown),
         )
 
     @classmethod

@@ -1,0 +1,101 @@
+"""A result as its student sees it: what an exercise's `visible` hides is nowhere in it.
+
+What is shown depends on nothing that is hidden: whatever came of a hidden check, the same is shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal
+
+from grader.diagnosis.costliest import costliest
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.exercise.verdict import Verdict, Visible
+from grader.result.result import NotShown, Result
+
+#: Who looks: a student, a student when the exercise is over, a teacher.
+View = Literal["student", "after_due", "whole"]
+
+
+def as_seen(result: Result, view: View) -> Result:
+    """A result as somebody sees it."""
+    return result if view == "whole" else student_view(result, view == "after_due")
+
+
+def is_hidden(visible: Visible, after_due: bool = False) -> bool:
+    """Whether students see nothing of a check."""
+    return visible == "never" or (visible == "after_due" and not after_due)
+
+
+def student_view(result: Result, after_due: bool = False) -> Result:
+    """A result without what its student is not to see; the result itself where that is nothing.
+
+    Its scores are those of the verdicts that are left, so that nothing can be told from a
+    difference; `not_shown` counts the others.
+
+    Args:
+        after_due: whether the exercise is over for everybody.
+    """
+    hidden = [v for v in result.verdicts if is_hidden(v.visible, after_due)]
+    if not hidden and all(verdict.visible != "points_only" for verdict in result.verdicts):
+        return result
+    names = {verdict.check for verdict in hidden}
+    shown = tuple(_shown(verdict, names) for verdict in result.verdicts if verdict not in hidden)
+    return replace(
+        result,
+        score=round(sum(verdict.score for verdict in shown), 2),
+        max_score=round(sum(verdict.max_score for verdict in shown), 2),
+        verdicts=shown,
+        diagnosis=_diagnosis(result.diagnosis, shown),
+        not_shown=_counted(result.not_shown, hidden),
+    )
+
+
+def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
+    """A verdict without what may not be told of it, or of others."""
+    if verdict.visible == "points_only":
+        verdict = replace(verdict, rationale=_no_finding(verdict), help="", evidence=())
+    if hidden.isdisjoint(verdict.depends_on):
+        return verdict
+    left = tuple(name for name in verdict.depends_on if name not in hidden)
+    verdict = replace(verdict, depends_on=left)
+    if verdict.status != "not_judged":
+        return verdict
+    # No exercise of ours is loaded that comes to this, but a result file may have been changed.
+    return replace(verdict, rationale="Not judged: it waits for others.", help="")
+
+
+def _no_finding(verdict: Verdict) -> str:
+    title = verdict.title or verdict.check
+    said = {"passed": "passed", "failed": "did not pass in full", "not_judged": "was not judged"}
+    return f"“{title}” {said[verdict.status]}. What was found is not shown: only its points are."
+
+
+def _diagnosis(found: Diagnosis | None, shown: Sequence[Verdict]) -> Diagnosis | None:
+    """The cause of the points that are lost in what is shown.
+
+    What a run shows by itself is known to whoever has run it; the finding of a check is chosen
+    anew, for what it costs may lie in hidden ones.
+    """
+    if found is None or all(verdict.passed for verdict in shown):
+        return None
+    if not found.check:
+        return found
+    telling = [v for v in shown if v.visible != "points_only" or v.status != "failed"]
+    return costliest(telling if any(v.status == "failed" for v in telling) else shown)
+
+
+def _counted(before: NotShown | None, hidden: Sequence[Verdict]) -> NotShown | None:
+    """How much is left out, with what was left out before."""
+    if not hidden:
+        return before
+    until_due = sum(verdict.visible == "after_due" for verdict in hidden)
+    worth = sum(verdict.max_score for verdict in hidden)
+    if before is None:
+        return NotShown(len(hidden), round(worth, 2), until_due)
+    return NotShown(
+        before.checks + len(hidden),
+        round(before.max_score + worth, 2),
+        before.until_due + until_due,
+    )
