@@ -80,6 +80,8 @@ def main(args: argparse.Namespace) -> int:
     origin = recordings.nominal.provenance
     name = (origin and origin.submission) or (place.older and place.older.submission) or place.name
     result = grading.judge(recordings, exercise, submission=name)
+    if place.older is not None and place.older.handed_in is not None:
+        result = replace(result, handed_in=place.older.handed_in.by(exercise.late))
     _show(
         args,
         place,
@@ -87,7 +89,7 @@ def main(args: argparse.Namespace) -> int:
         recordings,
         is_meant=asked is not None or _is_made_for(origin, exercise),
     )
-    return int(args.fail_under is not None and result.score < args.fail_under)
+    return int(args.fail_under is not None and result.final < args.fail_under)
 
 
 def _is_made_for(origin: Provenance | None, exercise: Exercise) -> bool:

@@ -14,6 +14,7 @@ from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
 from grader.reports import FORMATS, Report
 from grader.result.result import ARTIFACTS
+from grader.result.visible import View, is_hidden
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,19 +38,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exercise", metavar="NAME", help="which checks get 0 points for an error; autolab only"
     )
+    who = parser.add_mutually_exclusive_group()
+    who.add_argument(
+        "--after-due",
+        action="store_true",
+        help="what students see when the exercise is over; default: what they see before",
+    )
+    who.add_argument(
+        "--whole",
+        action="store_true",
+        help="for teachers: also what the exercise hides from students; csv always is whole",
+    )
     parser.add_argument(
         "--github-summary",
         action="store_true",
-        help="append the result as Markdown to $GITHUB_STEP_SUMMARY as well",
+        help="append the result as Markdown to $GITHUB_STEP_SUMMARY as well, as students see it",
     )
 
 
 def main(args: argparse.Namespace) -> int:
     """Show the results; see `grader.cli` for the exit codes."""
-    checks = tuple(load_exercise(args.exercise).points) if args.exercise else ()
+    view: View = "after_due" if args.after_due else "student"
+    checks = _checks(args) if args.exercise else ()
     if args.out is not None:
         files.check_is_no_input(args.out, _read(args))
-    shown = [reports.read(path, checks) for path in args.result]
+    shown = [reports.read(path, checks, "whole" if args.whole else view) for path in args.result]
     summary = _summary_file() if args.github_summary else None
     if args.format == "terminal" and args.out is None and len(shown) == 1:
         from rich.console import Console
@@ -68,8 +81,19 @@ def main(args: argparse.Namespace) -> int:
         else:
             _print(content)
     if summary is not None:
-        _append(summary, "".join(reports.render("markdown", [each]) for each in shown))
+        summed = [reports.read(path, checks, view) for path in args.result] if args.whole else shown
+        _append(summary, "".join(reports.render("markdown", [each]) for each in summed))
     return 0
+
+
+def _checks(args: argparse.Namespace) -> tuple[str, ...]:
+    """The names of the exercise's checks that whoever looks may know of."""
+    exercise = load_exercise(args.exercise)
+    return tuple(
+        name
+        for name in exercise.points
+        if args.whole or not is_hidden(exercise.visible.get(name, "now"), args.after_due)
+    )
 
 
 def _read(args: argparse.Namespace) -> Iterator[Path]:

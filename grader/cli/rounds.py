@@ -11,6 +11,7 @@ from rich.text import Text
 from grader.cli import error_file, grade_one
 from grader.errors import GraderError
 from grader.result.result import Result
+from grader.result.visible import student_view
 from grader.text import for_terminal
 from grader.text import points as shown
 
@@ -40,9 +41,10 @@ class Rounds:
             messages.print(Text(for_terminal(error.message)), soft_wrap=True)
             error_file.write(error, self._args)
         else:
-            said = f"{time.strftime('%H:%M:%S')}  {change(self._last, result)}"
+            seen = student_view(result)
+            said = f"{time.strftime('%H:%M:%S')}  {change(self._last, seen)}"
             console.print(Text(said, "bold"), soft_wrap=True)
-            self._last = result
+            self._last = seen
         messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
 
 

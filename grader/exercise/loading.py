@@ -5,12 +5,12 @@ Where it is read from, and its checks.py, is told by `grader.exercise.places`.
 
 from __future__ import annotations
 
-import math
+import hashlib
 import os
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
-from difflib import get_close_matches
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,27 +18,20 @@ from typing import Any
 
 from grader import content
 from grader.errors import ExerciseError
-from grader.exercise import DEFAULT, places
+from grader.exercise import DEFAULT, handing_in, places
 from grader.exercise.check import Checks
+from grader.exercise.late import LatePolicy
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
-from grader.exercise.yaml_file import Mistake, YamlFile, read_yaml
+from grader.exercise.verdict import Visible
+from grader.exercise.yaml_file import Mistake, YamlFile, did_you_mean, is_amount, read_yaml
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Limits, Start
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
-    *(
-        "exercise",
-        "title",
-        "task",
-        "scene",
-        "limits",
-        "varied_runs",
-        "points",
-        "tolerances",
-        "starter",
-    ),
+    *("exercise", "title", "task", "scene", "limits", "varied_runs", "points", "visible", "late"),
+    *("tolerances", "starter"),
 )
 LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
@@ -46,6 +39,7 @@ MOST_RUNS = 100
 #: What of them is for people and judges nothing.
 WORDS = ("title", "task", "starter")
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
+PER_STUDENT = "per_student"
 _NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
 __all__ = ["DEFAULT", "Exercise", "Limits", "VariedRuns", "load_exercise", "names"]
@@ -53,12 +47,17 @@ __all__ = ["DEFAULT", "Exercise", "Limits", "VariedRuns", "load_exercise", "name
 
 @dataclass(frozen=True)
 class VariedRuns:
-    """Further runs that start elsewhere: how many, and how far from the centre [m]."""
+    """Further runs that start elsewhere: how many, and how far from the centre [m].
+
+    Attributes:
+        per_student: whether they start elsewhere for each student of a class.
+    """
 
     count: int = 0
     seed: int = 0
     nearest_m: float = 0.0
     farthest_m: float = 0.0
+    per_student: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,6 +73,8 @@ class Exercise:
         points: check name -> points, in the order of the report.
         tolerances: what the checks may read; their names are the checks' own business.
         checks: the exercise's check functions.
+        visible: check name -> what students see of it; all of those that are not named.
+        late: what it costs to hand in late; None where nothing is said of that.
         scene: the name of what runs beside the submission.
         folder: where its files are.
         starter: the folder that `grader new` copies; None where there is none.
@@ -93,11 +94,15 @@ class Exercise:
     starter: Path | None = None
     sha256: str = ""
     task: str = ""
+    visible: Mapping[str, Visible] = field(default_factory=dict)
+    late: LatePolicy | None = None
 
     @property
     def conditions(self) -> dict[str, float]:
         """What only a run can follow: a recording that was made with other values keeps them."""
         parts = {"limits": asdict(self.limits), "varied_runs": asdict(self.varied)}
+        if parts["varied_runs"].pop(PER_STUDENT):
+            parts["varied_runs"][PER_STUDENT] = 1
         return {f"{part}.{key}": v for part, values in parts.items() for key, v in values.items()}
 
     @property
@@ -105,8 +110,20 @@ class Exercise:
         """The sum of all points."""
         return round(sum(self.points.values()), 2)
 
+    def seed_for(self, student_id: str) -> int | None:
+        """What chooses where a student's varied runs start; None: they start as everybody's.
+
+        It is made of the exercise's own seed and the student's id, and of nothing else: the same
+        each time, on any machine, however a file system writes the letters of the id.
+        """
+        if not self.varied.per_student:
+            return None
+        told = f"{self.varied.seed} {unicodedata.normalize('NFC', student_id)}"
+        digest = hashlib.sha256(told.encode("utf-8", "surrogatepass")).digest()
+        return int.from_bytes(digest[:4], "big")
+
     def starts(self, seed: int | None = None) -> list[Start]:
-        """Where the varied runs start; None takes the exercise's own seed."""
+        """Where the varied runs start; None takes the exercise's own seed. See `seed_for`."""
         varied = self.varied
         used = varied.seed if seed is None else seed
         scene = load_scene(self.scene)
@@ -223,15 +240,7 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
 def _check_keys(data: Mapping[Any, Any]) -> None:
     for key in data:
         if key not in KEYS:
-            raise Mistake((str(key),), f"unknown; {_did_you_mean(key, KEYS)}")
-
-
-def _did_you_mean(key: object, known: Iterable[object]) -> str:
-    """What there is instead of a key that nobody knows."""
-    names = [str(name) for name in known]
-    near = get_close_matches(str(key), names, n=1)
-    there_are = f"here are {', '.join(names)}"
-    return f"did you mean {near[0]!r}? T{there_are}" if near else f"t{there_are}"
+            raise Mistake((str(key),), f"unknown; {did_you_mean(key, KEYS)}")
 
 
 def _read(path: Path) -> YamlFile:
@@ -249,8 +258,10 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
         if not isinstance(given, dict):
             raise Mistake((part,), f"expected names with numbers, found {given!r}")
         for key, value in given.items():
+            if part == "varied_runs" and key == PER_STUDENT:
+                continue  # a switch, which no original has to have
             if key not in known:
-                raise Mistake((part,), f"unknown {key!r}; {_did_you_mean(key, known)}")
+                raise Mistake((part,), f"unknown {key!r}; {did_you_mean(key, known)}")
             if not _alike(value, known[key]):
                 raise Mistake((part, key), f"expected e.g. {known[key]!r}, found {value!r}")
         merged[part] = {**known, **given}
@@ -262,13 +273,7 @@ def _alike(value: object, example: object) -> bool:
         return isinstance(value, list) and all(_alike(v, example[0]) for v in value)
     if isinstance(example, bool) or not isinstance(example, int | float):
         return type(value) is type(example)
-    return _is_amount(value)
-
-
-def _is_amount(value: object) -> bool:
-    """A number that is finite and not negative."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    return number and math.isfinite(value) and value >= 0  # type: ignore[arg-type, operator]
+    return is_amount(value)
 
 
 def _build(data: dict[str, Any], place: Place) -> Exercise:
@@ -282,7 +287,7 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     for key in ("first_motion_s", "total_s"):
         if not limits[key]:
             raise Mistake(("limits", key), "expected a number above 0, found 0")
-    varied = VariedRuns(**_numbers(data, "varied_runs", VARIED))
+    varied = _varied(data)
     _check_varied(varied, load_scene(scene).farthest_start_m)
     tolerances = data.get("tolerances") or {}
     if not isinstance(tolerances, dict):
@@ -291,12 +296,13 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
         raise Mistake(("tolerances", wrong[0]), wrong[1])
-    return Exercise(
+    points = _points(data["points"], checks)
+    exercise = Exercise(
         name=data["exercise"],
         title=str(data["title"]),
         limits=Limits(**{key: float(value) for key, value in limits.items()}),
         varied=varied,
-        points=_points(data["points"], checks),
+        points=points,
         tolerances=tolerances,
         checks=checks,
         scene=scene,
@@ -304,7 +310,9 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, place.folder),
         task=_task(data.get("task", "")),
+        visible=handing_in.visible(data.get("visible"), checks, points),
     )
+    return replace(exercise, late=handing_in.late(data.get("late"), exercise.max_score))
 
 
 def _sha256(data: Mapping[str, Any], folder: Path) -> str:
@@ -321,6 +329,19 @@ def _task(task: object) -> str:
     if not isinstance(task, str):
         raise Mistake(("task",), f"expected a text, found {task!r}")
     return task
+
+
+def _varied(data: Mapping[str, Any]) -> VariedRuns:
+    part = "varied_runs"
+    given = data.get(part) or {}
+    if not isinstance(given, dict) or PER_STUDENT not in given:
+        return VariedRuns(**_numbers(data, part, VARIED))
+    numbers = {key: value for key, value in given.items() if key != PER_STUDENT}
+    if not isinstance(given[PER_STUDENT], bool):
+        text = f"expected true or false, found {given[PER_STUDENT]!r}"
+        raise Mistake((part, PER_STUDENT), text)
+    varied = VariedRuns(**_numbers({part: numbers}, part, VARIED))
+    return replace(varied, per_student=given[PER_STUDENT])
 
 
 def _check_varied(varied: VariedRuns, farthest_m: float) -> None:
@@ -347,8 +368,8 @@ def _numbers(data: Mapping[str, Any], part: str, examples: Mapping[str, float]) 
         raise Mistake((part,), f"expected names with numbers, found {given!r}")
     for key, value in given.items():
         if key not in examples:
-            raise Mistake((part,), f"unknown {key!r}; {_did_you_mean(key, examples)}")
-        if not _is_amount(value) or (isinstance(examples[key], int) and value != int(value)):
+            raise Mistake((part,), f"unknown {key!r}; {did_you_mean(key, examples)}")
+        if not is_amount(value) or (isinstance(examples[key], int) and value != int(value)):
             what = "a whole number" if isinstance(examples[key], int) else "a number"
             raise Mistake((part, key), f"expected {what} from 0, found {value!r}")
     return {k: int(v) if isinstance(examples[k], int) else v for k, v in given.items()}
@@ -383,9 +404,9 @@ def _points(points: object, checks: Checks) -> dict[str, float]:
     known = [check.name for check in checks]
     for check, value in points.items():
         if check not in known:
-            text = f"no check is named {check!r}; {_did_you_mean(check, known)}"
+            text = f"no check is named {check!r}; {did_you_mean(check, known)}"
             raise Mistake(("points",), text)
-        if not _is_amount(value):
+        if not is_amount(value):
             raise Mistake(("points", str(check)), f"expected a number from 0, found {value!r}")
     if not any(points.values()):
         raise Mistake(("points",), "all are 0")

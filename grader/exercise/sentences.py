@@ -15,6 +15,8 @@ from grader.text import without_controls
 # blanks of one line only: lines of nothing would be gone through again from each of them
 _FRAME = re.compile(r'^[^\S\n]*File "(?P<file>[^"\n]+)", line (?P<line>\d+)', re.MULTILINE)
 _PLACE = re.compile(r" \([^()]*, line \d+\)$")
+#: What conditions do not tell while it is off.
+_OFF: Mapping[str, float] = {"varied_runs.per_student": 0}
 _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
 
 
@@ -109,10 +111,11 @@ def not_followed(recording: Recording, conditions: Mapping[str, float]) -> list[
     Args:
         conditions: see `grader.exercise.loading.Exercise`.
     """
-    then = {} if recording.provenance is None else recording.provenance.conditions
+    told = {} if recording.provenance is None else recording.provenance.conditions
+    then = {**_OFF, **told} if told else {}
     return [
         f"The recording was made with {key} {then[key]:g}; the exercise now says {value:g}. "
         "Run the submission again for that."
-        for key, value in conditions.items()
+        for key, value in {**_OFF, **conditions}.items()
         if key in then and then[key] != value
     ]

@@ -11,16 +11,23 @@ import re
 import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from datetime import datetime
 
 import yaml
 
 from grader.exercise import rubric
 from grader.exercise.check import Check
+from grader.exercise.late import LatePolicy
 from grader.exercise.loading import Exercise
 from grader.exercise.places import DESCRIPTION
 from grader.scenes.scene import Scene
 from grader.text import points
 
+#: How a check is told that students do not see at once, or not all of.
+_SEEN = {
+    "after_due": "Shown when the exercise is over, and until then in no report and no total",
+    "points_only": "A report shows the points of these, and not what was found",
+}
 #: A line of exercise.yaml in a part: blanks, key, value, perhaps a comment.
 _VALUE = re.compile(r"^(\s+)([\w-]+)(:\s*)([^#\n]*?)(\s+#.*)?$")
 
@@ -55,12 +62,20 @@ def sheet(exercise: Exercise, scene: Scene, start: Start) -> str:
 
 def _judged(exercise: Exercise, scene: Scene) -> Iterator[str]:
     checks = {check.name: check for check in exercise.checks}
-    listed = [(checks[name], worth) for name, worth in exercise.points.items() if worth]
+    worthy = {name: worth for name, worth in exercise.points.items() if worth}
+    hidden = [worth for name, worth in worthy.items() if exercise.visible.get(name) == "never"]
+    listed = [
+        (checks[name], worth)
+        for name, worth in worthy.items()
+        if exercise.visible.get(name) != "never"
+    ]
     yield f"## What it is worth: {points(exercise.max_score)} points"
     yield "\n".join(
         ["| points | what is looked at | check |", "|---:|---|---|"]
         + [f"| {points(worth)} | {check.title} | `{check.name}` |" for check, worth in listed]
+        + ([f"| {points(sum(hidden))} | {_not_shown(len(hidden))} | |"] if hidden else [])
     )
+    yield "\n".join(_seen_of(exercise, [check for check, _ in listed]))
     yield "\n".join(_waits([check for check, _ in listed]))
     for check, worth in listed:
         if text := rubric.told(check, exercise.tolerances):
@@ -68,6 +83,42 @@ def _judged(exercise: Exercise, scene: Scene) -> Iterator[str]:
             yield text
     yield "## How it is judged"
     yield _runs(exercise, scene)
+    if exercise.late is not None:
+        yield from _late(exercise.late)
+
+
+def _not_shown(checks: int) -> str:
+    return (
+        "a check that no report shows" if checks == 1 else f"{checks} checks that no report shows"
+    )
+
+
+def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
+    """Which checks a report shows later, or not all of, a line each."""
+    named: dict[str, list[str]] = {"after_due": [], "points_only": []}
+    for check in checks:
+        named.get(exercise.visible.get(check.name, ""), []).append(f"`{check.name}`")
+    for visible, names in named.items():
+        if names:
+            yield _wrapped(f"- {_SEEN[visible]}: {', '.join(names)}.", indent="  ")
+
+
+def _late(policy: LatePolicy) -> Iterator[str]:
+    yield "## When it is due"
+    grace = f" Another {policy.grace_min:g} minutes cost nothing." if policy.grace_min else ""
+    told = f"It is due on {policy.due:%Y-%m-%d at %H:%M:%S} (UTC{_zone(policy.due)}).{grace}"
+    if not (policy.per_day and policy.most):
+        yield _wrapped(f"{told} To hand it in later costs no points.")
+        return
+    yield _wrapped(
+        f"{told} From then on each started day costs {points(policy.per_day)} points, "
+        f"{points(policy.most)} at most; nobody has fewer than 0 points."
+    )
+
+
+def _zone(due: datetime) -> str:
+    """'+01:00'."""
+    return due.isoformat()[-6:]
 
 
 def _waits(checks: Iterable[Check]) -> Iterator[str]:

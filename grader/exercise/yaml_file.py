@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+import math
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -102,3 +104,17 @@ def _lines(node: yaml.Node, above: Keys) -> Iterator[tuple[Keys, int]]:
             keys.add(key.value)
             yield (*above, key.value), line
             todo.append((value, (*above, key.value)))
+
+
+def did_you_mean(key: object, known: Iterable[object]) -> str:
+    """What there is instead of a key that nobody knows."""
+    names = [str(name) for name in known]
+    near = get_close_matches(str(key), names, n=1)
+    there_are = f"here are {', '.join(names)}"
+    return f"did you mean {near[0]!r}? T{there_are}" if near else f"t{there_are}"
+
+
+def is_amount(value: object) -> bool:
+    """A number that is finite and not negative."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and math.isfinite(value) and value >= 0  # type: ignore[arg-type, operator]

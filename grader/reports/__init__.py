@@ -20,6 +20,7 @@ from grader.reports.report import Report
 from grader.result import error, json_file
 from grader.result.error import ErrorResult
 from grader.result.result import Result
+from grader.result.visible import View
 
 __all__ = ["FORMATS", "ErrorReport", "Format", "Report", "read", "render"]
 
@@ -47,7 +48,7 @@ FORMATS: Final[Mapping[str, Format]] = {
     "terminal": Format("terminal", "for reading in a terminal"),
     "html": Format("page.html", "one self-contained page: picture, plots, animation, verdicts"),
     "markdown": Format("markdown", "a GitHub step summary, a comment, a release's text"),
-    "csv": Format("csv", "one row a result, for a spreadsheet", takes_several=True),
+    "csv": Format("csv", "one row a result, for a teacher's spreadsheet", takes_several=True),
     "junit": Format("junit", "JUnit XML for GitLab, Jenkins and GitHub actions"),
     "gradescope": Format("gradescope", "Gradescope's results.json"),
     "classroom50": Format("classroom50", "Classroom 50's result.json"),
@@ -58,11 +59,12 @@ FORMATS: Final[Mapping[str, Format]] = {
 }
 
 
-def read(path: Path, checks: Sequence[str] = ()) -> Report | ErrorReport:
+def read(path: Path, checks: Sequence[str] = (), view: View = "student") -> Report | ErrorReport:
     """Read a result file or an error file.
 
     Args:
         checks: the names of the exercise's checks, for errors; see `ErrorReport`.
+        view: who looks.
 
     Raises:
         UsageError: it cannot be read or is neither.
@@ -72,7 +74,7 @@ def read(path: Path, checks: Sequence[str] = ()) -> Report | ErrorReport:
         made = json_file.made(ErrorResult.from_json, path, data)
         return ErrorReport(made, path.parent, checks, path)
     result = json_file.made(Result.from_file, path, data)
-    return Report(result, Beside(result, path.parent))
+    return Report(result, Beside(result, path.parent), view)
 
 
 def render(name: str, reports: Sequence[Report | ErrorReport]) -> str:

@@ -16,13 +16,16 @@ _STAGE = "Checks"
 
 def render(report: Report) -> str:
     """Two lines of JSON: how to show the checks, and the scores. Nothing may be printed after."""
+    checks: dict[str, Any] = {
+        verdict.check: {"passed": True}
+        if verdict.passed
+        else {"passed": False, "hint": _hint(word(verdict), report.led_lines(verdict))}
+        for verdict in report.verdicts
+    }
+    if report.not_shown:
+        checks[report.not_shown_name] = {"passed": False, "hint": report.not_shown}
     return _lines(
-        {
-            verdict.check: {"passed": True}
-            if verdict.passed
-            else {"passed": False, "hint": _hint(word(verdict), report.led_lines(verdict))}
-            for verdict in report.verdicts
-        },
+        checks,
         {verdict.check: text.number(verdict.score) for verdict in report.verdicts},
     )
 

@@ -26,7 +26,7 @@ def render(report: Report) -> str:
         UsageError: the environment is not the one that Classroom 50 gives to an autograder.
     """
     points = whole_points(report.verdicts)
-    tests = [
+    tests: list[dict[str, Any]] = [
         {
             "test-name": verdict.check,
             "passed": verdict.passed,
@@ -40,6 +40,9 @@ def render(report: Report) -> str:
             report.verdicts, points.scores, points.max_scores, strict=True
         )
     ]
+    if report.not_shown:
+        left_out = {"test-name": report.not_shown_name, "passed": False, "score": 0, "max-score": 0}
+        tests.append({**left_out, "status": "not_shown", "message": report.not_shown})
     return _document(points, tests)
 
 

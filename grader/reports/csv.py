@@ -1,4 +1,4 @@
-"""CSV: one row a submission, so that the results of a class make one table."""
+"""CSV: one row a submission, so that the results of a class make one table, for their teacher."""
 
 from __future__ import annotations
 
@@ -36,7 +36,9 @@ def render_all(reports: Sequence[Report | ErrorReport]) -> str:
 
     Each check has two columns: its points under its name, and its verdict under `NAME verdict`. An
     exercise's checks that another does not have stay empty, and the points of what was not judged.
+    No student is shown a table of others, so it is whole.
     """
+    reports = [each.whole if isinstance(each, Report) else each for each in reports]
     results = [report for report in reports if isinstance(report, Report)]
     checks = list(dict.fromkeys(v.check for report in results for v in report.verdicts))
     header = [*_BEFORE]

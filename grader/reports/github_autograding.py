@@ -13,7 +13,7 @@ from grader.reports.report import Report
 
 def render(report: Report) -> str:
     """One line of base64."""
-    passed = all(verdict.passed for verdict in report.verdicts)
+    passed = all(verdict.passed for verdict in report.verdicts) and not report.not_shown
     tests = [
         _test(
             verdict.check,
@@ -24,6 +24,9 @@ def render(report: Report) -> str:
         )
         for verdict in report.verdicts
     ]
+    if report.not_shown:  # whatever came of them: else all would look passed
+        name = report.not_shown_name
+        tests.append(_test(name, name, "fail", 0, [report.not_shown]))
     return _document("pass" if passed else "fail", report.max_score, tests)
 
 

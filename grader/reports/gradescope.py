@@ -1,4 +1,8 @@
-"""Gradescope's `/autograder/results/results.json`. It knows passed and failed only."""
+"""Gradescope's `/autograder/results/results.json`. It knows passed and failed only.
+
+It has its own means to hide a test from students, and hides the total where it hides any; so what
+students are not to see is in the file, for their teachers.
+"""
 
 from __future__ import annotations
 
@@ -11,20 +15,22 @@ from grader.exercise.verdict import Verdict
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
 from grader.reports.report import Report
+from grader.result.visible import is_hidden
 
 _OUTPUT_LIMIT = 20_000
+_HIDDEN = {"after_due": "after_due_date", "never": "hidden"}
 
 
 def render(report: Report) -> str:
     """The JSON document; students see the picture and what their node printed above the tests."""
     document = {
-        "score": text.number(report.score),
+        "score": text.number(report.whole.score),
         "execution_time": text.number(report.run.wall_s),
         "output": _overview(report),
         "output_format": "html",
         "test_output_format": "text",
         "test_name_format": "text",
-        "tests": [_test(report, index, verdict) for index, verdict in enumerate(report.verdicts)],
+        "tests": _tests(report),
     }
     return json.dumps(document, indent=2) + "\n"
 
@@ -46,6 +52,21 @@ def render_error(report: ErrorReport) -> str:
     return json.dumps(document, indent=2) + "\n"
 
 
+def _tests(report: Report) -> list[dict[str, Any]]:
+    """All tests; each from the report that is for those who see it."""
+    is_open = report.view == "whole" or all(v.visible == "now" for v in report.whole.verdicts)
+    shown = iter(report.verdicts)
+    tests = []
+    for index, verdict in enumerate(report.whole.verdicts):
+        if report.view != "whole" and is_hidden(verdict.visible, report.view == "after_due"):
+            test = _test(report.whole, index, verdict) | {"visibility": _HIDDEN[verdict.visible]}
+        else:
+            test = _test(report, index, next(shown))
+            test |= {} if is_open else {"visibility": "visible"}
+        tests.append(test)
+    return tests
+
+
 def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
     lines = report.lines(verdict)
     if verdict.status == "not_judged":
@@ -64,7 +85,8 @@ def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
 
 def _overview(report: Report) -> str:
     parts = [f"<p><strong>{html.escape(report.first_line)}</strong></p>"]
-    parts += [f"<p>{html.escape(line)}</p>" for line in report.advice]
+    said = (*report.advice, *report.handed_in, report.not_shown)
+    parts += [f"<p>{html.escape(line)}</p>" for line in said if line]
     picture = pictures.canvas_uri(report)
     if picture:
         parts.append(f'<p><img src="{picture}" width="500" alt="The window at the end"></p>')

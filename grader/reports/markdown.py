@@ -25,6 +25,7 @@ def render(report: Report) -> str:
         f"Submission: {_quote(report.submission)}",
         _first(report),
         _table(report),
+        *(_quote(said) for said in (*report.handed_in, report.not_shown)),
     ]
     parts += [_seen(report, verdict) for verdict in report.verdicts if verdict.status == "failed"]
     parts += [_run(report), _output(report)]
@@ -64,7 +65,11 @@ def _table(report: Report) -> str:
             name += f" (waits for {_quote(', '.join(waited_for))})"
         points = score_text(verdict) + (" (partial credit)" if verdict.is_partial else "")
         sign = f"{_SIGNS[verdict.status]} {word(verdict)}"
+        if seen := report.seen_by_students(verdict):
+            name += f" ({seen})"
         rows.append(f"| {sign} | {_quote(title_of(verdict))} | {points} | {name} |")
+    if report.deducted:
+        rows.append(f"| | handed in late | -{text.points(report.deducted)} | |")
     rows.append(f"| | **total** | **{report.score_text.replace(' of ', ' / ')}** | |")
     return "\n".join(rows)
 

@@ -13,6 +13,7 @@ def render(report: Report) -> str:
     """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
     lines = ["<|--", "-What to do", _quote(report.first_line)]
     lines += map(_quote, report.advice)
+    lines += [f"Also: {_quote(said)}" for said in (*report.handed_in, report.not_shown) if said]
     for verdict in report.verdicts:
         lines += _verdict(report, verdict)
     lines += ["--|>", f"Grade :=>> {text.points(report.score)}"]

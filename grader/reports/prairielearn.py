@@ -35,14 +35,21 @@ def render_error(report: ErrorReport) -> str:
 
 
 def _document(report: Report, images: list[dict[str, str]], in_full: bool) -> dict[str, Any]:
+    nothing = {"name": report.not_shown_name, "points": 0, "max_points": 0}
+    left_out = [{**nothing, "message": report.not_shown}] if report.not_shown else []
     return {
         "gradable": True,
         "score": _share(report),
-        "message": text.clip("\n".join([report.first_line, *report.advice]), 1000),
+        "message": text.clip("\n".join(_said(report)), 1000),
         "output": text.clip_middle(report.output, _OUTPUT_LIMIT),
         "images": images,
-        "tests": [_test(report, verdict, in_full) for verdict in report.verdicts],
+        "tests": [_test(report, verdict, in_full) for verdict in report.verdicts] + left_out,
     }
+
+
+def _said(report: Report) -> list[str]:
+    lines = [report.first_line, *report.advice, *report.handed_in, report.not_shown]
+    return [line for line in lines if line]
 
 
 def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
@@ -59,5 +66,6 @@ def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
 
 def _share(report: Report) -> float:
     if report.max_score <= 0:
-        return 1.0 if all(verdict.passed for verdict in report.verdicts) else 0.0
+        all_passed = all(verdict.passed for verdict in report.verdicts)
+        return 1.0 if all_passed and not report.not_shown else 0.0
     return min(report.score / report.max_score, 1.0)

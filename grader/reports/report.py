@@ -12,10 +12,11 @@ from grader import text
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
-from grader.reports import origin, readable
+from grader.reports import origin, readable, wording
 from grader.reports.beside import Beside, StillInMemory
-from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, all_passed, title_of, where, word
+from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, title_of, where, word
 from grader.result.result import Result
+from grader.result.visible import View, as_seen
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
@@ -45,52 +46,77 @@ class Point:
 
 
 class Report:
-    """A result to be shown.
+    """A result to be shown, to its student if nothing else is said.
 
     Every text in it is plain (see `text.plain`), so a format only has to quote by its own rules.
 
     Args:
         result: the result.
         beside: the picture, the recordings and the output.
+        view: who looks; what he is not to see is nowhere in the report.
 
     Attributes:
-        exercise, submission, score, max_score, run, varied_runs: those of the result.
+        exercise, submission, max_score, run, varied_runs: those of the result.
+        score: that of the result; after what lateness costs, where no check is left out of it.
+        deducted: what is taken off for that in `score`.
         verdicts: those of the result, in its order, as they are shown: no text is longer than
             anybody reads, and no two checks have the same name.
         origin: sentences about where the result comes from; none where it does not tell.
         diagnosis: that of the result, with no text longer than anybody reads; None for none.
-        beside: as above.
+        not_shown: a sentence on the checks that are left out; '' for none.
+        not_shown_name: what formats call them that know only checks.
+        handed_in: sentences on whose it is, and what lateness costs; none where nobody has said it.
+        beside, view: as above.
     """
 
-    def __init__(self, result: Result, beside: Beside) -> None:
-        shown: Result = text.plain_all(result, readable.LOOKED_AT)
+    def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
+        shown: Result = text.plain_all(as_seen(result, view), readable.LOOKED_AT)
+        self._result = result
         self.beside = beside
+        self.view = view
         self.exercise = readable.line(shown.exercise) or "(no name)"
         self.submission = readable.line(shown.submission) or "(no name)"
-        self.score = float(shown.score)
+        self.score = float(shown.score if shown.not_shown else shown.final)
+        self.deducted = round(float(shown.score) - self.score, 2)
         self.max_score = float(shown.max_score)
         self.run = readable.few_flags(shown.run)
         self.varied_runs = tuple(map(readable.few_flags, shown.varied_runs))
         self.origin = origin.sentences(shown.provenance) if shown.provenance else []
-        names = readable.distinct([text.one_line(verdict.check) for verdict in shown.verdicts])
+        *names, self.not_shown_name = readable.distinct(
+            [*(text.one_line(verdict.check) for verdict in shown.verdicts), "not shown"]
+        )
+        self._left_out = shown.not_shown
+        self.not_shown = wording.not_shown(shown.not_shown)
+        self.handed_in = list(map(readable.line, wording.handed_in(shown)))
         self.verdicts = tuple(map(readable.of_verdict, shown.verdicts, names))
         self.diagnosis = None if shown.diagnosis is None else readable.of_diagnosis(shown.diagnosis)
         self._waits = dict(zip(names, _waits(shown.verdicts), strict=True))
 
     @classmethod
-    def of(cls, result: Result, folder: Path, recordings: Recordings) -> Self:
+    def of(
+        cls, result: Result, folder: Path, recordings: Recordings, view: View = "student"
+    ) -> Self:
         """The report of a result that has just been made, and goes into a folder."""
-        return cls(result, StillInMemory(result, folder, recordings))
+        return cls(result, StillInMemory(result, folder, recordings), view)
 
     @classmethod
-    def read(cls, path: Path) -> Self:
+    def read(cls, path: Path, view: View = "student") -> Self:
         """Read a result file.
 
         Raises:
             UsageError: it cannot be read or is no result.
         """
         result = Result.read(path)
-        return cls(result, Beside(result, path.parent))
+        return cls(result, Beside(result, path.parent), view)
+
+    @cached_property
+    def whole(self) -> Report:
+        """The same for a teacher."""
+        return self if self.view == "whole" else Report(self._result, self.beside, "whole")
+
+    def seen_by_students(self, verdict: Verdict) -> str:
+        """For a teacher, what of a verdict students see; '' for all of it, and for students."""
+        return wording.SEEN_BY_STUDENTS.get(verdict.visible, "") if self.view == "whole" else ""
 
     @property
     def folder(self) -> Path:
@@ -188,7 +214,7 @@ class Report:
         first = self.first_to_mend
         if first is not None:
             return text.one_line(first.rationale) or f"{first.check}: {word(first)}"
-        return f"Nothing to mend: {all_passed(len(self.verdicts))}"
+        return wording.nothing_to_mend(len(self.verdicts), self._left_out)
 
     @property
     def first_line(self) -> str:

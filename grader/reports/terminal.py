@@ -71,6 +71,8 @@ def show(report: Report, console: Console) -> None:
     )
     for flag in run.flags:
         console.print(_text(f"Note: {flag}"))
+    for said in filter(None, (*report.handed_in, report.not_shown)):
+        console.print(_text(said))
     console.print(_text(f"Score: {report.score_text}", "bold"))
 
 
@@ -103,7 +105,7 @@ def _checks(report: Report, console: Console) -> None:
     """A line for each check that was judged, and one for all that wait for the same."""
     judged = [verdict for verdict in report.verdicts if not report.waited_for(verdict)]
     if judged:
-        console.print(_table(judged, console.width))
+        console.print(_table(report, judged, console.width))
     sign, color = _MARKS["not_judged"]
     for titles, verdicts in report.waiting.items():
         since = " and ".join(f"“{title}”" for title in titles)
@@ -115,12 +117,12 @@ def _checks(report: Report, console: Console) -> None:
         console.print(grid)
 
 
-def _table(verdicts: Sequence[Verdict], width: int) -> Table:
+def _table(report: Report, verdicts: Sequence[Verdict], width: int) -> Table:
     """A check's name and notes stand beside its title, or are left out where there is no room.
 
     Where there is none for the titles either, they are behind it: all is wrapped then.
     """
-    rows = [_row(verdict) for verdict in verdicts]
+    rows = [_row(verdict, report.seen_by_students(verdict)) for verdict in verdicts]
     widest = [max(cell.cell_len for cell in column) for column in zip(*rows, strict=True)]
     beside = sum(widest) + 2 * len(widest) <= width
     alone = not beside and sum(widest[:-1]) + 2 * len(widest[:-1]) <= width
@@ -134,11 +136,13 @@ def _table(verdicts: Sequence[Verdict], width: int) -> Table:
     return table
 
 
-def _row(verdict: Verdict) -> tuple[Text, Text, Text, Text]:
+def _row(verdict: Verdict, seen: str) -> tuple[Text, Text, Text, Text]:
     sign, color = _MARKS[verdict.status]
     notes = [_text(verdict.check, "dim")] if verdict.title else []
     if verdict.is_partial:
         notes.append(_text("partial credit", "yellow"))
+    if seen:
+        notes.append(_text(seen, "dim"))
     said = Text(f" {sign} {word(verdict)}", color)
     return (
         said,

@@ -42,12 +42,24 @@ class HandedIn:
         when = None if at is None else at.isoformat()
         return cls(id, name, attempt, when, late.late_s, late.days, late.points)
 
+    def by(self, policy: LatePolicy | None) -> Self:
+        """The same hand-in by what another exercise, or another state of it, says."""
+        at = None if self.at is None else datetime.fromisoformat(self.at)
+        return type(self).of(self.id, self.name, self.attempt, at, policy)
+
     def to_json(self) -> dict[str, Any]:
         """As the result file holds it."""
         return asdict(self)
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What a result file holds; it follows the schema."""
+        """What a result file holds; it follows the schema.
+
+        Raises:
+            ValueError: its time is none, or has no zone.
+        """
+        at = data["at"]
+        if at is not None and datetime.fromisoformat(at).utcoffset() is None:
+            raise ValueError(f"is damaged: handed_in.at has no time zone: {at!r}")
         whole = {key: int(data[key]) for key in ("attempt", "days")}
         return cls(**{**data, **whole})

@@ -1,0 +1,174 @@
+"""What exercise.yaml says of who sees what, of late hand-ins, and of each student's own starts."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+import yaml
+
+from grader.errors import ExerciseError
+from grader.exercise.late import LatePolicy
+from grader.exercise.loading import load_exercise
+from grader.exercise.sheet import Start, sheet
+from grader.scenes import load_scene
+from tests.grader.testing import exercises
+
+NAME = "turtlesim_challenge"
+
+
+def loaded(tmp_path, text):
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"exercise: {NAME}\n{text}")
+    return load_exercise(path)
+
+
+def test_what_is_not_said_shows_everything_and_costs_nothing():
+    exercise = load_exercise(NAME)
+    assert (dict(exercise.visible), exercise.late) == ({}, None)
+
+
+def test_visible_names_checks_and_late_says_when_and_how_much(tmp_path):
+    exercise = loaded(
+        tmp_path,
+        "visible: {rate: points_only, edge: after_due}\n"
+        "late: {due: 2026-11-30T23:59:00+01:00, grace_min: 10, per_day: 10, most: 50}\n",
+    )
+    assert exercise.visible == {"rate": "points_only", "edge": "after_due"}
+    due = datetime(2026, 11, 30, 22, 59, tzinfo=UTC)
+    assert exercise.late == LatePolicy(due, 10, 10, 50)
+
+
+@pytest.mark.parametrize("due", ["2026-11-30T23:59+01:00", "'2026-11-30 22:59Z'"])
+def test_a_due_time_may_be_written_as_people_write_it(tmp_path, due):
+    late = loaded(tmp_path, f"late: {{due: {due}}}").late
+    assert late is not None
+    assert late.due == datetime(2026, 11, 30, 22, 59, tzinfo=UTC)
+    assert (late.grace_min, late.per_day, late.most) == (0, 0, 100)
+
+
+def test_they_are_part_of_the_rubric_and_not_of_what_a_run_depends_on(tmp_path):
+    original = load_exercise(NAME)
+    shown = loaded(tmp_path, "visible: {edge: never}")
+    late = loaded(tmp_path, "late: {due: 2026-11-30T23:59:00Z}")
+    assert shown.conditions == late.conditions == original.conditions
+    assert len({original.sha256, shown.sha256, late.sha256}) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "visible: never",
+            "line 2: visible: expected check names, each with one of now, after_due",
+        ),
+        (
+            "visible:\n  edgy: now",
+            "line 2: visible: no check is named 'edgy'; did you mean 'edge'?",
+        ),
+        ("visible:\n  edge: no", "line 3: visible: edge: expected one of now, after_due, points_o"),
+        (
+            "visible:\n  moves: never",
+            "line 3: visible: moves: never, but 'spiral', which is judged",
+        ),
+        (
+            "late: tomorrow",
+            "line 2: late: expected at least when it is due, e.g. {due: 2026-11-30T",
+        ),
+        ("late: {per_day: 1}", "line 2: late: expected at least when it is due"),
+        (
+            "late:\n  due: 2026-11-30T23:59:00",
+            "line 3: late: due: expected a date, a time and its ",
+        ),
+        ("late:\n  due: 2026-11-30", "its zone, e.g. 2026-11-30T23:59:00+01:00; found 2026-11-30"),
+        ("late:\n  due: soon", "line 3: late: due: expected a date, a time and its zone"),
+        ("late:\n  due: 5", "line 3: late: due: expected a date, a time and its zone"),
+        (
+            "late:\n  due: 2026-11-30T23:59:00Z\n  per_day: 10 %",
+            "line 4: late: per_day: expected a number of points from 0, e.g. 10; found '10 %'",
+        ),
+        ("late: {due: 2026-11-30T23:59:00Z, most: -1}", "late: most: expected a number of points"),
+        ("late: {due: 2026-11-30T23:59:00Z, grace: 1}", "did you mean 'grace_min'?"),
+        ("varied_runs:\n  per_student: 1", "line 3: varied_runs: per_student: expected true or "),
+    ],
+)
+def test_a_slip_is_told_with_file_and_line(tmp_path, text, words):
+    with pytest.raises(ExerciseError) as error:
+        loaded(tmp_path, text)
+    assert words in error.value.message
+    assert "mine.yaml, line " in error.value.message
+
+
+def test_a_check_is_not_shown_before_one_that_it_waits_for(tmp_path):
+    """For "not judged" would tell of the other."""
+    for one, other in (("never", "now"), ("never", "after_due"), ("after_due", "points_only")):
+        with pytest.raises(ExerciseError, match=rf"commands: {one}, but 'far'"):
+            load_exercise(
+                exercises.write(tmp_path / "ahead", visible={"commands": one, "far": other})
+            )
+    for one, other in (("points_only", "now"), ("after_due", "never"), ("never", "never")):
+        load_exercise(exercises.write(tmp_path / "ahead", visible={"commands": one, "far": other}))
+
+
+def test_each_student_has_starts_of_his_own_and_always_the_same(tmp_path):
+    exercise = loaded(tmp_path, "varied_runs: {per_student: true}")
+    assert exercise.seed_for("4711") == 1447263520
+    assert exercise.seed_for("Zoe\u0308") == exercise.seed_for("Zo\u00eb")
+    starts = [exercise.starts(exercise.seed_for(student)) for student in ("4711", "4712")]
+    assert starts[0] != starts[1]
+    reseeded = loaded(tmp_path, "varied_runs: {per_student: true, seed: 99}")
+    assert reseeded.seed_for("4711") != exercise.seed_for("4711")
+
+
+def test_without_that_all_start_as_the_exercise_says(tmp_path):
+    assert load_exercise(NAME).seed_for("4711") is None
+    assert loaded(tmp_path, "varied_runs: {per_student: false}").seed_for("4711") is None
+
+
+def test_only_another_run_follows_a_change_of_it(tmp_path):
+    own = loaded(tmp_path, "varied_runs: {per_student: true}")
+    assert own.conditions["varied_runs.per_student"] == 1
+    assert "varied_runs.per_student" not in load_exercise(NAME).conditions
+
+
+def sheet_of(exercise):
+    text = sheet(exercise, load_scene(exercise.scene), Start("node.py", "", "grader run mine"))
+    return " ".join(text.split())
+
+
+def test_the_sheet_tells_of_hidden_checks_no_more_than_their_points(tmp_path):
+    exercise = load_exercise(exercises.write(tmp_path / "ahead", visible={"far": "never"}))
+    text = sheet_of(exercise)
+    assert "## What it is worth: 10 points" in text
+    assert "| 4 | It sends commands | `commands` | | 6 | a check that no report shows | |" in text
+    assert "far" not in text
+    assert "It drives for half a metre" not in text
+
+
+def test_the_sheet_tells_what_is_shown_later_or_in_part(tmp_path):
+    seen = {"commands": "points_only", "far": "after_due"}
+    text = sheet_of(load_exercise(exercises.write(tmp_path / "ahead", visible=seen)))
+    assert "| 6 | It drives for half a metre | `far` |" in text
+    assert "in no report and no total: `far`." in text
+    assert "not what was found: `commands`." in text
+
+
+def test_the_sheet_tells_what_lateness_costs(tmp_path):
+    late = {"due": datetime(2026, 11, 30, 23, 59, tzinfo=UTC), "grace_min": 10, "per_day": 2}
+    text = sheet_of(load_exercise(exercises.write(tmp_path / "ahead", late=late)))
+    assert (
+        "It is due on 2026-11-30 at 23:59:00 (UTC+00:00). Another 10 minutes cost nothing. From "
+        "then on each started day costs 2 points, 10 at most; nobody has fewer than 0 points."
+    ) in text
+    free = {"due": late["due"] + timedelta(days=1)}
+    text = sheet_of(load_exercise(exercises.write(tmp_path / "ahead", late=free)))
+    assert "To hand it in later costs no points." in text
+
+
+def test_an_edited_copy_can_take_back_what_its_original_says(tmp_path):
+    late = {"due": datetime(2026, 11, 30, 23, 59, tzinfo=UTC)}
+    folder = exercises.write(tmp_path / "ahead", late=late, visible={"far": "never"})
+    copy = folder / "open.yaml"
+    copy.write_text(yaml.safe_dump({"exercise": "ahead", "late": None, "visible": {}}))
+    exercise = load_exercise(copy)
+    assert (dict(exercise.visible), exercise.late) == ({}, None)
