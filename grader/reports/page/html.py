@@ -6,8 +6,6 @@ content security policy lets nothing run but the page's own script.
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import math
 from dataclasses import dataclass
 from functools import cache
@@ -17,13 +15,12 @@ from weakref import WeakKeyDictionary
 
 import jinja2
 import numpy as np
-from markupsafe import Markup
 
 from grader import text
 from grader.recording.recording import Recording
 from grader.reports import wording
 from grader.reports.error_report import ErrorReport
-from grader.reports.page.compiled import BesideTheTemplates
+from grader.reports.page import templating
 from grader.reports.page.pictures import canvas_uri, window_uri
 from grader.reports.page.pins import RADIUS_PX, Pin, pins
 from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
@@ -151,29 +148,15 @@ def render_error(report: ErrorReport) -> str:
 
 @cache
 def _environment() -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(_TEMPLATES),
-        bytecode_cache=BesideTheTemplates(_TEMPLATES),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    script = (_TEMPLATES / "page.js").read_text(encoding="utf-8")
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    environment.filters.update(points=text.points, clip=text.clip)
-    environment.globals.update(
+    made = templating.environment(_TEMPLATES / "page.js")
+    made.globals.update(
         all_passed=wording.all_passed,
         see_first=wording.SEE_FIRST,
-        counted=text.count,
         place=text.place,
         word=wording.word,
         score_text=wording.score_text,
-        style=Markup((_TEMPLATES / "page.css").read_text(encoding="utf-8")),
-        script=Markup(script),
-        script_digest=digest,
     )
-    return environment
+    return made
 
 
 @dataclass(frozen=True)
