@@ -149,15 +149,16 @@ class Copy:
         """So many bytes of the answer."""
         waiting = select.poll()
         waiting.register(self._answers, select.POLLIN)
-        found = bytearray()
-        while len(found) < size:
+        found = bytearray(size)
+        rest = memoryview(found)
+        while rest:
             left_s = deadline - time.monotonic()
             if left_s <= 0 or not waiting.poll(left_s * 1000):
                 raise _Slow(f"did not come to an end in {self._limits.wall_s:g} s")
-            part = os.read(self._answers, min(size - len(found), 2**20))
-            if not part:
+            count = os.readv(self._answers, [rest])
+            if not count:
                 raise EOFError
-            found += part
+            rest = rest[count:]
         return bytes(found)
 
     def _why_it_ended(self) -> LimitHit:

@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import Any
 
 from rosbags.interfaces import Connection
-from rosbags.rosbag2 import Reader
 from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
+from grader.recording import rosbag2_reader
 from grader.recording.rosbag2_writer import Record, Rosbag2Writer
 from grader.scenes.message_types import types_of
-from grader.scenes.scene import Message, Scene, Trace
+from grader.scenes.scene import Scene, Trace
 
 
 def write(trace: Trace, scene: Scene, folder: Path) -> Path:
@@ -54,31 +54,32 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
     return folder / f"{folder.name}.mcap"
 
 
-def read(folder: Path, scene: Scene, ticks: int) -> Trace:
+def read(mcap: Path, scene: Scene, ticks: int) -> Trace:
     """Read a bag that `write` has written; `ticks` is how many were recorded.
 
     Raises:
         RecordingError: it is damaged, or is another one.
     """
-    types = types_of(scene.message_definitions())
+    folder = mcap.parent
     try:
-        with Reader(folder) as reader:
-            topics = {c.topic: c.msgtype for c in reader.connections}
-            found = [
-                Message(
-                    time_ns // scene.tick_ns,
-                    c.topic,
-                    c.msgtype,
-                    types.deserialize_cdr(data, c.msgtype),
-                )
-                for c, time_ns, data in reader.messages()
-            ]
+        channels = rosbag2_reader.read(mcap, scene.tick_ns)
+    except MemoryError:  # a limit
+        raise
     except Exception as error:  # where a bag is damaged, rosbags may raise anything
         raise RecordingError(f"cannot read the bag in {folder}: {_brief(error)}") from error
     try:
-        return scene.from_messages(found, topics, ticks)
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        return scene.from_channels(channels, ticks)
+    except MemoryError:
+        raise
+    except Exception as error:  # and where a message is, too
         raise RecordingError(f"the bag in {folder} holds no recording: {_brief(error)}") from error
+
+
+def prepare(scene: Scene) -> None:
+    """Make what reading any bag of a scene needs, once: a copy of this process has it then."""
+    types = types_of(scene.message_definitions())
+    for msgtype in scene.message_definitions():
+        types.get_msgdef(msgtype)
 
 
 def cdr(types: Typestore, message: Any, msgtype: str) -> bytes:

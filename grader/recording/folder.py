@@ -23,9 +23,9 @@ import hashlib
 import json
 import re
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -75,6 +75,8 @@ SIZES = {
 MOST_VARIED_RUNS = 100
 #: Of reading one bag.
 READING = Limits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
+#: What begins an answer of the process that reads bags if it is no trace, but says why.
+_ERROR = b"!"
 #: Where the files are written before they come into the folder.
 UNFINISHED = ".unfinished"
 
@@ -154,8 +156,8 @@ def load(path: Path) -> Recording:
     Raises:
         RecordingError: it is missing, damaged, or something else.
     """
-    folder = _folder(path)
-    return _load(folder, _facts(folder))
+    (recording,) = _loaded([_told(_folder(path))])
+    return recording
 
 
 def load_all(path: Path) -> Recordings:
@@ -165,10 +167,9 @@ def load_all(path: Path) -> Recordings:
         RecordingError: one of them is missing, damaged, or something else.
     """
     folder = _folder(path)
-    facts = _facts(folder)
-    nominal = _load(folder, facts)
+    first = _told(folder)
     found = _varied(folder)
-    count = max(facts["varied_runs"], len(found))
+    count = max(first.facts["varied_runs"], len(found))
     lost = next((number for number in range(1, count + 1) if number not in found), None)
     if lost is not None:
         raise RecordingError(f"{folder} is incomplete: its folder varied_{lost} is missing")
@@ -176,8 +177,9 @@ def load_all(path: Path) -> Recordings:
         raise RecordingError(
             f"{folder} has {count} varied runs; expected {MOST_VARIED_RUNS} at most"
         )
-    varied = (load(folder / f"varied_{number}") for number in range(1, count + 1))
-    return Recordings(nominal, tuple(varied))
+    varied = (_told(folder / f"varied_{number}") for number in range(1, count + 1))
+    nominal, *others = _loaded([first, *varied])
+    return Recordings(nominal, tuple(others))
 
 
 def scene_of(folder: Path) -> str:
@@ -332,7 +334,24 @@ def _facts(folder: Path) -> dict[str, Any]:
     return facts
 
 
-def _load(folder: Path, facts: dict[str, Any]) -> Recording:
+@dataclass(frozen=True)
+class _Told:
+    """What is known of a recording before its bag is read.
+
+    Attributes:
+        facts: of run.json and circumstances.json.
+    """
+
+    folder: Path
+    facts: dict[str, Any]
+    run: Run
+    scene: Scene
+    output: str
+
+
+def _told(folder: Path) -> _Told:
+    """What the files beside the bag tell, which has its checksum."""
+    facts = _facts(folder)
     try:
         digest = _sha256(folder / BAG)
         output = (folder / OUTPUT).read_bytes().decode("utf-8", "surrogatepass")
@@ -347,17 +366,52 @@ def _load(folder: Path, facts: dict[str, Any]) -> Recording:
         )
     scene = _scene(folder, facts.get("scene", FIRST_SCENE))
     _must_agree(folder, "ticks", run.ticks, round(run.simulated_s * 1e9 / scene.tick_ns))
-    trace = _read_bag(folder, scene, run.ticks)
-    _must_agree(folder, "trace_sha256", run.trace_sha256, trace.sha256())
+    return _Told(folder, facts, run, scene, output)
+
+
+def _loaded(found: Sequence[_Told]) -> list[Recording]:
+    """Recordings with what is in their bags, of which nobody knows how much they unpack to.
+
+    One copy of this process reads them all, each within the limits.
+    """
+    bag = _bag()
+    for scene in {told.scene.name: told.scene for told in found}.values():
+        bag.prepare(scene)
+
+    def answer(number: int) -> bytes:
+        told = found[number]
+        try:
+            trace = bag.read(told.folder / BAG, told.scene, told.run.ticks)
+            return told.scene.encode(trace)
+        except RecordingError as error:
+            return _ERROR + error.message.encode("utf-8", "backslashreplace")
+
+    with limited.Copy(answer, READING) as copy:
+        return [_recording(told, _trace(told, copy, n)) for n, told in enumerate(found)]
+
+
+def _trace(told: _Told, copy: limited.Copy, number: int) -> Trace:
+    try:
+        answer = copy.ask(number)
+    except limited.LimitHit as hit:
+        raise RecordingError(f"the bag in {told.folder} cannot be read: reading it {hit}") from None
+    if answer.startswith(_ERROR):
+        raise RecordingError(answer.removeprefix(_ERROR).decode())
+    return told.scene.decode(answer)
+
+
+def _recording(told: _Told, trace: Trace) -> Recording:
+    facts = told.facts
+    _must_agree(told.folder, "trace_sha256", told.run.trace_sha256, trace.sha256())
     return Recording(
         trace=trace,
-        run=run,
+        run=told.run,
         topics=tuple(PublishedTopic(**topic) for topic in facts["topics"]),
-        output=output,
+        output=told.output,
         start=Start(**facts["start"]) if facts["start"] else None,
-        scene=scene.name,
+        scene=told.scene.name,
         provenance=Provenance.from_json(facts[PROVENANCE]) if facts[PROVENANCE] else None,
-        conduct=_conduct(folder / CONDUCT),
+        conduct=_conduct(told.folder / CONDUCT),
     )
 
 
@@ -369,26 +423,6 @@ def _conduct(path: Path) -> Conduct:
         return Conduct.from_json(_read_json(path))
     except ValueError as error:
         raise RecordingError(f"{path} is damaged: {error}") from None
-
-
-def _read_bag(folder: Path, scene: Scene, ticks: int) -> Trace:
-    """The trace in a bag, of which nobody knows how much it unpacks to."""
-    bag = _bag()
-    told = b"!"
-
-    def work() -> bytes:
-        try:
-            return scene.encode(bag.read(folder, scene, ticks))
-        except RecordingError as error:
-            return told + error.message.encode("utf-8", "backslashreplace")
-
-    try:
-        answer = limited.call(work, READING)
-    except limited.LimitHit as hit:
-        raise RecordingError(f"the bag in {folder} cannot be read: reading it {hit}") from None
-    if answer.startswith(told):
-        raise RecordingError(answer.removeprefix(told).decode())
-    return scene.decode(answer)
 
 
 def _must_agree(folder: Path, key: str, told: object, found: object) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
+from grader.scenes.channel import Channel
 from grader.scenes.view import Pictures, Plane, View
 
 #: Why a run is over: it came to rest, nothing ever moved, the submission is gone, time is up.
@@ -266,16 +267,14 @@ class Scene(Protocol):
     def to_messages(self, trace: Trace) -> list[Message]:
         """A trace as messages, by tick."""
 
-    def from_messages(
-        self, messages: Sequence[Message], topics: Mapping[str, str], ticks: int
-    ) -> Trace:
-        """The trace of a bag's messages and topics (with types), both in the bag's order.
+    def from_channels(self, channels: Sequence[Channel], ticks: int) -> Trace:
+        """The trace of a bag's channels, each with a topic of its own, in the bag's order.
 
         Args:
             ticks: how many were recorded.
 
         Raises:
-            ValueError, KeyError, TypeError, AttributeError: they are not from `to_messages`.
+            Exception: they are not from `to_messages`; also rosbags' own.
         """
 
     def scenario(self, trace: Trace) -> dict[str, Any]:

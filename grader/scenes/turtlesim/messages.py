@@ -14,21 +14,23 @@
 from __future__ import annotations
 
 import json
-from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from grader.scenes.channel import Channel
 from grader.scenes.message_types import types_of
 from grader.scenes.scene import Message
 from grader.scenes.turtlesim import bounds
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace
 from turtlesim_py.world.arena import TICK_NS
-from turtlesim_py.world.events import CmdVel, Event, EventError, Vector, from_json, to_json
+from turtlesim_py.world.events import CmdVel, Event, EventError, from_json, to_json
 from turtlesim_py.world.trajectory import Trajectory
+
+Value = TypeVar("Value")
 
 POSE, COLOR, TWIST = "turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"
 STRING, LOG, IMAGE = "std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"
@@ -52,10 +54,11 @@ DEFINITIONS = {
     IMAGE: "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
     "uint8 is_bigendian\nuint32 step\nuint8[] data\n",
 }
-#: A pose and a colour as CDR: the mark of little-endian plain CDR, then the fields as they are.
+#: A pose, a colour and a command as CDR: the mark of little-endian plain CDR, then the fields.
 _CDR_MARK = (0, 1, 0, 0)
 _POSE_CDR = np.dtype([("mark", "u1", 4), ("fields", "<f4", 5)])
 _COLOR_CDR = np.dtype([("mark", "u1", 4), ("fields", "u1", 3)])
+_TWIST_CDR = np.dtype([("mark", "u1", 4), ("fields", "<f8", 6)])
 EVENTS, LOGS = "/turtlesim/events", "/rosout"
 PATH, WINDOW = "/turtlesim/path", "/turtlesim/window"
 ENCODINGS = {PATH: "rgba8", WINDOW: "rgb8"}
@@ -138,67 +141,87 @@ def _made(msgtype: str, *fields: Any) -> Any:
     return types_of(DEFINITIONS).types[msgtype](*fields)
 
 
-# Messages to a trace --------------------------------------------------------------------------
+# Channels to a trace --------------------------------------------------------------------------
 
 
-def from_messages(
-    messages: Sequence[Message], bag_topics: Mapping[str, str], ticks: int
-) -> TurtleTrace:
-    """The trace that messages in order say; `bag_topics` with their types, in order.
+def from_channels(channels: Sequence[Channel], ticks: int) -> TurtleTrace:
+    """The trace that a bag's channels say, each of them with a topic of its own.
 
     Raises:
-        ValueError, KeyError, TypeError, AttributeError: they are not what `to_messages` makes.
+        ValueError, KeyError, TypeError: they are not what `to_messages` makes.
+        rosbags.serde.SerdeError: a message cannot be read.
     """
-    events: list[Event] = []
-    logs: list[Log] = []
-    pictures: dict[str, Pixels] = {}
-    readings: dict[str, list[tuple[float, ...]]] = defaultdict(list)
-    for tick, topic, msgtype, message in messages:
-        match msgtype:
+    by_topic = {channel.topic: channel for channel in channels}
+    events: list[tuple[int, Event]] = []
+    logs: list[tuple[int, Log]] = []
+    turtles: list[str] = []
+    for topic, channel in by_topic.items():
+        match channel.msgtype:
             case "turtlesim/msg/Pose":
-                pose = (message.x, message.y, message.theta)
-                speeds = (message.linear_velocity, message.angular_velocity)
-                readings[topic].append((tick, *pose, *speeds))
-            case "turtlesim/msg/Color":
-                readings[topic].append((tick, message.r, message.g, message.b))
+                turtles.append(topic.removeprefix("/").removesuffix("/pose"))
             case "geometry_msgs/msg/Twist":
-                events.append(_command(tick, topic, message))
+                events += zip(channel.places.tolist(), _commands(channel), strict=True)
             case "std_msgs/msg/String":
-                events.append(from_json(_object(message.data)))
+                events += zip(channel.places.tolist(), _inputs(channel), strict=True)
             case "rcl_interfaces/msg/Log":
-                logs.append(Log(tick, SEVERITIES[message.level], message.name, message.msg))
-            case "sensor_msgs/msg/Image":
-                pictures[topic] = _pixels(message, ENCODINGS[topic])
-            case _:
+                logs += zip(channel.places.tolist(), _logs(channel), strict=True)
+            case "turtlesim/msg/Color" if topic.endswith("/color_sensor"):
+                pass  # comes with the poses
+            case "sensor_msgs/msg/Image" if topic in ENCODINGS:
+                pass
+            case msgtype:
                 raise ValueError(f"a recording of turtlesim has no {msgtype} on {topic}")
-    turtles = [
-        topic.removeprefix("/").removesuffix("/pose")
-        for topic, msgtype in bag_topics.items()
-        if msgtype == POSE
-    ]
     trace = TurtleTrace(
         ticks=ticks,
-        events=tuple(events),
+        events=_in_order(events),
         trajectories={
-            name: _trajectory(*(readings[topic] for topic in topics(name))) for name in turtles
+            turtle: _trajectory(*(by_topic[topic] for topic in topics(turtle)))
+            for turtle in turtles
         },
-        logs=tuple(logs),
-        canvas=pictures[PATH],
-        window=pictures[WINDOW],
+        logs=_in_order(logs),
+        canvas=_picture(by_topic[PATH]),
+        window=_picture(by_topic[WINDOW]),
     )
     bounds.check(trace)
     return trace
 
 
-def _command(tick: int, topic: str, twist: Any) -> CmdVel:
-    turtle = topic.removeprefix("/").removesuffix("/cmd_vel")
-    return CmdVel(
-        tick=tick, turtle=turtle, linear=_vector(twist.linear), angular=_vector(twist.angular)
-    )
+def _in_order(found: list[tuple[int, Value]]) -> tuple[Value, ...]:
+    return tuple(value for _, value in sorted(found, key=lambda each: each[0]))
 
 
-def _vector(vector: Any) -> Vector:
-    return vector.x, vector.y, vector.z
+def _rows(channel: Channel, msgtype: str, layout: np.dtype[np.void]) -> npt.NDArray[Any]:
+    """The fields of all messages of a channel, (n, number of fields)."""
+    if channel.msgtype != msgtype:
+        raise ValueError(f"{channel.topic}: expected a {msgtype}, found a {channel.msgtype}")
+    rows = channel.rows(layout)
+    if (rows["mark"] != _CDR_MARK).any():
+        raise ValueError(f"{channel.topic}: a message is no plain little-endian CDR")
+    return np.asarray(rows["fields"])
+
+
+def _made_of(channel: Channel) -> Iterator[tuple[int, Any]]:
+    """The messages of a channel in the types of rosbags, with their ticks."""
+    types = types_of(DEFINITIONS)
+    for tick, data in zip(channel.ticks.tolist(), channel.messages(), strict=True):
+        yield tick, types.deserialize_cdr(data, channel.msgtype)
+
+
+def _commands(channel: Channel) -> Iterator[CmdVel]:
+    turtle = channel.topic.removeprefix("/").removesuffix("/cmd_vel")
+    rows = _rows(channel, TWIST, _TWIST_CDR)
+    for tick, (x, y, z, *turn) in zip(channel.ticks.tolist(), rows.tolist(), strict=True):
+        yield CmdVel(tick=tick, turtle=turtle, linear=(x, y, z), angular=tuple(turn))
+
+
+def _inputs(channel: Channel) -> Iterator[Event]:
+    for _, message in _made_of(channel):
+        yield from_json(_object(message.data))
+
+
+def _logs(channel: Channel) -> Iterator[Log]:
+    for tick, message in _made_of(channel):
+        yield Log(tick, SEVERITIES[message.level], message.name, message.msg)
 
 
 def _object(text: str) -> dict[str, Any]:
@@ -208,15 +231,19 @@ def _object(text: str) -> dict[str, Any]:
     return words
 
 
-def _trajectory(poses: list[tuple[float, ...]], colors: list[tuple[float, ...]]) -> Trajectory:
-    left = np.array(poses, dtype=np.float64).reshape(-1, 6)
-    right = np.array(colors, dtype=np.float64).reshape(-1, 4)
-    if not np.array_equal(left[:, 0], right[:, 0]):
-        raise ValueError(f"{len(left)} poses and {len(right)} colours do not belong together")
-    return Trajectory.of_rows(np.hstack([left, right[:, 1:]]))
+def _trajectory(poses: Channel, colors: Channel) -> Trajectory:
+    if not np.array_equal(poses.ticks, colors.ticks):
+        raise ValueError(f"{len(poses)} poses and {len(colors)} colours do not belong together")
+    found = _rows(poses, POSE, _POSE_CDR), _rows(colors, COLOR, _COLOR_CDR)
+    return Trajectory.of_rows(np.column_stack((poses.ticks, *found)).astype(np.float64))
 
 
-def _pixels(image: Any, encoding: str) -> Pixels:
+def _picture(channel: Channel) -> Pixels:
+    if channel.msgtype != IMAGE or len(channel) != 1:
+        found = f"{len(channel)} of {channel.msgtype}"
+        raise ValueError(f"{channel.topic}: expected one {IMAGE}, found {found}")
+    ((_, image),) = _made_of(channel)
+    encoding = ENCODINGS[channel.topic]
     if image.encoding != encoding:
         raise ValueError(f"a picture has the encoding {image.encoding!r}, expected {encoding!r}")
     pixels: Pixels = image.data.reshape(image.height, image.width, len(encoding) - 1)

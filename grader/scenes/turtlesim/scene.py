@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
+from grader.scenes.channel import Channel
 from grader.scenes.scene import (
     Endpoint,
     Hooks,
@@ -110,13 +111,11 @@ class Turtlesim:
 
         return messages.to_messages(TurtleTrace.of(made))
 
-    def from_messages(
-        self, found: Sequence[Message], topics: Mapping[str, str], ticks: int
-    ) -> Trace:
-        """The trace of a bag's messages; see `grader.scenes.turtlesim.messages`."""
+    def from_channels(self, channels: Sequence[Channel], ticks: int) -> Trace:
+        """The trace of a bag's channels; see `grader.scenes.turtlesim.messages`."""
         from grader.scenes.turtlesim import messages
 
-        return messages.from_messages(found, topics, ticks)
+        return messages.from_channels(channels, ticks)
 
     def scenario(self, made: Trace) -> dict[str, Any]:
         """The inputs, for `python -m turtlesim_py.scenario`."""

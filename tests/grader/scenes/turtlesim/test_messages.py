@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from grader.scenes.channel import Channel
 from grader.scenes.message_types import types_of
 from grader.scenes.scene import Message
 from grader.scenes.turtlesim import messages
@@ -38,6 +40,26 @@ def messages_of(trace: TurtleTrace) -> list[Message]:
     ]
 
 
+def channels_of(found: list[Message], trace: TurtleTrace) -> list[Channel]:
+    """Messages as the columns of a bag; also the topics that have none."""
+    types = types_of(messages.DEFINITIONS)
+    topics = dict(SCENE.bag_topics(trace)) | {m.topic: m.msgtype for m in found}
+    cdr = [
+        m.message
+        if isinstance(m.message, bytes)
+        else bytes(types.serialize_cdr(m.message, m.msgtype, little_endian=True))
+        for m in found
+    ]
+    ends = np.cumsum([len(data) for data in cdr])
+    begins, ticks = ends - [len(data) for data in cdr], np.array([m.tick for m in found])
+    made = []
+    for topic, msgtype in topics.items():
+        own = np.array([n for n, m in enumerate(found) if m.topic == topic], np.int64)
+        data = np.frombuffer(b"".join(cdr), np.uint8)
+        made.append(Channel(topic, msgtype, ticks[own], own, data, begins[own], ends[own]))
+    return made
+
+
 def said(text: str) -> Message:
     return Message(1, "/turtlesim/events", STRING, ros.std_msgs__msg__String(text))
 
@@ -60,8 +82,7 @@ def test_all_others_are_those_of_jazzy():
 @given(odd=odd_traces())
 @settings(deadline=None)
 def test_a_trace_comes_back_from_its_messages_bit_for_bit(odd):
-    topics = dict(SCENE.bag_topics(odd))
-    back = messages.from_messages(messages_of(odd), topics, odd.ticks)
+    back = messages.from_channels(channels_of(messages.to_messages(odd), odd), odd.ticks)
     assert_same_trace(back, odd)
 
 
@@ -98,32 +119,41 @@ def test_the_messages_stand_by_tick(trace):
         said("{}"),
         said('{"tick": "1", "op": "clear"}'),
         said('{"tick": 1, "op": "kill"}'),
-        Message(1, "/chatter", "std_msgs/msg/Int8", ros.std_msgs__msg__Int8(1)),
+        Message(1, "/chatter", "std_msgs/msg/Int8", b"\0\1\0\0\1"),
+        Message(1, "/turtle1/cmd_vel", "geometry_msgs/msg/Twist", b"\0\1\0\0" + bytes(40)),
+        Message(1, "/turtle1/cmd_vel", "geometry_msgs/msg/Twist", b"\0\0\0\0" + bytes(48)),
+        Message(1, "/turtle1/color", "turtlesim/msg/Color", b"\0\1\0\0" + bytes(3)),
+        Message(1, "/a/picture", "sensor_msgs/msg/Image", b"\0\1\0\0"),
     ],
 )
 def test_what_no_trace_says_is_refused(trace, strange):
     found = [strange, *messages_of(trace)]
     with pytest.raises(ValueError):
-        messages.from_messages(found, dict(SCENE.bag_topics(trace)), trace.ticks)
+        messages.from_channels(channels_of(found, trace), trace.ticks)
 
 
 def test_a_pose_without_its_colour_is_refused(trace):
-    topics = dict(SCENE.bag_topics(trace))
     found = messages_of(trace)
     last = max(n for n, message in enumerate(found) if message.msgtype == messages.COLOR)
     with pytest.raises(ValueError, match="100 poses and 99 colours do not belong together"):
-        messages.from_messages(found[:last] + found[last + 1 :], topics, trace.ticks)
+        messages.from_channels(channels_of(found[:last] + found[last + 1 :], trace), trace.ticks)
+
+
+def test_a_second_picture_is_refused(trace):
+    found = messages_of(trace)
+    with pytest.raises(ValueError, match="expected one sensor_msgs/msg/Image, found 2"):
+        messages.from_channels(channels_of([*found, found[-1]], trace), trace.ticks)
 
 
 @pytest.mark.parametrize("topic", ["/turtlesim/path", "/turtlesim/window"])
 def test_a_missing_picture_is_refused(trace, topic):
     found = [message for message in messages_of(trace) if message.topic != topic]
     with pytest.raises(KeyError, match=topic):
-        messages.from_messages(found, {}, trace.ticks)
+        messages.from_channels(channels_of(found, trace), trace.ticks)
 
 
 def test_a_picture_of_another_encoding_is_refused(trace):
     found = messages_of(trace)
     found[-1].message.encoding = "mono8"
     with pytest.raises(ValueError, match="'mono8', expected 'rgb8'"):
-        messages.from_messages(found, {}, trace.ticks)
+        messages.from_channels(channels_of(found, trace), trace.ticks)
