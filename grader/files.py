@@ -14,6 +14,7 @@ import stat
 import uuid
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from grader import locks
 from grader.errors import UsageError
@@ -176,6 +177,20 @@ def put(path: Path, content: bytes) -> None:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
 
 
+@contextlib.contextmanager
+def putting(path: Path) -> Iterator[BinaryIO]:
+    """`put` for what is too long to hold: a file to write to, in its place once the context ends.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    try:
+        with _beside(path) as unfinished, unfinished.open("wb") as file:
+            yield file
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
 def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] = ()) -> None:
     """Find out whether `put` will work, without changing anything.
 
@@ -250,11 +265,18 @@ def _mode(path: Path) -> int | None:
 
 
 def _write_beside(path: Path, data: bytes) -> None:
+    with _beside(path) as unfinished:
+        unfinished.write_bytes(data)
+
+
+@contextlib.contextmanager
+def _beside(path: Path) -> Iterator[Path]:
+    """An empty file beside the path, which takes its name if nothing goes wrong."""
     unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         unfinished.touch(exist_ok=False)  # not through a link that somebody has laid there
-        unfinished.write_bytes(data)
+        yield unfinished
         unfinished.replace(path)
     except BaseException:
         with contextlib.suppress(OSError):
