@@ -47,7 +47,7 @@ def render_all(reports: Sequence[Report | ErrorReport]) -> str:
         header += [column, f"{column} verdict"]
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([_cell(title) for title in (*header, *_AFTER)])
+    writer.writerow([cell(title) for title in (*header, *_AFTER)])
     for each in reports:
         writer.writerow(
             _row(each, checks) if isinstance(each, Report) else _error_row(each, checks)
@@ -58,8 +58,8 @@ def render_all(reports: Sequence[Report | ErrorReport]) -> str:
 def _row(report: Report, checks: list[str]) -> list[Any]:
     verdicts = {verdict.check: verdict for verdict in report.verdicts}
     row: list[Any] = [
-        _cell(report.submission),
-        _cell(report.exercise),
+        cell(report.submission),
+        cell(report.exercise),
         text.number(report.score),
         text.number(report.max_score),
     ]
@@ -70,25 +70,25 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
     return [
         *row,
         report.run.outcome,
-        _cell(text.clip(f"{first}: {report.headline}", 300) if first else ""),
-        _cell("; ".join(report.run.flags)),
-        _cell(report.run.trace_sha256),
-        _cell(str(report.folder)),
+        cell(text.clip(f"{first}: {report.headline}", 300) if first else ""),
+        cell("; ".join(report.run.flags)),
+        cell(report.run.trace_sha256),
+        cell(str(report.folder)),
     ]
 
 
 def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
     score = 0 if report.is_judged else ""
     max_score = "" if report.max_score is None else text.number(report.max_score)
-    what = _cell(text.clip(report.message, 300))
+    what = cell(text.clip(report.message, 300))
     return [
-        *(_cell(report.name), "", score, max_score),
+        *(cell(report.name), "", score, max_score),
         *[""] * (2 * len(checks)),
-        *(report.title.lower(), what, "", "", _cell(str(report.file or report.folder))),
+        *(report.title.lower(), what, "", "", cell(str(report.file or report.folder))),
     ]
 
 
-def _cell(value: str) -> str:
+def cell(value: str) -> str:
     """A text in one line that no spreadsheet takes for a formula, wherever it cuts the line."""
     value = text.one_line(text.plain(value))
     value = _CUT_BEFORE_FORMULA.sub(r"\1'", value)

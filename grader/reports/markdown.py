@@ -89,10 +89,9 @@ def _seen(report: Report, verdict: Verdict) -> str:
 
 def _run(report: Report) -> str:
     run = report.run
-    lines = [
-        f"Run: {_quote(report.outcome(0))}, {run.simulated_s:.1f} s simulated "
-        f"in {run.wall_s:.1f} s ({run.time} time)."
-    ]
+    took = f" in {run.wall_s:.1f} s" if run.wall_s else ""
+    outcome = _quote(report.outcome(0))
+    lines = [f"Run: {outcome}, {run.simulated_s:.1f} s simulated{took} ({run.time} time)."]
     lines += [f"- Note: {_quote(flag)}" for flag in run.flags]
     return "\n".join(lines)
 
