@@ -1,0 +1,1 @@
+"""Into the gradebook: tables, what Moodle and Canvas import, feedback for each student."""

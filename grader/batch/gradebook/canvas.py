@@ -1,0 +1,102 @@
+"""What Canvas imports: its gradebook as CSV, and a zip of feedback for "Upload Submissions".
+
+The rules are those of Canvas's own code: lib/gradebook_importer.rb, and in
+app/models/abstract_assignment.rb `infer_comment_context_from_filename`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import PurePath
+
+from grader.batch.gradebook import archive, known
+from grader.batch.gradebook.cells import cell, table
+from grader.batch.gradebook.feedback import Feedback, has_feedback
+from grader.batch.gradebook.grade import Grade, decimal
+
+_HEADER = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
+_POINTS_POSSIBLE = "Points Possible"
+_ASSIGNMENT = re.compile(r"(.*)\s\((\d+)\)", re.DOTALL)
+FEEDBACK = "feedback.html"
+
+
+def gradebook(grades: Sequence[Grade], assignment: str) -> str:
+    """The table; '' where it would be empty.
+
+    Canvas finds people by ID, then by the SIS ids. Who has none of them, or no grade, is left out:
+    a name may be that of two, and an empty cell takes away the grade that is there.
+
+    Args:
+        assignment: the heading of the column; see `assignment_of`.
+    """
+    rows = [row for grade in grades if grade.final is not None and (row := _row(grade))]
+    if not rows:
+        return ""
+    most = max(grade.entry.max_score for grade in grades)
+    possible = (f"    {_POINTS_POSSIBLE}", "", "", "", "", decimal(most))
+    return table([(*_HEADER, cell(assignment)), possible, *rows])
+
+
+def is_known(grade: Grade) -> bool:
+    """Whether Canvas can find a person by anything but the name."""
+    return any(_ids(grade))
+
+
+def assignment_of(grades: Sequence[Grade], wanted: str) -> str:
+    """What Canvas calls an assignment, with its number, where its exported gradebook is the roster.
+
+    Args:
+        wanted: its title, its number, both as in "Spiral (4711)", or the title of the exercise.
+
+    Returns:
+        the heading of the column; `wanted` itself where no column fits.
+    """
+    titles = dict.fromkeys(name for grade in grades for name in grade.person.columns)
+    columns = {name: match for name in titles if (match := _ASSIGNMENT.fullmatch(name))}
+    for name, match in columns.items():
+        if wanted in (name, match[1], match[2]):
+            return name
+    return next(iter(columns)) if len(columns) == 1 else wanted
+
+
+def has_number(assignment: str) -> bool:
+    """Whether Canvas knows from its heading which assignment is meant."""
+    return _ASSIGNMENT.fullmatch(assignment) is not None
+
+
+def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
+    """The names in the zip of feedback: those of the downloaded files, one for a whole group."""
+    named = ((known.canvas_file(grade.entry.hand_in), grade) for grade in grades)
+    return {name: grade for name, grade in named if name and has_feedback(grade.entry)}
+
+
+def feedback_file(name: str, grade: Grade, feedback: Feedback) -> bytes:
+    """What is in such a file. Canvas shows it by the name of what was handed in, so it is one.
+
+    A zip has the page in it, a page is one, all else is text.
+    """
+    suffix = PurePath(name).suffix.lower()
+    if suffix == ".zip":
+        return archive.packed([(FEEDBACK, feedback.page(grade.entry))])
+    if suffix in (".html", ".htm"):
+        return feedback.page(grade.entry)
+    return feedback.markdown(grade.entry)
+
+
+def _row(grade: Grade) -> list[str]:
+    ids = _ids(grade)
+    if not any(ids):
+        return []
+    name = cell(known.column(grade.person, ("Student",)) or grade.person.name)
+    if _POINTS_POSSIBLE in name:  # that row Canvas knows by these words
+        name = cell(grade.person.id)
+    section = cell(known.column(grade.person, ("Section",)))
+    return [name, *ids, section, decimal(grade.final)]
+
+
+def _ids(grade: Grade) -> tuple[str, str, str]:
+    person = grade.person
+    sis = (known.SIS_USER_ID, known.SIS_LOGIN_ID)
+    user, login = (known.safe_column(person, names) for names in sis)
+    return known.canvas_id(person), user, login

@@ -1,0 +1,91 @@
+"""What one student reads of his result: as a page, as Markdown, in a sentence.
+
+It is made from result.json, the picture and what the node printed. The recording is left out: it
+has what an exercise may hide, and with it a page is five times as long. So are the times and places
+of the run: the same result gives the same bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from grader import text
+from grader.batch.entry import Entry
+from grader.batch.gradebook.grade import LONGEST, Grade, out_of
+from grader.recording.recording import Recording
+from grader.reports import ErrorReport, Report, render
+from grader.reports.beside import Beside
+from grader.result.error import ErrorResult
+from grader.result.result import RunSummary
+from grader.result.visible import View, as_seen
+
+#: What a comment begins with, so that it is known as ours when it comes back.
+MARK = "Graded automatically:"
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """Makes them all.
+
+    Attributes:
+        view: who reads it: a student before, or after the exercise is over.
+    """
+
+    view: View = "student"
+
+    def page(self, entry: Entry) -> bytes:
+        """A self-contained HTML page."""
+        return render("html", [self._report(entry)]).encode("utf-8")
+
+    def markdown(self, entry: Entry) -> bytes:
+        """The same as text, without the picture."""
+        return render("markdown", [self._report(entry)]).encode("utf-8")
+
+    def sentence(self, grade: Grade) -> str:
+        """Points, and what to mend first; plain text in one line."""
+        entry, late = grade.entry, grade.late_deduction
+        if grade.final is None:
+            return ""
+        said = f"{MARK} {out_of(grade.final, entry.max_score)} points"
+        if late:
+            said += f" ({text.points(grade.score or 0)} less {text.points(late)} for being late)"
+        return text.clip(text.one_line(text.plain(f"{said}. {self._first(entry)}")), LONGEST)
+
+    def _first(self, entry: Entry) -> str:
+        if not has_feedback(entry):
+            return entry.message or "Nothing was handed in."
+        report = self._report(entry)
+        return report.message if isinstance(report, ErrorReport) else report.headline
+
+    def _report(self, entry: Entry) -> Report | ErrorReport:
+        if entry.result is None:
+            told = ErrorResult("submission", entry.message, entry.max_score)
+            return ErrorReport(told, entry.folder)
+        seen = as_seen(entry.result, self.view)
+        shown = replace(
+            seen,
+            run=_without_circumstances(seen.run),
+            varied_runs=tuple(map(_without_circumstances, seen.varied_runs)),
+            provenance=None,
+        )
+        return Report(shown, _WithoutRecordings(shown, entry.folder))
+
+
+class _WithoutRecordings(Beside):
+    """Picture and output alone; what ran beside the submission is still told by the recording."""
+
+    @property
+    def recordings(self) -> Mapping[int, Recording | str]:
+        """None."""
+        return {}
+
+
+def has_feedback(entry: Entry) -> bool:
+    """Whether there is anything to tell: something was handed in, and the grader has not failed."""
+    return entry.state in ("judged", "unusable")
+
+
+def _without_circumstances(run: RunSummary) -> RunSummary:
+    """A run without what another one of the same submission would not have."""
+    return replace(run, wall_s=0.0, isolation="")
