@@ -37,7 +37,7 @@ def worksheet(grades: Sequence[Grade], feedback: Feedback) -> str:
     Moodle finds people by the participant number in `Identifier`. Who has no grade is left out, and
     a comment that somebody else has written stays.
     """
-    rows = [_worksheet_row(g, feedback) for g in grades if g.final is not None and _number(g)]
+    rows = [_worksheet_row(g, feedback) for g in numbered(grades) if g.final is not None]
     return table([WORKSHEET, *rows]) if rows else ""
 
 
@@ -70,10 +70,20 @@ def grade_import_key(grades: Sequence[Grade]) -> tuple[str, ...]:
 def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
     """The names in the zip of feedback: Moodle takes the number, and shows what is behind it."""
     return {
-        f"{_name(grade)}_{number}_{_PLUGIN}_{FEEDBACK}": grade
-        for grade in grades
-        if has_feedback(grade.entry) and (number := _number(grade))
+        f"{_name(grade)}_{known.participant(grade.person)}_{_PLUGIN}_{FEEDBACK}": grade
+        for grade in numbered(grades)
+        if has_feedback(grade.entry)
     }
+
+
+def numbered(grades: Sequence[Grade]) -> list[Grade]:
+    """Those whose participant number is known.
+
+    Where there is a worksheet, its numbers alone count: one that stands in the name of an export
+    only may be that of a group, and in the worksheet that of some other student.
+    """
+    listed = [grade for grade in grades if known.is_of_worksheet(grade.person)]
+    return [grade for grade in listed or grades if known.participant(grade.person)]
 
 
 def _worksheet_row(grade: Grade, feedback: Feedback) -> list[str]:
@@ -100,10 +110,6 @@ def _comment(grade: Grade, feedback: Feedback) -> str:
     if there and MARK not in there:
         return cell(text.one_line(there))
     return cell(html.escape(feedback.sentence(grade), quote=False))
-
-
-def _number(grade: Grade) -> str:
-    return known.participant(grade.person)
 
 
 def _name(grade: Grade) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from grader import text
 from grader.batch.gradebook import canvas, known, moodle
@@ -42,7 +42,8 @@ def _of_grades(grades: Sequence[Grade]) -> Iterator[str]:
 
 
 def _of_moodle(grades: Sequence[Grade]) -> Iterator[str]:
-    if lacking := _lacking(grades, lambda grade: bool(known.participant(grade.person))):
+    there = {id(grade) for grade in moodle.numbered(grades)}
+    if lacking := [grade for grade in grades if id(grade) not in there]:
         yield (
             f"Not in Moodle's grading worksheet and feedback: {_people(lacking)}, of whom the "
             "participant number is not known. Give --roster with Moodle's grading worksheet."
@@ -65,7 +66,7 @@ def _of_moodle(grades: Sequence[Grade]) -> Iterator[str]:
 
 
 def _of_canvas(grades: Sequence[Grade], assignment: str) -> Iterator[str]:
-    if lacking := _lacking(grades, canvas.is_known):
+    if lacking := [grade for grade in grades if not canvas.is_known(grade)]:
         yield (
             f"Not in Canvas's gradebook: {_people(lacking)}, of whom Canvas's ID is not known. "
             "Give --roster with the gradebook that Canvas exports."
@@ -82,10 +83,6 @@ def _of_canvas(grades: Sequence[Grade], assignment: str) -> Iterator[str]:
             f"Not in Canvas's feedback: {_people(without)}, whose files do not have the names that "
             "Canvas gives to downloaded ones."
         )
-
-
-def _lacking(grades: Sequence[Grade], is_known: Callable[[Grade], bool]) -> list[Grade]:
-    return [grade for grade in grades if not is_known(grade)]
 
 
 def _people(grades: Sequence[Grade]) -> str:

@@ -56,6 +56,18 @@ def test_the_folder_names_of_an_export_are_enough(tmp_path: Path) -> None:
     assert list(found) == [1001, 1002, 1003]
 
 
+def test_a_groups_number_is_not_taken_for_that_of_a_student_in_the_worksheet(
+    tmp_path: Path,
+) -> None:
+    group = Person("1003", "Team 3", {"Identifier": "Participant 1003"})
+    class_ = [judged(tmp_path, in_worksheet(1)), judged(tmp_path, group)]
+    assert worksheet(class_).keys() == {1001}
+    told = write(tmp_path, class_, Options("Spiral"))
+    assert "Not in Moodle's grading worksheet and feedback: Team 3" in told[0]
+    content = (tmp_path / "export" / MOODLE_FEEDBACK).read_bytes()
+    assert moodle_reads.feedback_zip(content, PARTICIPANTS).keys() == {1001}
+
+
 def test_of_whom_nothing_is_known_is_left_as_he_is(tmp_path: Path) -> None:
     failed = without_result("failed", in_worksheet(0))
     assert worksheet([failed, judged(tmp_path, in_worksheet(1))]).keys() == {1001}
