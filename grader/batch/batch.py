@@ -40,6 +40,10 @@ class Order:
     again: str = ""
     shard: tuple[int, int] = (1, 1)
 
+    def seed_of(self, hand_in: HandIn) -> int | None:
+        """What chooses where the varied runs of a hand-in start; None: the exercise's own seed."""
+        return self.exercise.seed_for(hand_in.id) if self.seed is None else self.seed
+
     @property
     def class_file(self) -> ClassFile:
         """What the folder is for."""
@@ -164,7 +168,8 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
             why = f"It cannot be read: {error.strerror or error}"
             yield replace(hand_in, problem=why, path=None), ""
             continue
-        yield hand_in, key.of_run(content, order.exercise, order.time, order.seed)
+        seed = order.seed_of(hand_in)
+        yield hand_in, key.of_run(content, order.exercise, order.time, seed)
 
 
 def _there(folder: Path) -> Entry | None:
@@ -198,7 +203,7 @@ def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> 
         first.filename,
         order.exercise_path,
         order.time,
-        order.seed,
+        order.seed_of(first),
         store.run(run) if is_there else None,
         Path(),
     )

@@ -22,6 +22,7 @@ from grader.recording.recording import Recordings
 from grader.reports import Report, render
 from grader.result import json_file
 from grader.result.error import ErrorResult
+from grader.result.handed_in import HandedIn
 from grader.result.result import ARTIFACTS, PAGE, RESULT
 from grader.submission.opening import open_submission
 from grader.text import plain
@@ -93,12 +94,13 @@ def _judge(
 ) -> None:
     """Everything about a student; the recording itself is linked when it comes to its place."""
     result = grading.judge(recordings, exercise, submission=hand_in.name)
-    result = replace(result, artifacts=dict(ARTIFACTS))
+    whose = HandedIn.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
+    result = replace(result, artifacts=dict(ARTIFACTS), handed_in=whose)
     nominal = recordings.nominal
     files.put(folder / ARTIFACTS["canvas"], nominal.png["window"])
     files.put(folder / ARTIFACTS["output"], nominal.output.encode("utf-8", "replace"))
     result.put(folder / RESULT)
-    page = render("html", [Report.of(result, folder, recordings)])
+    page = render("html", [Report.of(result, folder, recordings, "whole")])
     files.put(folder / PAGE, page.encode("utf-8"))
     _entry(hand_in, exercise, folder, "judged", key).put()
 

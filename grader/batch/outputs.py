@@ -9,12 +9,26 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from grader.batch.entry import Entry
+from grader.batch.gradebook.write import Options
+from grader.batch.gradebook.write import write as write_gradebook
 from grader.exercise.loading import Exercise
+from grader.result.visible import View
 
 
-def write(out: Path, entries: Sequence[Entry], exercise: Exercise) -> None:
+def write(
+    out: Path, entries: Sequence[Entry], exercise: Exercise, view: View, assignment: str = ""
+) -> list[str]:
     """Write gradebook and pages.
+
+    Args:
+        view: who reads the feedback: a student before, or after the exercise is over.
+        assignment: what Canvas calls it.
+
+    Returns:
+        Notes, as sentences.
 
     Raises:
         UsageError: one of them cannot be written.
     """
+    options = Options(exercise.title, view, assignment)
+    return write_gradebook(out, entries, options)

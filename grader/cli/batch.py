@@ -19,6 +19,7 @@ from grader.text import for_terminal
 if TYPE_CHECKING:
     from grader.batch.batch import Order
     from grader.batch.store import Store
+    from grader.result.visible import View
 
 JUDGED, GRADER_FAILED = 0, 3
 
@@ -68,6 +69,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="put parts together that --shard has made, instead of grading",
     )
     parser.add_argument(
+        "--after-due",
+        action="store_true",
+        help="students may see now what their exercise hides until it is due",
+    )
+    parser.add_argument(
+        "--assignment",
+        default="",
+        metavar="NAME",
+        help='what Canvas calls the exercise, as in "Spiral (4711)" (its title)',
+    )
+    parser.add_argument(
         "--isolation",
         choices=LEVELS,
         metavar="LEVEL",
@@ -101,7 +113,8 @@ def main(args: argparse.Namespace) -> int:
         else:
             _grade(args, order, store, messages)
         graded = entries(args.out)
-        outputs.write(args.out, graded, exercise)
+        view: View = "after_due" if args.after_due else "student"
+        _tell(messages, outputs.write(args.out, graded, exercise, view, args.assignment))
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
 

@@ -18,7 +18,7 @@ from grader.reports import ErrorReport, Report, render
 from grader.reports.beside import Beside
 from grader.result.error import ErrorResult
 from grader.result.result import RunSummary
-from grader.result.visible import View, as_seen
+from grader.result.visible import View
 
 #: What a comment begins with, so that it is known as ours when it comes back.
 MARK = "Graded automatically:"
@@ -62,14 +62,14 @@ class Feedback:
         if entry.result is None:
             told = ErrorResult("submission", entry.message, entry.max_score)
             return ErrorReport(told, entry.folder)
-        seen = as_seen(entry.result, self.view)
+        result = entry.result
         shown = replace(
-            seen,
-            run=_without_circumstances(seen.run),
-            varied_runs=tuple(map(_without_circumstances, seen.varied_runs)),
+            result,
+            run=_without_circumstances(result.run),
+            varied_runs=tuple(map(_without_circumstances, result.varied_runs)),
             provenance=None,
         )
-        return Report(shown, _WithoutRecordings(shown, entry.folder))
+        return Report(shown, _WithoutRecordings(shown, entry.folder), self.view)
 
 
 class _WithoutRecordings(Beside):
