@@ -28,11 +28,15 @@ _CHUNK_BYTES: Final = 1 << 16
 
 
 @contextmanager
-def opened(archive: Path, plain: Path) -> Iterator[list[Member]]:
+def opened(
+    archive: Path, plain: Path, headers: int | None = None, budget: Budget | None = None
+) -> Iterator[list[Member]]:
     """What is in it.
 
     Args:
         plain: where the tar may lie without its compression; gone afterwards.
+        headers: so many members it may have; else as many as a submission.
+        budget: what may come out of its compression; else as much as out of a submission's.
 
     Raises:
         ListTooLong: there are too many members, or their names are too long.
@@ -43,28 +47,28 @@ def opened(archive: Path, plain: Path) -> Iterator[list[Member]]:
         is_compressed = file.read(len(_GZIP)) == _GZIP
     try:
         if is_compressed:
-            _decompress(archive, plain)
+            _decompress(archive, plain, budget or Budget())
         with (
             Bounded(plain if is_compressed else archive, MAX_HEADER_BYTES, _LONG) as file,
             tarfile.TarFile(fileobj=file, errorlevel=0) as packed,
         ):
-            yield list(_members(packed))
+            yield list(_members(packed, headers or MAX_HEADERS))
     finally:
         plain.unlink(missing_ok=True)
 
 
-def _decompress(archive: Path, plain: Path) -> None:
-    budget, name = Budget(), shown(archive.name)
+def _decompress(archive: Path, plain: Path, budget: Budget) -> None:
+    name = shown(archive.name)
     with gzip.open(archive) as source, plain.open("xb") as target:
         while chunk := source.read(_CHUNK_BYTES):
             budget.take_bytes(name, len(chunk))
             target.write(chunk)
 
 
-def _members(packed: tarfile.TarFile) -> Iterator[Member]:
+def _members(packed: tarfile.TarFile, most: int) -> Iterator[Member]:
     for number, info in enumerate(packed):
-        if number >= MAX_HEADERS:
-            raise ListTooLong(f"it has more than {MAX_HEADERS:,} entries")
+        if number >= most:
+            raise ListTooLong(f"it has more than {most:,} entries")
         yield Member(info.name, info.isdir(), _refusal(info), partial(_file, packed, info))
 
 

@@ -16,23 +16,29 @@ from grader.submission.folder import shown
 #: Of the list of members, all of them. It is read at once, and becomes 50 times as large.
 MAX_LIST_BYTES: Final = 6_000_000
 
-_ENCRYPTED: Final = 0x1  # bit 0 of the general purpose flags (APPNOTE.TXT 4.4.4)
+# bits of the general purpose flags (APPNOTE.TXT 4.4.4)
+_ENCRYPTED: Final = 0x1
+_UTF_8: Final = 0x800
 
 
 @contextmanager
-def opened(archive: Path) -> Iterator[list[Member]]:
+def opened(archive: Path, most: int | None = None) -> Iterator[list[Member]]:
     """What is in it.
+
+    Args:
+        most: so large the list of members may be [bytes]; else as large as a submission's.
 
     Raises:
         ListTooLong: there are too many members, or their names are too long.
         NotImplementedError: it is packed in a way that Python does not know.
         Exception: it is damaged; see `archive.DAMAGED`.
     """
-    why = f"its list has more than {MAX_LIST_BYTES / 1e6:g} MB"
-    with Bounded(archive, MAX_LIST_BYTES, why) as file, zipfile.ZipFile(file) as packed:
+    most = most or MAX_LIST_BYTES
+    why = f"its list has more than {most / 1e6:g} MB"
+    with Bounded(archive, most, why) as file, zipfile.ZipFile(file) as packed:
         yield [
             Member(
-                info.filename,
+                _name(info),
                 info.filename.endswith(("/", "\\")),
                 _refusal(info),
                 partial(packed.open, info),
@@ -41,8 +47,18 @@ def opened(archive: Path) -> Iterator[list[Member]]:
         ]
 
 
+def _name(info: zipfile.ZipInfo) -> str:
+    """A member's name, also where a program writes UTF-8 and does not say so, as that of macOS."""
+    if info.flag_bits & _UTF_8 or info.filename.isascii():
+        return info.filename
+    try:
+        return info.filename.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return info.filename
+
+
 def _refusal(info: zipfile.ZipInfo) -> str:
-    path = shown(info.filename.replace("\\", "/"))
+    path = shown(_name(info).replace("\\", "/"))
     if info.flag_bits & _ENCRYPTED:
         return f"is encrypted: {path} asks for a password. Pack it again without a password."
     kind = stat.S_IFMT(info.external_attr >> 16)

@@ -1,0 +1,123 @@
+"""Canvas's "Download Submissions": files in one folder, whose names say whose they are.
+
+`NAME[_LATE]_USER_FILE_FILENAME`, where the name is the sortable one in small letters and without
+what is no letter, USER is the student's id in Canvas, and FILE that of the file. Anonymous ones are
+`[LATE_]anon_CODE_FILE_FILENAME`; what was typed in online ends in `_USER_text.html`, a link in
+`_USER_link.html` (`lib/content_zipper.rb`). To a file that a student hands in again Canvas gives a
+new name, with `-1`, `-2` before its ending. Nothing says when.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
+from grader.batch.hand_in import Person
+from grader.submission.folder import is_junk, listed
+from grader.submission.unpacking import is_archive
+
+LAYOUT: Final = "what Canvas's “Download Submissions” makes"
+_NAME: Final = re.compile(
+    r"(?:(?P<late>LATE)_)?(?:anon_(?P<code>[A-Za-z0-9]+)|"
+    r"(?P<name>.+?)(?:_(?P<late_too>LATE))?_(?P<user>\d+))"
+    r"_(?:(?P<file>\d+)_(?P<filename>.+)|(?P<typed>text|link)\.html)",
+    re.DOTALL,
+)
+#: `node-2.tar.gz`: the same file handed in again, for the second time.
+_AGAIN: Final = re.compile(r"(?P<stem>.+)-(?P<times>[1-9]\d?)(?P<ending>(?:\.[A-Za-z0-9]+)+)")
+_ONLY_TEXT: Final = "Only a text or a link was handed in, and no file."
+
+
+class _File(NamedTuple):
+    """A file of a student's.
+
+    Attributes:
+        id: grows with time.
+        filename: without what Canvas has added to it.
+        again: how often another of its name had been handed in before.
+    """
+
+    item: Item
+    id: int
+    original: str
+    filename: str
+    again: int
+
+
+def looks_like(items: Sequence[Item]) -> bool:
+    """Whether a folder is one."""
+    return mostly(items, _parsed)
+
+
+def read(items: Sequence[Item]) -> Reading:
+    """The hand-ins in one."""
+    files: dict[str, list[_File]] = defaultdict(list)
+    people: dict[str, Person] = {}
+    others: list[str] = []
+    for item in items:
+        match = _parsed(item)
+        if match is None:
+            others.append(item.name)
+            continue
+        whose = match["user"] or match["code"]
+        late = "yes" if match["late"] or match["late_too"] else ""
+        name, user = match["name"] or "", match["user"] or ""
+        people[whose] = person(whose, name, {"ID": user, "Late": late})
+        own = files[whose]
+        if match["file"] and not is_junk(match["filename"]):
+            own.append(_file(item, match))
+    attempts, outdated, notes = [], list[str](), []
+    for whose, own in files.items():
+        kept, older = _newest(own)
+        outdated += [file.item.name for file in older]
+        attempts.append(_attempt(people[whose], kept))
+    if outdated:
+        notes.append(f"Left out, since there is a newer one of this name: {listed(outdated)}.")
+    if others:
+        notes.append(f"Left out, since Canvas does not name them so: {listed(others)}.")
+    return Reading(LAYOUT, attempts, notes)
+
+
+def _parsed(item: Item) -> re.Match[str] | None:
+    return None if item.is_folder else _NAME.fullmatch(item.name)
+
+
+def _file(item: Item, match: re.Match[str]) -> _File:
+    filename = match["filename"]
+    again = _AGAIN.fullmatch(filename)
+    if again is None:
+        return _File(item, int(match["file"]), filename, filename, 0)
+    plain = f"{again['stem']}{again['ending']}"
+    return _File(item, int(match["file"]), filename, plain, int(again["times"]))
+
+
+def _newest(files: list[_File]) -> tuple[list[_File], list[_File]]:
+    """What is graded of a student's files, and what is older.
+
+    An export holds one attempt, but two may have been unpacked into one folder. `part-1.py` and
+    `part-2.py` are one attempt, though: of files of one name the newest is taken only where one of
+    them has that very name, or where they are archives, of which there can be but one.
+    """
+    alike: dict[str, list[_File]] = defaultdict(list)
+    for file in files:
+        alike[file.filename].append(file)
+    kept, older = [], []
+    for same in alike.values():
+        same.sort(key=lambda file: file.id)
+        is_one = len(same) == 1 or any(not file.again for file in same)
+        if is_one or is_archive(same[0].item.path):
+            kept.append(same[-1])
+            older += same[:-1]
+        else:
+            kept += [file._replace(filename=file.original, again=0) for file in same]
+    return kept, older
+
+
+def _attempt(whose: Person, files: list[_File]) -> Attempt:
+    pieces = tuple(Piece(file.item.path, file.filename) for file in files)
+    number = 1 + max((file.again for file in files), default=0)
+    problem = "" if pieces else _ONLY_TEXT
+    return Attempt(whose.id, (whose,), pieces, number, problem=problem)

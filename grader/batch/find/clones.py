@@ -1,0 +1,73 @@
+"""A folder of git repositories, as `gh teacher download` and `gh classroom clone` make it.
+
+Classroom 50 calls them `CLASSROOM-ASSIGNMENT-USER`, GitHub Classroom `ASSIGNMENT-USER`. What all
+begin with, up to a hyphen, is left out; a roster settles it where users are called alike. Beside
+them `gh teacher download` lays `scores.csv`, which says who was to hand in something, and when
+(`roster.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import takewhile
+from typing import Final
+
+from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
+from grader.batch.find.git_time import LastCommits
+from grader.scratch import make_folder
+from grader.submission.folder import listed, shown
+
+LAYOUT: Final = "a folder of git repositories"
+_MARKS: Final = (".git", ".classroom50.yml")
+
+
+def looks_like(items: Sequence[Item]) -> bool:
+    """Whether a folder is one."""
+    return mostly(items, _is_repository)
+
+
+def read(items: Sequence[Item]) -> Reading:
+    """The hand-ins in one."""
+    repositories = [item for item in items if _is_repository(item)]
+    others = [item.name for item in items if not _is_repository(item)]
+    prefix = _prefix([item.name for item in repositories])
+    with make_folder() as scratch:
+        commits = LastCommits(scratch)
+        attempts = [_attempt(item, prefix, commits) for item in repositories]
+    pairs = zip(repositories, attempts, strict=True)
+    notes = []
+    if prefix:
+        notes.append(f"All begin with {shown(prefix)}, which is left out of their ids.")
+    if not commits.can_be_asked:
+        notes.append("There is no git on this machine to say when the last commits were made.")
+    elif unknown := [item.name for item, each in pairs if each.at is None]:
+        notes.append(f"Nothing says when these were last committed to: {listed(unknown)}.")
+    if others:
+        notes.append(f"Left out, since they are no repositories: {listed(others)}.")
+    return Reading(LAYOUT, attempts, notes)
+
+
+def _is_repository(item: Item) -> bool:
+    return item.is_folder and any((item.path / mark).exists() for mark in _MARKS)
+
+
+def _prefix(names: Sequence[str]) -> str:
+    """What all names begin with, up to a hyphen, if something is left of each."""
+    if len(names) < 2:
+        return ""
+    first, last = min(names), max(names)
+    same = takewhile(lambda pair: pair[0] == pair[1], zip(first, last, strict=False))
+    return first[: first.rfind("-", 0, sum(1 for _ in same)) + 1]
+
+
+def _attempt(item: Item, prefix: str, commits: LastCommits) -> Attempt:
+    user = item.name.removeprefix(prefix) or item.name
+    parts = item.name.split("-")
+    endings = tuple("-".join(parts[at:]) for at in range(len(parts)))
+    return Attempt(
+        item.name,
+        (person(user),),
+        (Piece(item.path),),
+        at=commits.of(item.path),
+        aliases=endings,
+    )

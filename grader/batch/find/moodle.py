@@ -1,0 +1,60 @@
+"""Moodle's "Download all submissions", in folders or not.
+
+Each student's files have the prefix `NAME_NUMBER_assignsubmission_file`, where the number is the
+participant's in this assignment, a group's in one for groups, and none stands for those who are in
+no group (`mod/assign/classes/downloader.php`; underscores in names become spaces there). Older
+releases end it with an underscore. The zip says nothing of when something was handed in: its dates
+are those of the download.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
+from grader.submission.folder import is_junk, listed
+
+LAYOUT: Final = "what Moodle's “Download all submissions” makes"
+_PREFIX: Final = re.compile(
+    r"(?P<name>.*?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind>[a-z0-9]+)(?:_(?P<filename>.*))?",
+    re.DOTALL,
+)
+_ONLY_TEXT: Final = "Only a text was handed in online, and no file."
+
+
+def looks_like(items: Sequence[Item]) -> bool:
+    """Whether a folder is one."""
+    return mostly(items, lambda item: _PREFIX.fullmatch(item.name))
+
+
+def read(items: Sequence[Item]) -> Reading:
+    """The hand-ins in one."""
+    pieces: dict[tuple[str, str], list[Piece]] = {}
+    others = []
+    for item in items:
+        match = _PREFIX.fullmatch(item.name)
+        if match is None:
+            others.append(item.name)
+            continue
+        filename = match["filename"] or ""
+        own = pieces.setdefault((match["name"], match["number"] or ""), [])
+        if match["kind"] == "file" and not is_junk(filename or "a"):
+            own.append(Piece(item.path, "" if item.is_folder else filename))
+    attempts = [_attempt(name, number, found) for (name, number), found in pieces.items()]
+    notes = [f"Left out, since Moodle does not name them so: {listed(others)}."] if others else []
+    return Reading(LAYOUT, attempts, notes)
+
+
+def _attempt(name: str, number: str, pieces: list[Piece]) -> Attempt:
+    # "Participant 17" is what a grading worksheet calls whoever is called nothing else
+    identifier = f"Participant {number}" if number else ""
+    known = "" if name == "Participant" else name
+    return Attempt(
+        f"{name}_{number}",
+        (person(number or name, known, {"Identifier": identifier}),),
+        tuple(pieces),
+        problem="" if pieces else _ONLY_TEXT,
+        alone=True,
+    )

@@ -1,0 +1,176 @@
+"""Who is in a class: `roster.csv`, or what a course system exports of its participants.
+
+Columns are known by their titles, whatever their order, case, spaces and hyphens: those of Moodle's
+grading worksheet and list of participants (English, German, French), Canvas's gradebook,
+Gradescope's roster, GitHub Classroom's `classroom_roster.csv`, Classroom 50's roster and its
+`scores.csv`. All columns are kept: an import may ask for them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Final
+
+from grader.batch.find.attempt import person
+from grader.batch.find.table import read_table
+from grader.batch.find.times import read_time
+from grader.batch.hand_in import Person
+from grader.errors import UsageError
+from grader.submission.folder import listed, shown
+
+#: Columns that say who it is, the best first. A person's id is of the first of them in which every
+#: row has another value.
+_IDS: Final = (
+    *("id", "studentid", "studentnumber", "sid", "idnumber", "matriculationnumber"),
+    *("matrikelnummer", "idnummer", "numérodidentification", "sisuserid", "sisloginid"),
+    *("username", "user", "login", "loginid", "githubusername", "anmeldename", "nomdutilisateur"),
+    *("email", "emailaddress", "mail", "emailadresse", "adressedecourriel", "identifier"),
+    *("identifiant", "githubid", "participant"),
+)
+_NAMES: Final = ("name", "fullname", "studentname", "student", "vollständigername", "nomcomplet")
+_FIRST: Final = ("firstname", "givenname", "vorname", "prénom")
+_LAST: Final = ("lastname", "surname", "familyname", "nachname", "nomdefamille", "nom")
+_GROUPS: Final = ("group", "groups", "team", "groupname", "teamname", "gruppe", "groupe")
+_TIMES: Final = ("at", "handedinat", "submittedat", "submissiontime", "submissiontag")
+#: "Participant 17", in whatever language: Moodle's number of a participant in one assignment.
+_PARTICIPANT: Final = re.compile(r"\D+ (\d+)")
+#: `submit/2026-06-01T14-32-05Z`, as Classroom 50 calls a hand-in.
+_TAG: Final = re.compile(r"submit/(.+)")
+#: Rows of Canvas's gradebook that are nobody.
+_NOBODY: Final = ("points possible", "student, test", "test student")
+
+
+@dataclass(frozen=True)
+class Member:
+    """One row.
+
+    Attributes:
+        keys: all that may stand for this person in an export; compared by `folded`.
+        groups: he is in.
+        at: when this person handed in, if the roster says so.
+    """
+
+    person: Person
+    keys: tuple[str, ...]
+    groups: tuple[str, ...] = ()
+    at: datetime | None = None
+
+
+@dataclass(frozen=True)
+class Roster:
+    """All who are in a class.
+
+    Attributes:
+        name: of its file.
+        notes: what is odd about it.
+    """
+
+    name: str
+    members: Sequence[Member]
+    notes: Sequence[str] = ()
+
+
+def folded(text: str) -> str:
+    """A text for comparison: without case, and without white space around it."""
+    return text.strip().casefold()
+
+
+def read_roster(path: Path) -> Roster:
+    """Read a roster.
+
+    Raises:
+        UsageError: it cannot be read, or no column of it says who somebody is.
+    """
+    titles, rows = read_table(path)
+    columns = {_squashed(title): at for at, title in reversed(list(enumerate(titles)))}
+    ids = [columns[title] for title in _IDS if title in columns]
+    names = _Names(columns)
+    if not ids and not names.is_there:
+        raise UsageError(
+            f"{shown(path.name)} has no column that says who somebody is: it has {listed(titles)}. "
+            "Expected one called id, name, email, username or the like in the first line."
+        )
+    rows = [row for row in rows if folded(names.of(row)) not in _NOBODY]
+    keyed = [row for row in rows if any(row[at] for at in ids) or names.of(row)]
+    notes = [_nameless(path, len(rows) - len(keyed))] if len(keyed) < len(rows) else []
+    id_column = next((at for at in ids if _tells_apart(row[at] for row in keyed)), None)
+    several = any(title in columns for title in ("submissiontag",))
+    members: dict[str, Member] = {}
+    twice: list[str] = []
+    for row in keyed:
+        found = (row[at] for at in ([] if id_column is None else [id_column]) + ids)
+        id = next(filter(None, found), "") or names.of(row)
+        member = _member(id, names.of(row), row, titles, columns)
+        same = folded(id)
+        if same not in members:
+            members[same] = member
+        elif several:  # one row each time that somebody handed in
+            members[same] = max(members[same], member, key=_moment)
+        else:
+            twice.append(id)
+    if twice:
+        notes.append(
+            f"{shown(path.name)} has several rows of the same id, of which the first counts: "
+            f"{listed(twice)}."
+        )
+    return Roster(path.name, list(members.values()), notes)
+
+
+class _Names:
+    """Where a table has names."""
+
+    def __init__(self, columns: dict[str, int]) -> None:
+        def first(titles: Iterable[str]) -> list[int]:
+            return [columns[title] for title in titles if title in columns][:1]
+
+        self._whole, self._parts = first(_NAMES), first(_FIRST) + first(_LAST)
+
+    @property
+    def is_there(self) -> bool:
+        return bool(self._whole or self._parts)
+
+    def of(self, row: Sequence[str]) -> str:
+        whole = " ".join(row[at] for at in self._whole)
+        return whole or " ".join(filter(None, (row[at] for at in self._parts)))
+
+
+def _member(
+    id: str, name: str, row: Sequence[str], titles: Sequence[str], columns: dict[str, int]
+) -> Member:
+    known = [row[columns[title]] for title in _IDS if title in columns]
+    numbers = [match[1] for value in known if (match := _PARTICIPANT.fullmatch(value))]
+    groups = {
+        part.strip()
+        for title in _GROUPS
+        if title in columns
+        for part in re.split("[,;]", row[columns[title]])
+    }
+    times = [row[columns[title]] for title in _TIMES if title in columns and row[columns[title]]]
+    at = None
+    if times:
+        tag = _TAG.fullmatch(times[0])
+        at = read_time(tag[1] if tag else times[0])
+    columns_of = {title: value for title, value in zip(titles, row, strict=True) if title}
+    keys = tuple(dict.fromkeys(filter(None, (id, *known, *numbers))))
+    return Member(person(id, name, columns_of), keys, tuple(sorted(groups - {""})), at)
+
+
+def _moment(member: Member) -> float:
+    return member.at.timestamp() if member.at else float("-inf")
+
+
+def _tells_apart(values: Iterable[str]) -> bool:
+    found = [folded(value) for value in values]
+    return all(found) and len(set(found)) == len(found)
+
+
+def _nameless(path: Path, number: int) -> str:
+    return f"{number} of the rows of {shown(path.name)} say neither an id nor a name."
+
+
+def _squashed(title: str) -> str:
+    return re.sub(r"[\W_]+", "", title.casefold())

@@ -1,0 +1,97 @@
+"""Exports of course systems, made by hand as their own source code or documentation has them."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import zipfile
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.batch.find import Found, find
+from grader.batch.hand_in import HandIn
+
+NODE = "def main():\n    pass\n"
+
+
+def lay(root: Path, files: dict[str, str | bytes | None]) -> Path:
+    """Files by their names; None makes an empty folder."""
+    root.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        path = root / name
+        if content is None:
+            path.mkdir(parents=True)
+            continue
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return root
+
+
+def packed(files: dict[str, str | bytes]) -> bytes:
+    """A zip."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return out.getvalue()
+
+
+def git(folder: Path, *arguments: str, at: str = "2026-11-01T12:00:00+0100") -> None:
+    """A command of git's, as a student gives it."""
+    subprocess.run(
+        ["git", "-c", "user.name=A", "-c", "user.email=a@b.c", *arguments],
+        cwd=folder,
+        env={
+            "PATH": "/usr/bin:/bin",
+            "HOME": str(folder),
+            "GIT_COMMITTER_DATE": at,
+            "GIT_AUTHOR_DATE": "2020-01-01T00:00:00Z",
+        },
+        check=True,
+        capture_output=True,
+    )
+
+
+def repository(folder: Path, at: str = "2026-11-01T12:00:00+0100") -> Path:
+    """A repository with one commit."""
+    lay(folder, {"node.py": NODE})
+    git(folder, "init", "-q", "-b", "main")
+    git(folder, "add", ".")
+    git(folder, "commit", "-q", "-m", "done", at=at)
+    return folder
+
+
+class Finder:
+    """Finds, and keeps what was found until the test is over."""
+
+    def __init__(self, stack: ExitStack) -> None:
+        self._stack = stack
+
+    def __call__(self, submissions: Path, **options: Any) -> Found:
+        return self._stack.enter_context(find(submissions, **options))
+
+    def by_id(self, submissions: Path, **options: Any) -> dict[str, HandIn]:
+        return {each.id: each for each in self(submissions, **options).hand_ins}
+
+
+@pytest.fixture
+def finder():
+    with ExitStack() as stack:
+        yield Finder(stack)
+
+
+def content(hand_in: HandIn) -> set[str]:
+    """The files of a hand-in, by their paths in it."""
+    assert hand_in.path is not None
+    if hand_in.path.is_file():
+        return {hand_in.path.name}
+    files = (path for path in hand_in.path.rglob("*") if path.is_file())
+    return {str(path.relative_to(hand_in.path)) for path in files}
+
+
+def noted(found: Found, *words: str) -> bool:
+    """Whether one of the notes has all these words."""
+    return any(all(word in note for word in words) for note in found.notes)

@@ -1,0 +1,82 @@
+"""Canvas's download of submissions, as its content_zipper.rb names it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.grader.batch.find.exports import NODE, Finder, content, lay, noted, packed
+
+GRADEBOOK = (
+    "Student,ID,SIS User ID,SIS Login ID,Section,Spiral (9)\n"
+    "    Points Possible,,,,,100.00\n"
+    '"Müller, Zoë",1001,z1,zoe,A,\n'
+    '"Nobody, Nick",1009,z9,nick,A,\n'
+    '"Student, Test",1999,,abc,A,\n'
+)
+
+
+def test_names_say_who_late_and_what_it_was_called(tmp_path: Path, finder: Finder) -> None:
+    export = {
+        "müllerzoë_1001_5001_turtle_controller.py": NODE,
+        "leebob_LATE_1002_5002_my_pkg_12_34_x.zip": packed({"node.py": NODE}),
+        "anon_aB3dE_5003_node.py": NODE,
+        "LATE_anon_Zz9yY_5004_node.py": NODE,
+        "typer_1005_text.html": "<p>",
+        "linker_LATE_1006_link.html": "<p>",
+        "van_der_berg_1007_5005_node.py": NODE,
+    }
+    by_id = finder.by_id(lay(tmp_path / "c", export))
+    assert sorted(by_id) == ["1001", "1002", "1005", "1006", "1007", "Zz9yY", "aB3dE"]
+    zoe, bob = by_id["1001"], by_id["1002"]
+    assert (zoe.name, zoe.filename) == ("müllerzoë", "turtle_controller.py")
+    assert zoe.path and zoe.path.name == "turtle_controller.py" and zoe.at is None
+    assert zoe.people[0].columns == {"ID": "1001"}
+    assert bob.people[0].columns == {"ID": "1002", "Late": "yes"}
+    assert bob.filename == "my_pkg_12_34_x.zip"
+    assert by_id["Zz9yY"].people[0].columns == {"Late": "yes"}
+    assert by_id["1005"].problem == "Only a text or a link was handed in, and no file."
+    assert by_id["1007"].name == "van_der_berg"
+
+
+def test_files_of_one_student_are_one_submission(tmp_path: Path, finder: Finder) -> None:
+    export = {
+        "ann_1_11_setup.py": "",
+        "ann_1_12_part-1.py": NODE,
+        "ann_1_13_part-2.py": NODE,
+        "ann_1_14_.DS_Store": "",
+    }
+    assert content(finder.by_id(lay(tmp_path / "c", export))["1"]) == {
+        "setup.py",
+        "part-1.py",
+        "part-2.py",
+    }
+
+
+def test_the_newest_of_what_was_handed_in_again_counts(tmp_path: Path, finder: Finder) -> None:
+    export = {
+        "ann_1_11_node.py": "first = 1",
+        "ann_1_21_node-1.py": "second = 2",
+        "bob_LATE_2_12_pkg-2.zip": packed({"third.py": NODE}),
+        "bob_2_9_pkg-1.zip": packed({"second.py": NODE}),
+        "cy_3_14_pkg-1.tar.gz": b"",
+    }
+    found = finder(lay(tmp_path / "c", export))
+    ann, bob, cy = found.hand_ins
+    assert ann.path and (ann.path.name, ann.path.read_text()) == ("node.py", "second = 2")
+    assert (ann.attempt, bob.attempt, cy.attempt) == (2, 3, 2)
+    assert (bob.filename, cy.filename) == ("pkg.zip", "pkg.tar.gz")
+    assert noted(found, "newer one", "ann_1_11_node.py", "bob_2_9_pkg-1.zip")
+
+
+def test_the_gradebook_is_a_roster(tmp_path: Path, finder: Finder) -> None:
+    export = {"müllerzoë_1001_5001_node.py": NODE, "leebob_1002_5002_node.py": NODE}
+    gradebook = tmp_path / "gradebook.csv"
+    gradebook.write_text(GRADEBOOK, encoding="utf-8")
+    found = finder(lay(tmp_path / "c", export), roster=gradebook)
+    assert [(each.id, each.name, each.problem) for each in found.hand_ins] == [
+        ("1001", "Müller, Zoë", ""),
+        ("1002", "leebob", ""),
+        ("1009", "Nobody, Nick", "Nothing was handed in."),
+    ]
+    assert found.hand_ins[0].people[0].columns["SIS Login ID"] == "zoe"
+    assert noted(found, "Not in gradebook.csv", "leebob")

@@ -1,0 +1,178 @@
+"""The archive of a class: what one has put into it harms neither the machine nor the others."""
+
+from __future__ import annotations
+
+import io
+import stat
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from grader.batch.find import class_archive
+from grader.errors import SubmissionError, UsageError
+from grader.submission.opening import open_submission
+from tests.grader.batch.find.exports import NODE, Finder, content, noted, packed
+
+
+def link(name: str) -> zipfile.ZipInfo:
+    info = zipfile.ZipInfo(name)
+    info.external_attr = (stat.S_IFLNK | 0o777) << 16
+    return info
+
+
+def test_one_bad_member_keeps_nobody_else_out(tmp_path: Path, finder: Finder) -> None:
+    archive = tmp_path / "class.zip"
+    with zipfile.ZipFile(archive, "w") as zip_file:
+        zip_file.writestr("alice.py", NODE)
+        zip_file.writestr("../outside.py", NODE)
+        zip_file.writestr("/etc/absolute.py", NODE)
+        zip_file.writestr("C:\\windows.py", NODE)
+        zip_file.writestr(link("bob/passwd"), "/etc/passwd")
+        zip_file.writestr("bob/node.py", NODE)
+        zip_file.writestr("bob/venv/pyvenv.cfg", "")
+        zip_file.writestr("bob/venv/lib/x.py", NODE)
+        zip_file.writestr("bob/node.py/inside.py", NODE)
+        zip_file.writestr("carl\x1b[31m\n\u202e.py", NODE)
+        zip_file.writestr("__MACOSX/._alice.py", "")
+        zip_file.writestr("empty/", "")
+        with pytest.warns(UserWarning, match="Duplicate"):
+            zip_file.writestr("alice.py", "import evil")
+    found = finder(archive)
+    assert [each.id for each in found.hand_ins] == ["alice", "bob", "carl", "empty"]
+    alice, bob, _, empty = found.hand_ins
+    assert alice.path and alice.path.read_text() == NODE
+    assert content(bob) == {"node.py"}
+    assert empty.problem == "What was handed in is an empty folder."
+    assert noted(found, "outside of its folder", "../outside.py", "/etc/absolute.py")
+    assert noted(found, "link", "bob/passwd")
+    assert noted(found, "cannot be written here", "alice.py", "bob/node.py/inside.py")
+    assert not (tmp_path / "outside.py").exists()
+
+
+def test_links_and_devices_in_a_tar_are_left_out(tmp_path: Path, finder: Finder) -> None:
+    archive = tmp_path / "class.tgz"
+    with tarfile.open(archive, "w:gz") as tar:
+        for name, kind in (("a", tarfile.SYMTYPE), ("b", tarfile.FIFOTYPE), ("c", tarfile.LNKTYPE)):
+            info = tarfile.TarInfo(name)
+            info.type, info.linkname = kind, "/etc/passwd"
+            tar.addfile(info)
+        info = tarfile.TarInfo("Zoë.py")
+        info.size = len(NODE)
+        tar.addfile(info, io.BytesIO(NODE.encode()))
+    found = finder(archive)
+    assert [each.name for each in found.hand_ins] == ["Zoë"]
+    assert noted(found, "link", "a, b, c")
+
+
+def test_accents_are_read_whoever_has_packed_it(tmp_path: Path, finder: Finder) -> None:
+    """UTF-8 that says so, UTF-8 that does not (macOS), and the letters of DOS (Windows)."""
+    for flagged, code in ((True, "utf-8"), (False, "utf-8"), (False, "cp437")):
+        raw = packed({"ZoX.py": NODE, "plain.py": NODE})
+        data = raw
+        if not flagged:  # Python's own would say that it is UTF-8
+            name = "ë".encode(code)
+            data = packed({"Zo" + "X" * len(name) + ".py": NODE, "plain.py": NODE})
+            data = data.replace(b"Zo" + b"X" * len(name), b"Zo" + name)
+        else:
+            data = packed({"Zoë.py": NODE, "plain.py": NODE})
+        archive = tmp_path / f"{flagged}-{code}.zip"
+        archive.write_bytes(data)
+        assert [each.name for each in finder(archive).hand_ins] == ["Zoë", "plain"]
+
+
+def test_a_zip_of_200_mb_is_a_hand_in_and_is_refused_when_it_is_graded(
+    tmp_path: Path, finder: Finder
+) -> None:
+    """A megabyte that unpacks to 201: what a submission may have is what is written of it."""
+    inner = tmp_path / "inner.zip"
+    with (
+        zipfile.ZipFile(inner, "w", zipfile.ZIP_STORED) as zip_file,
+        zip_file.open("video.bin", "w", force_zip64=True) as member,
+    ):
+        for _ in range(201):
+            member.write(bytes(1_000_000))
+    archive = tmp_path / "class.zip"
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as zip_file:
+        zip_file.write(inner, "Big_1_assignsubmission_file/big.zip")
+        zip_file.writestr("Ann_2_assignsubmission_file/node.py", NODE)
+    assert archive.stat().st_size < 1_000_000
+    inner.unlink()
+    found = finder(archive)
+    big, ann = found.hand_ins
+    assert (big.id, ann.id) == ("1", "2")
+    assert big.path and big.path.stat().st_size == class_archive.MAX_FILE_BYTES
+    assert noted(found, "more than 200 MB", "big.zip")
+    with pytest.raises(SubmissionError, match="has more than 200 MB, the limit"):
+        open_submission(big.path).__enter__()
+
+
+def test_a_damaged_member_stays_as_far_as_it_goes(tmp_path: Path, finder: Finder) -> None:
+    archive = tmp_path / "class.zip"
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as zip_file:
+        zip_file.writestr("alice.py", "# 12345678\n")
+        zip_file.writestr("bob.py", NODE)
+    archive.write_bytes(archive.read_bytes().replace(b"12345678", b"abcdefgh"))
+    found = finder(archive)
+    assert [each.id for each in found.hand_ins] == ["alice", "bob"]
+    assert noted(found, "is damaged", "alice.py")
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [
+        (b"", "cannot be unpacked"),
+        (b"PK\x05\x06 no zip", "cannot be unpacked"),
+        (packed({}), "holds no submissions"),
+    ],
+)
+def test_what_is_no_archive_is_refused(
+    tmp_path: Path, finder: Finder, data: bytes, why: str
+) -> None:
+    archive = tmp_path / "class.zip"
+    archive.write_bytes(data)
+    with pytest.raises(UsageError, match=why):
+        finder(archive)
+
+
+@pytest.mark.parametrize(
+    ("limit", "value", "why"),
+    [
+        ("MAX_ALL_BYTES", 1000, "unpacks to more than"),
+        ("MAX_FILES", 3, "holds more than 3 files"),
+        ("MAX_LIST_BYTES", 100, "lists more than any class"),
+    ],
+)
+def test_a_class_has_limits(
+    tmp_path: Path,
+    finder: Finder,
+    monkeypatch: pytest.MonkeyPatch,
+    limit: str,
+    value: int,
+    why: str,
+) -> None:
+    archive = tmp_path / "class.zip"
+    archive.write_bytes(packed({f"student{number}.py": "#" * 500 for number in range(5)}))
+    monkeypatch.setattr(class_archive, limit, value)
+    with pytest.raises(UsageError, match=why):
+        finder(archive)
+
+
+def test_names_that_are_too_long_keep_their_ends(tmp_path: Path, finder: Finder) -> None:
+    name = "Zoë" * 60
+    archive = tmp_path / "class.zip"
+    archive.write_bytes(packed({f"{name}_17_assignsubmission_file_{'ü' * 90}_node.py": NODE}))
+    (found,) = finder(archive).hand_ins
+    assert found.path and found.path.suffix == ".py"
+
+
+def test_what_was_unpacked_goes_with_the_context(tmp_path: Path) -> None:
+    from grader.batch.find import find
+
+    archive = tmp_path / "class.zip"
+    archive.write_bytes(packed({"a.py": NODE, "b.py": NODE}))
+    with find(archive) as found:
+        path = found.hand_ins[0].path
+        assert path and path.exists()
+    assert not path.exists()

@@ -1,0 +1,113 @@
+"""Who is in a class: tables as spreadsheets and course systems write them."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from grader.batch.find.roster import Roster, read_roster
+from grader.errors import UsageError
+from tests.grader.batch.find.exports import NODE, Finder, lay, noted
+
+FILES = {"alice.py": NODE, "bob.py": NODE}
+
+
+def roster(tmp_path: Path, content: str | bytes) -> Roster:
+    return read_roster(lay(tmp_path, {"list.csv": content}) / "list.csv")
+
+
+def who(found: Roster) -> list[tuple[str, str]]:
+    return [(member.person.id, member.person.name) for member in found.members]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "id,name,section\nz1,Zoë Müller,A\nb2,Bob,B\n",
+        "\ufeffID;Name;Section\r\nz1;Zoë Müller;A\r\nb2;Bob;B\r\n",
+        'sep=;\n"Name";"ID"\n"Zoë Müller";z1\nBob;b2\n',
+        "id\tname\nz1\tZoë Müller\nb2\tBob\n".encode("utf-16"),
+        "id;name\nz1;Zoë Müller\nb2;Bob\n".encode("cp1252"),
+        '"name, all of it",id,full_name\nx,z1,Zoë Müller\n\n,,\ny,b2,Bob\n',
+    ],
+    ids=["plain", "bom", "sep", "utf-16", "cp1252", "quotes"],
+)
+def test_a_table_is_read_however_it_was_saved(tmp_path: Path, content: str | bytes) -> None:
+    assert who(roster(tmp_path, content)) == [("z1", "Zoë Müller"), ("b2", "Bob")]
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        (  # Moodle's worksheet: not everybody has an ID number
+            "Identifier,Full name,ID number,Email address\n"
+            "Participant 7,Ann,s1,ann@x.org\nParticipant 8,Bob,,bob@x.org\n",
+            [("ann@x.org", "Ann"), ("bob@x.org", "Bob")],
+        ),
+        (  # Moodle's list of participants, in German
+            "Vorname;Nachname;ID-Nummer;E-Mail-Adresse;Gruppen\nZoë;Müller;s1;z@x.org;A\n",
+            [("s1", "Zoë Müller")],
+        ),
+        (  # GitHub Classroom
+            '"identifier","github_username","github_id","name"\n"ann@x.org","ann-gh","17",""\n',
+            [("ann-gh", "")],
+        ),
+        (  # Classroom 50
+            "username,first_name,last_name,email,section,github_id\nann-gh,Ann,Lee,,,17\n",
+            [("ann-gh", "Ann Lee")],
+        ),
+        ("First Name,Last Name,SID,Email\nAnn,Lee,001,a@x.org\n", [("001", "Ann Lee")]),
+        ("Name\nAnn Lee\n", [("Ann Lee", "Ann Lee")]),
+    ],
+)
+def test_the_columns_of_course_systems_are_known(
+    tmp_path: Path, content: str, expected: list[tuple[str, str]]
+) -> None:
+    assert who(roster(tmp_path, content)) == expected
+
+
+def test_a_table_that_is_none_says_so(tmp_path: Path) -> None:
+    for content, why in (
+        ("", "is empty"),
+        ("colour,size\nred,1\n", "no column that says who somebody is: it has colour, size"),
+        (b"PK\x03\x04\x00\x00", "is no CSV file"),
+        ("id,name\n" + "x" * 200_000, "is no table in CSV"),
+    ):
+        with pytest.raises(UsageError, match=why):
+            roster(tmp_path, content)
+    with pytest.raises(UsageError, match="cannot read the roster"):
+        read_roster(tmp_path / "nothing.csv")
+
+
+def test_a_roster_adds_names_and_whoever_handed_in_nothing(tmp_path: Path, finder: Finder) -> None:
+    table = "id,name,at\nALICE,Alice A,2026-11-01T12:00:00Z\ncarol,Carol C,\ncarol,Twice,\n,,x\n"
+    found = finder(lay(tmp_path / "c", {**FILES, "Roster.csv": table}))
+    assert [(each.id, each.name, each.problem) for each in found.hand_ins] == [
+        ("ALICE", "Alice A", ""),
+        ("bob", "bob", ""),
+        ("carol", "Carol C", "Nothing was handed in."),
+    ]
+    assert found.hand_ins[0].at == datetime(2026, 11, 1, 12, tzinfo=UTC)
+    assert noted(found, "2 hand-ins, 1 missing")
+    assert noted(found, "Not in Roster.csv", "1 hand-in (bob)")
+    assert noted(found, "several rows of the same id", "carol")
+    assert noted(found, "1 of the rows", "neither an id nor a name")
+
+
+def test_names_join_in_whatever_order(tmp_path: Path, finder: Finder) -> None:
+    files = {"müllerzoë_1_2_a.py": NODE, "leeann_3_4_a.py": NODE, "leebo_5_6_a.py": NODE}
+    table = "id,name\ns1,Zoë Müller\ns2,Ann Lee\ns3,Bo Lee\ns4,Lee Bo\n"
+    found = finder(lay(tmp_path / "c", {**files, "roster.csv": table}))
+    there = {each.id: each.name for each in found.hand_ins if each.path}
+    assert there == {"s1": "Zoë Müller", "s2": "Ann Lee", "5": "leebo"}  # two may be leebo
+    assert noted(found, "Not in roster.csv", "leebo")
+
+
+def test_two_files_of_one_student_are_attempts(tmp_path: Path, finder: Finder) -> None:
+    table = "id,name,email\ns1,Alice,alice@x.org\n"
+    files = {"s1.py": NODE, "alice@x.org.zip": b"", "roster.csv": table}
+    found = finder(lay(tmp_path / "c", files))
+    assert [each.id for each in found.hand_ins] == ["s1"]
+    assert noted(found, "Several attempts", "Alice")
