@@ -1,0 +1,193 @@
+"""`grader batch` on a small class of real submissions, in real processes."""
+
+from __future__ import annotations
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import psutil
+import pytest
+
+from grader.batch.entry import Entry, entries
+
+ROOT = Path(__file__).parents[3]
+SUBMISSIONS = ROOT / "tests" / "submissions"
+RIGHT = (SUBMISSIONS / "quick_spiral.py").read_text(encoding="utf-8")
+CRASHES = "import rclpy\nrclpy.init()\nraise RuntimeError('not today')\n"
+PATIENCE_S = 300.0
+
+
+def write(folder: Path, files: dict[str, str | bytes]) -> Path:
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return folder
+
+
+def start(*words: str | Path) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "grader", "batch", *map(str, words)]
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(
+        command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=env
+    )
+
+
+def batch(*words: str | Path) -> tuple[int, str]:
+    process = start(*words)
+    output, messages = process.communicate(timeout=PATIENCE_S)
+    return process.returncode, output + messages
+
+
+def made_together(out: Path) -> dict[str, bytes]:
+    """Gradebook and pages: all but what tells of one run."""
+    return {
+        str(path.relative_to(out)): path.read_bytes()
+        for path in sorted(out.rglob("*"))
+        if path.is_file() and path.relative_to(out).parts[0] not in ("submissions", "store")
+    }
+
+
+def scores(out: Path) -> dict[str, tuple[str, float | None]]:
+    return {entry.id: (entry.state, entry.score) for entry in entries(out)}
+
+
+@pytest.fixture(scope="module")
+def handed_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write(
+        tmp_path_factory.mktemp("handed_in"),
+        {
+            "alice/node.py": RIGHT,
+            "bob/node.py": RIGHT,
+            "carol.zip": b"PK and nothing more",
+            "dave/node.py": CRASHES,
+            "erin/notes.txt": "I could not do it.",
+        },
+    )
+
+
+@pytest.fixture(scope="module")
+def graded(handed_in: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("graded") / "class"
+    code, messages = batch(handed_in, "--out", out, "--jobs", "2")
+    assert code == 0, messages
+    assert "1 hand-in not run: the same content has been run already." in messages
+    assert "[5/5]" in messages
+    return out
+
+
+def test_everybody_gets_what_is_earned_and_one_bad_hand_in_touches_nobody(graded: Path) -> None:
+    found = scores(graded)
+    assert found["alice"] == found["bob"] == ("judged", 100.0)
+    assert found["dave"][0] == "judged"
+    assert found["carol"] == found["erin"] == ("unusable", 0.0)
+
+
+def test_a_student_s_folder_has_what_grader_run_writes(graded: Path) -> None:
+    folder = graded / "submissions" / "alice"
+    for name in ("result.json", "report.html", "canvas.png", "output.txt"):
+        assert (folder / name).stat().st_size or name == "output.txt"
+    assert (folder / "recording" / "varied_2" / "metadata.yaml").exists()
+    result = Entry.read(folder).result
+    assert result is not None and result.handed_in is not None
+    assert result.handed_in.id == "alice"
+
+
+def test_the_gradebook_has_everybody(graded: Path) -> None:
+    rows = csv.DictReader((graded / "gradebook.csv").read_text("utf-8-sig").splitlines())
+    assert [row["id"] for row in rows] == ["alice", "bob", "carol", "dave", "erin"]
+
+
+def test_a_second_call_runs_nothing_and_changes_nothing(handed_in: Path, graded: Path) -> None:
+    before = made_together(graded)
+    when = (graded / "submissions" / "alice" / "result.json").stat().st_mtime_ns
+    code, messages = batch(handed_in, "--out", graded)
+    assert (code, "5 hand-ins of 5 graded before." in messages) == (0, True), messages
+    assert (graded / "submissions" / "alice" / "result.json").stat().st_mtime_ns == when
+    assert made_together(graded) == before
+
+
+def test_who_hands_in_once_more_is_graded_once_more_and_nobody_else(
+    handed_in: Path, graded: Path, tmp_path: Path
+) -> None:
+    later = tmp_path / "handed_in"
+    for path in handed_in.rglob("*"):
+        if path.is_file():
+            write(later, {str(path.relative_to(handed_in)): path.read_bytes()})
+    write(later, {"dave/node.py": RIGHT})
+    code, messages = batch(later, "--out", graded)
+    assert (code, "4 hand-ins of 5 graded before." in messages) == (0, True), messages
+    assert scores(graded)["dave"] == ("judged", 100.0)
+    assert "1 hand-in not run" in messages  # what alice handed in is what dave has now
+    assert batch(handed_in, "--out", graded)[0] == 0
+
+
+def test_another_exercise_does_not_come_into_the_same_folder(handed_in: Path, graded: Path) -> None:
+    before = made_together(graded)
+    code, messages = batch(handed_in, "--out", graded, "--exercise", "square")
+    assert code == 2
+    assert "was graded by something else (the exercise" in messages
+    assert made_together(graded) == before
+
+
+def test_a_changed_rubric_is_to_be_looked_at_first(
+    handed_in: Path, graded: Path, tmp_path: Path
+) -> None:
+    rubric = tmp_path / "new.yaml"
+    rubric.write_text("exercise: turtlesim_challenge\npoints: {moves: 6}\n")
+    code, messages = batch(handed_in, "--out", graded, "--exercise", rubric)
+    assert (code, "grader batch --regrade" in messages) == (2, True), messages
+
+
+def test_who_is_named_by_again_is_run_again(handed_in: Path, graded: Path) -> None:
+    when = {
+        name: (graded / "submissions" / name / "result.json").stat().st_mtime_ns
+        for name in ("alice", "dave")
+    }
+    code, messages = batch(handed_in, "--out", graded, "--again", "dave")
+    assert (code, "4 hand-ins of 5 graded before." in messages) == (0, True), messages
+    now = {
+        name: (graded / "submissions" / name / "result.json").stat().st_mtime_ns for name in when
+    }
+    assert (now["alice"], now["dave"] > when["dave"]) == (when["alice"], True)
+    code, messages = batch(handed_in, "--out", graded, "--again", "nobody")
+    assert (code, "there is no hand-in of this name" in messages) == (2, True)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="a system without kill -9")
+def test_what_kill_9_interrupts_goes_on_and_comes_out_the_same(
+    handed_in: Path, graded: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "class"
+    process = start(handed_in, "--out", out, "--jobs", "2")
+    assert process.stderr is not None
+    for line in process.stderr:
+        if "[3/5]" in line:
+            break
+    family = [process, *psutil.Process(process.pid).children(recursive=True)]
+    process.kill()
+    process.communicate()
+    gone, left = psutil.wait_procs(family[1:], timeout=60)
+    assert (len(gone), left) == (len(family) - 1, [])
+    code, messages = batch(handed_in, "--out", out)
+    assert (code, "graded before." in messages) == (0, True), messages
+    assert made_together(out) == made_together(graded)
+    assert scores(out) == scores(graded)
+
+
+def test_parts_that_were_graded_apart_are_the_class(
+    handed_in: Path, graded: Path, tmp_path: Path
+) -> None:
+    for part in ("1/2", "2/2"):
+        place = tmp_path / part[0]
+        code, messages = batch(handed_in, "--out", place, "--shard", part)
+        assert code == 0, messages
+    parts = (tmp_path / "1", tmp_path / "2")
+    assert scores(parts[0]).keys().isdisjoint(scores(parts[1]))
+    code, messages = batch("--merge", *parts, "--out", tmp_path / "whole")
+    assert code == 0, messages
+    assert made_together(tmp_path / "whole") == made_together(graded)
