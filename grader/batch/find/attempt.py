@@ -53,7 +53,7 @@ class Attempt:
         number: counts from 1; 0 if the export does not tell.
         at: when, with its time zone.
         problem: why there is nothing to grade.
-        aliases: by what else a roster may know them, best first.
+        aliases: what else their id may be; which of these, is the same for all of a class.
         alone: the file in a folder that holds nothing else is what was handed in.
     """
 

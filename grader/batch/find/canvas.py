@@ -54,18 +54,18 @@ def looks_like(items: Sequence[Item]) -> bool:
 
 def read(items: Sequence[Item]) -> Reading:
     """The hand-ins in one."""
-    files: dict[str, list[_File]] = defaultdict(list)
-    people: dict[str, Person] = {}
+    files: dict[tuple[str, str], list[_File]] = defaultdict(list)
+    people: dict[tuple[str, str], Person] = {}
     others: list[str] = []
     for item in items:
         match = _parsed(item)
         if match is None:
             others.append(item.name)
             continue
-        whose = match["user"] or match["code"]
         late = "yes" if match["late"] or match["late_too"] else ""
         name, user = match["name"] or "", match["user"] or ""
-        people[whose] = person(whose, name, {"ID": user, "Late": late})
+        whose = (user or match["code"], name)
+        people[whose] = person(whose[0], name, {"ID": user, "Late": late})
         own = files[whose]
         if match["file"] and not is_junk(match["filename"]):
             own.append(_file(item, match))
@@ -73,7 +73,9 @@ def read(items: Sequence[Item]) -> Reading:
     for whose, own in files.items():
         kept, older = _newest(own)
         outdated += [file.item.name for file in older]
-        attempts.append(_attempt(people[whose], kept))
+        attempts.append(_attempt("_".join(whose), people[whose], kept))
+    if len({id for id, _ in files}) < len(files):  # names can be chosen so: ann_12
+        notes.append("Some ids stand there with several names; look at these hand-ins yourself.")
     if outdated:
         notes.append(f"Left out, since there is a newer one of this name: {listed(outdated)}.")
     if others:
@@ -116,8 +118,8 @@ def _newest(files: list[_File]) -> tuple[list[_File], list[_File]]:
     return kept, older
 
 
-def _attempt(whose: Person, files: list[_File]) -> Attempt:
+def _attempt(whose: str, student: Person, files: list[_File]) -> Attempt:
     pieces = tuple(Piece(file.item.path, file.filename) for file in files)
     number = 1 + max((file.again for file in files), default=0)
     problem = "" if pieces else _ONLY_TEXT
-    return Attempt(whose.id, (whose,), pieces, number, problem=problem)
+    return Attempt(whose, (student,), pieces, number, problem=problem)

@@ -73,6 +73,8 @@ def _answer(archive: Path, into: Path) -> bytes:
     except (*DAMAGED, NotImplementedError, OSError) as error:
         told = shown(str(error) or "it ends too early")
         why = f"{name} cannot be unpacked: {told}. Download it again, or unpack it yourself."
+        if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+            why = f"{name} cannot be unpacked: {into} has no space left. {_INSTEAD}"
     return json.dumps({"refused": why}).encode()
 
 

@@ -1,7 +1,7 @@
 """A folder of git repositories, as `gh teacher download` and `gh classroom clone` make it.
 
 Classroom 50 calls them `CLASSROOM-ASSIGNMENT-USER`, GitHub Classroom `ASSIGNMENT-USER`. What all
-begin with, up to a hyphen, is left out; a roster settles it where users are called alike. Beside
+begin with, up to a hyphen, is left out; a roster settles where that ends, the same for all. Beside
 them `gh teacher download` lays `scores.csv`, which says who was to hand in something, and when
 (`roster.py`).
 """
@@ -62,12 +62,13 @@ def _prefix(names: Sequence[str]) -> str:
 
 def _attempt(item: Item, prefix: str, commits: LastCommits) -> Attempt:
     user = item.name.removeprefix(prefix) or item.name
-    parts = item.name.split("-")
-    endings = tuple("-".join(parts[at:]) for at in range(len(parts)))
+    # of one repository alone nobody knows where the user's name begins, but a roster may
+    shared = prefix or item.name[: item.name.rfind("-") + 1]
+    starts = [0, *(at + 1 for at, sign in enumerate(shared) if sign == "-")]
     return Attempt(
         item.name,
         (person(user),),
         (Piece(item.path),),
         at=commits.of(item.path),
-        aliases=endings,
+        aliases=tuple(item.name[start:] for start in starts),
     )

@@ -15,7 +15,7 @@ from grader.batch.find.attempt import Attempt, Item, Layout, Piece, Reading, ite
 from grader.batch.find.ids import MAX_ID, safe_ids
 from grader.batch.find.joining import NOTHING, joined
 from grader.batch.find.pattern import Pattern
-from grader.batch.find.roster import Roster, read_roster
+from grader.batch.find.roster import Roster, is_of_classroom50, read_roster
 from grader.batch.find.staging import staged
 from grader.batch.hand_in import HandIn
 from grader.errors import UsageError
@@ -24,12 +24,14 @@ from grader.submission.folder import listed, shown
 from grader.submission.unpacking import is_archive
 from grader.text import count
 
-#: Who is in the class, if it lies among the hand-ins; the second as Classroom 50 writes it.
-ROSTERS: Final = ("roster.csv", "scores.csv")
+#: Who is in the class, if it lies among the hand-ins; the second is Classroom 50's.
+ROSTER: Final = "roster.csv"
+SCORES: Final = "scores.csv"
 #: The first one that a folder looks like is taken; a plain folder looks like nothing.
 LAYOUTS: Final[tuple[Layout, ...]] = (gradescope, moodle, canvas, clones)
 _MAX_WRAPPERS: Final = 3  # folders in a folder that an archive was packed from
 _EMPTY: Final = "What was handed in is an empty folder."
+_NOWHERE: Final = "What was handed in is a link that leads nowhere."
 
 
 @dataclass(frozen=True)
@@ -107,7 +109,7 @@ def _folder(submissions: Path, scratch: Path) -> tuple[Path, list[str]]:
         folder = scratch / "class"
         return folder, class_archive.unpack(submissions, folder)
     if submissions.suffix == ".py":
-        raise _is_one(submissions, "a Python file")
+        raise _is_one(submissions, "it is a Python file")
     raise UsageError(
         f"{shown(submissions)} is neither a folder of submissions nor a .zip or .tar.gz of one."
     )
@@ -125,7 +127,7 @@ def _top(
     for _ in range(_MAX_WRAPPERS + 1):
         items = []
         for item in items_of(folder):
-            if not item.is_folder and item.name.lower() in ROSTERS:
+            if not item.is_folder and item.name.lower() in (ROSTER, SCORES):
                 lying[item.name.lower()] = item
             elif not _is_ours(item):
                 items.append(item)
@@ -137,7 +139,7 @@ def _top(
             if not is_packed:
                 break
             if what := plain.one_submission(below):
-                raise _is_one(submissions, what)
+                raise _is_one(submissions, f"it holds {what}")
         folder = items[0].path
     return folder, items, lying
 
@@ -158,13 +160,13 @@ def _read(submissions: Path, items: Sequence[Item], names: Pattern | None) -> Re
     if layout := _layout(items):
         return layout.read(items)
     if what := plain.one_submission(items):
-        raise _is_one(submissions, what)
+        raise _is_one(submissions, f"it holds {what}")
     return plain.read(items)
 
 
 def _is_one(submissions: Path, what: str) -> UsageError:
     return UsageError(
-        f"{shown(submissions)} is one submission, and not a folder of them: it is or holds {what}. "
+        f"{shown(submissions)} is one submission, and not a folder of them: {what}. "
         f"Use: grader run {shown(submissions)}"
     )
 
@@ -172,10 +174,10 @@ def _is_one(submissions: Path, what: str) -> UsageError:
 def _roster(given: Path | None, lying: dict[str, Item]) -> Roster | None:
     if given is not None:
         return read_roster(given)
-    for name in ROSTERS:
-        if item := lying.get(name):
-            return read_roster(item.path)
-    return None
+    if item := lying.get(ROSTER):
+        return read_roster(item.path)
+    item = lying.get(SCORES)
+    return read_roster(item.path) if item and is_of_classroom50(item.path) else None
 
 
 # Which attempt counts, and what it is called ------------------------------------------------------
@@ -221,6 +223,8 @@ def _id(attempt: Attempt) -> str:
 def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
     piece: Piece | None = None
     problem = attempt.problem
+    if not problem and not all(piece.path.exists() for piece in attempt.pieces):
+        problem = _NOWHERE
     if not problem:
         piece = staged(attempt, place)
         problem = _EMPTY if piece is None else ""

@@ -11,7 +11,6 @@ from grader.batch.find.attempt import Attempt
 from grader.batch.find.roster import Member, Roster, folded
 from grader.batch.hand_in import Person
 from grader.submission.folder import listed, shown
-from grader.text import count
 
 NOTHING = "Nothing was handed in."
 
@@ -19,28 +18,28 @@ NOTHING = "Nothing was handed in."
 def joined(attempts: Sequence[Attempt], roster: Roster) -> tuple[list[Attempt], list[str]]:
     """The attempts with what the roster says of whose they are, and an empty one of all others.
 
-    Somebody is known by an id, an email address, a user name, the number of a Moodle participant;
-    else by a part of a repository's name; else by a name, if nobody else has it; else a whole
-    group by its name.
+    A group is known by its name; somebody by an id, an email address, a user name, the number of a
+    Moodle participant, the end of a repository's name; else by a name, if nobody else has it.
 
     Returns:
         Them, and what to say.
     """
     index = _Index(roster.members)
+    matched = _matched(attempts, index)
     found, unknown, seen = [], [], set[str]()
-    for attempt in attempts:
-        members: list[Member | None] = list(index.group(attempt))
-        people = tuple(member.person for member in members if member)
-        if not people:
-            members = [index.member(each, attempt.aliases) for each in attempt.people]
+    for attempt, members in zip(attempts, matched, strict=True):
+        known = [member for member in members if member]
+        people = tuple(member.person for member in known)
+        if not index.group(attempt):
             people = tuple(map(_person, attempt.people, members))
-        ids = [member.person.id for member in members if member]
-        if not ids:
-            unknown.append(attempt.people[0].name or attempt.people[0].id)
-        seen.update(ids)
-        whose = "+".join(sorted(each.id for each in people)) if ids else attempt.whose
-        times = [member.at for member in members if member and member.at]
-        at = max(times) if times else attempt.at
+            pairs = zip(attempt.people, members, strict=True)
+            unknown += [person.name or person.id for person, member in pairs if member is None]
+        if not known:
+            found.append(attempt)
+            continue
+        seen.update(member.person.id for member in known)
+        whose = "+".join(sorted(each.id for each in people))
+        at = max((member.at for member in known if member.at), default=attempt.at)
         found.append(replace(attempt, whose=whose, people=people, at=at))
     found += [
         Attempt(member.person.id, (member.person,), problem=NOTHING)
@@ -49,13 +48,49 @@ def joined(attempts: Sequence[Attempt], roster: Roster) -> tuple[list[Attempt], 
     ]
     notes = list(roster.notes)
     if unknown:
-        what = count(len(unknown), "hand-in")
-        notes.append(f"Not in {shown(roster.name)}, and yet there: {what} ({listed(unknown)}).")
+        notes.append(f"Not in {shown(roster.name)}, and yet there: {listed(unknown)}.")
     return found, notes
 
 
 #: Columns of an export that say who somebody is.
 _KEYS = ("ID", "SID", "Email", "email", "Identifier")
+
+
+def _matched(attempts: Sequence[Attempt], index: _Index) -> list[Sequence[Member | None]]:
+    """Who of the class each attempt is of.
+
+    A name is one's own to choose in most systems: it counts only if no other has it, and for
+    whoever is not known by something better already.
+    """
+    alias = _best_alias(attempts, index)
+    sure: list[Sequence[Member | None]] = []
+    for attempt in attempts:
+        group = index.group(attempt)
+        if group or not attempt.aliases:
+            sure.append(group or [index.by_key(person) for person in attempt.people])
+        else:
+            sure.append([index.keyed(attempt.aliases[alias : alias + 1])])
+    names = [
+        [None] if any(members) else [index.by_name(person) for person in attempt.people]
+        for attempt, members in zip(attempts, sure, strict=True)
+    ]
+    taken = {member.person.id for members in sure for member in members if member}
+    claims: dict[str, set[str]] = defaultdict(set)
+    for attempt, members in zip(attempts, names, strict=True):
+        for member in filter(None, members):
+            claims[member.person.id].add(attempt.whose)
+    free = {id for id, whose in claims.items() if len(whose) == 1} - taken
+    for number, members in enumerate(names):
+        if any(members):
+            sure[number] = [each if each and each.person.id in free else None for each in members]
+    return sure
+
+
+def _best_alias(attempts: Sequence[Attempt], index: _Index) -> int:
+    """Which of their aliases most are known by; the last if none is."""
+    most = min((len(attempt.aliases) for attempt in attempts), default=0)
+    known = [sum(bool(index.keyed([each.aliases[at]])) for each in attempts) for at in range(most)]
+    return max(range(most), key=lambda at: (known[at], at), default=0)
 
 
 class _Index:
@@ -70,13 +105,18 @@ class _Index:
             for group in member.groups:
                 self._groups[_letters(group)].append(member)
 
-    def member(self, person: Person, aliases: Iterable[str]) -> Member | None:
-        """Who of the class somebody is."""
+    def keyed(self, keys: Iterable[str]) -> Member | None:
+        """Who has the first of these keys that anybody has."""
+        return next(filter(None, (self._by_key.get(folded(key)) for key in keys)), None)
+
+    def by_key(self, person: Person) -> Member | None:
+        """Who somebody is, by his id or what else an export says of him but the name."""
         columns = (person.columns[title] for title in _KEYS if title in person.columns)
-        for key in (person.id, *columns, *aliases):
-            member = self._by_key.get(folded(key))
-            if member and not _contradicts(person, member):
-                return member
+        member = self.keyed((person.id, *columns))
+        return None if member and _contradicts(person, member) else member
+
+    def by_name(self, person: Person) -> Member | None:
+        """Who somebody is, by his name; a folder's name may be one, too."""
         for name in filter(None, (_letters(person.name), _letters(person.id))):
             if member := self._by_name.get(name):
                 return member

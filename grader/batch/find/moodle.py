@@ -42,14 +42,17 @@ def read(items: Sequence[Item]) -> Reading:
         own = pieces.setdefault((match["name"], match["number"] or ""), [])
         if match["kind"] == "file" and not is_junk(filename or "a"):
             own.append(Piece(item.path, "" if item.is_folder else filename))
-    attempts = [_attempt(name, number, found) for (name, number), found in pieces.items()]
+    of_groups = any(not number for _, number in pieces)  # nobody else has none
+    attempts = [
+        _attempt(name, number, found, "" if of_groups else f"Participant {number}")
+        for (name, number), found in pieces.items()
+    ]
     notes = [f"Left out, since Moodle does not name them so: {listed(others)}."] if others else []
     return Reading(LAYOUT, attempts, notes)
 
 
-def _attempt(name: str, number: str, pieces: list[Piece]) -> Attempt:
-    # "Participant 17" is what a grading worksheet calls whoever is called nothing else
-    identifier = f"Participant {number}" if number else ""
+def _attempt(name: str, number: str, pieces: list[Piece], identifier: str) -> Attempt:
+    """One student's, or one group's; a grading worksheet calls a student by the identifier."""
     known = "" if name == "Participant" else name
     return Attempt(
         f"{name}_{number}",

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import cache
 from typing import Final
 
 from grader.batch.find.attempt import Attempt, Item, Piece, Reading, items_of, person
@@ -20,11 +21,15 @@ from grader.errors import UsageError
 from grader.submission.folder import is_junk, listed, shown
 
 MAX_LEVELS: Final = 4
+_MAX_DIGITS: Final = 9  # of the number of an attempt
 _WHOSE: Final = ("id", "name", "email")
 _FIELD: Final = re.compile(r"\{([^{}]*)\}")
 _WORD: Final = re.compile(r"[^\W\d]\w*")
-_SHAPES: Final = {"attempt": r"\d{1,6}"}
 _ADVICE: Final = "Write it like {id}_{name}_{attempt}: see docs/batch.md."
+
+
+class _Field(str):
+    """A field's name, among the parts of a pattern; the others stand for themselves."""
 
 
 class Pattern:
@@ -37,29 +42,57 @@ class Pattern:
     def __init__(self, text: str) -> None:
         self.text = text
         self.levels = text.count("/") + 1
-        self.fields: list[str] = []
-        parts = []
-        at, ended = 0, -1
+        self._parts: list[str] = []
+        at = 0
         for match in _FIELD.finditer(text):
-            if match.start() == ended:
+            if match.start() == at and self._parts:
                 raise self._refused("two fields follow each other, with nothing between them")
-            parts += [self._literal(text[at : match.start()]), self._field(match[1])]
-            at = ended = match.end()
-        parts.append(self._literal(text[at:]))
-        if not set(_WHOSE) & set(self.fields):
+            self._parts += [self._literal(text[at : match.start()]), self._field(match[1])]
+            at = match.end()
+        self._parts.append(self._literal(text[at:]))
+        if not set(_WHOSE) & self._fields:
             raise self._refused("it does not say whose a file is: one of {id}, {name}, {email}")
         if self.levels > MAX_LEVELS or "" in text.split("/"):
             raise self._refused(f"it has empty folders, or more than {MAX_LEVELS}")
-        self._regex = re.compile("".join(parts), re.DOTALL)
+
+    @property
+    def _fields(self) -> set[str]:
+        return {str(part) for part in self._parts if isinstance(part, _Field)}
 
     def fields_of(self, path: Sequence[Item]) -> dict[str, str] | None:
         """What a name says, with the folders above it; None if it does not fit."""
         folders = [item.name for item in path[:-1]]
-        names = [path[-1].name] if "filename" in self.fields else [stem(path[-1]), path[-1].name]
+        names = [path[-1].name] if "filename" in self._fields else [stem(path[-1]), path[-1].name]
         for name in names:
-            if match := self._regex.fullmatch("/".join((*folders, name))):
-                return match.groupdict()
+            said = self._fitted("/".join((*folders, name)))
+            if said is not None:
+                return {field: text for field, text in said if field}
         return None
+
+    def _fitted(self, text: str) -> list[tuple[str, str]] | None:
+        """The fields in a text.
+
+        A regular expression would do, but for names that are made to keep it busy: here each part
+        is tried at each place once.
+        """
+
+        @cache
+        def rest(number: int, at: int) -> list[tuple[str, str]] | None:
+            if number == len(self._parts):
+                return [] if at == len(text) else None
+            part = self._parts[number]
+            if not isinstance(part, _Field):
+                fits = text.startswith(part, at)
+                return rest(number + 1, at + len(part)) if fits else None
+            for end in range(at + 1, len(text) + 1):
+                last = text[end - 1]
+                if last == "/" or (part == "attempt" and last not in "0123456789"):
+                    break
+                if (said := rest(number + 1, end)) is not None:
+                    return [(str(part), text[at:end]), *said]
+            return None
+
+        return rest(0, 0)
 
     def read(self, items: Sequence[Item]) -> Reading:
         """The hand-ins in a folder.
@@ -94,17 +127,16 @@ class Pattern:
     def _literal(self, text: str) -> str:
         if "{" in text or "}" in text:
             raise self._refused("a brace has no partner")
-        return re.escape(text)
+        return text
 
-    def _field(self, name: str) -> str:
+    def _field(self, name: str) -> _Field:
         if not name:
-            return "[^/]+?"
+            return _Field()
         if not _WORD.fullmatch(name):
             raise self._refused(f"{{{shown(name)}}} is no name for a field: expected one word")
-        if name in self.fields:
+        if name in self._fields:
             raise self._refused(f"{{{shown(name)}}} stands in it twice")
-        self.fields.append(name)
-        return f"(?P<{name}>{_SHAPES.get(name, '[^/]+?')})"
+        return _Field(name)
 
     def _refused(self, why: str) -> UsageError:
         return UsageError(f"--pattern {shown(self.text)}: {why}. {_ADVICE}")
@@ -113,7 +145,7 @@ class Pattern:
 def _attempt(item: Item, said: dict[str, str], notes: list[str]) -> Attempt:
     id, name, email = (said.pop(field, "").strip() for field in _WHOSE)
     filename = said.pop("filename", "")
-    number = int(said.pop("attempt", "0"))
+    number = int(said.pop("attempt", "0")[-_MAX_DIGITS:])
     at = None
     if text := said.pop("at", ""):
         at = read_time(text)

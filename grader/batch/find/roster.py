@@ -9,7 +9,7 @@ Gradescope's roster, GitHub Classroom's `classroom_roster.csv`, Classroom 50's r
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -35,9 +35,11 @@ _NAMES: Final = ("name", "fullname", "studentname", "student", "vollständigerna
 _FIRST: Final = ("firstname", "givenname", "vorname", "prénom")
 _LAST: Final = ("lastname", "surname", "familyname", "nachname", "nomdefamille", "nom")
 _GROUPS: Final = ("group", "groups", "team", "groupname", "teamname", "gruppe", "groupe")
-_TIMES: Final = ("at", "handedinat", "submittedat", "submissiontime", "submissiontag")
+#: A column of Classroom 50's `scores.csv`.
+_TAGS: Final = "submissiontag"
+_TIMES: Final = ("at", "handedinat", "submittedat", "submissiontime", _TAGS)
 #: "Participant 17", in whatever language: Moodle's number of a participant in one assignment.
-_PARTICIPANT: Final = re.compile(r"\D+ (\d+)")
+_PARTICIPANT: Final = re.compile(r"[^\d@]{5,} (\d+)")
 #: `submit/2026-06-01T14-32-05Z`, as Classroom 50 calls a hand-in.
 _TAG: Final = re.compile(r"submit/(.+)")
 #: Rows of Canvas's gradebook that are nobody.
@@ -79,6 +81,15 @@ def folded(text: str) -> str:
     return text.strip().casefold()
 
 
+def is_of_classroom50(path: Path) -> bool:
+    """Whether a table is Classroom 50's `scores.csv`, and nobody else's of this name."""
+    try:
+        titles, _ = read_table(path)
+    except UsageError:
+        return False
+    return _TAGS in map(_squashed, titles)
+
+
 def read_roster(path: Path) -> Roster:
     """Read a roster.
 
@@ -97,26 +108,22 @@ def read_roster(path: Path) -> Roster:
     rows = [row for row in rows if folded(names.of(row)) not in _NOBODY]
     keyed = [row for row in rows if any(row[at] for at in ids) or names.of(row)]
     notes = [_nameless(path, len(rows) - len(keyed))] if len(keyed) < len(rows) else []
-    id_column = next((at for at in ids if _tells_apart(row[at] for row in keyed)), None)
-    several = any(title in columns for title in ("submissiontag",))
+    # first of all the column that tells everybody apart, else whatever a row has
+    ids.sort(key=lambda at: not _tells_apart(row[at] for row in keyed))
     members: dict[str, Member] = {}
     twice: list[str] = []
     for row in keyed:
-        found = (row[at] for at in ([] if id_column is None else [id_column]) + ids)
-        id = next(filter(None, found), "") or names.of(row)
-        member = _member(id, names.of(row), row, titles, columns)
-        same = folded(id)
+        member = _member(row, ids, names.of(row), titles, columns)
+        same = folded(member.person.id)
         if same not in members:
             members[same] = member
-        elif several:  # one row each time that somebody handed in
+        elif _TAGS in columns:  # one row each time that somebody handed in
             members[same] = max(members[same], member, key=_moment)
         else:
-            twice.append(id)
+            twice.append(member.person.id)
     if twice:
-        notes.append(
-            f"{shown(path.name)} has several rows of the same id, of which the first counts: "
-            f"{listed(twice)}."
-        )
+        what = "has several rows of the same id, of which the first counts"
+        notes.append(f"{shown(path.name)} {what}: {listed(twice)}.")
     return Roster(path.name, list(members.values()), notes)
 
 
@@ -139,10 +146,17 @@ class _Names:
 
 
 def _member(
-    id: str, name: str, row: Sequence[str], titles: Sequence[str], columns: dict[str, int]
+    row: Sequence[str],
+    ids: Sequence[int],
+    name: str,
+    titles: Sequence[str],
+    columns: Mapping[str, int],
 ) -> Member:
-    known = [row[columns[title]] for title in _IDS if title in columns]
+    known = [row[at] for at in ids if row[at]]
     numbers = [match[1] for value in known if (match := _PARTICIPANT.fullmatch(value))]
+    id = known[0] if known else name
+    if match := _PARTICIPANT.fullmatch(id) if known else None:
+        id = match[1]
     groups = {
         part.strip()
         for title in _GROUPS

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from grader.errors import SubmissionError
+from grader.submission.opening import open_submission
 from tests.grader.batch.find.exports import NODE, Finder, content, lay, noted, packed
 
 FOLDERS = {
@@ -103,6 +105,18 @@ def test_a_group_is_not_taken_for_a_participant_of_its_number(
     found = finder(lay(tmp_path / "m", export))
     assert [each.name for each in found.hand_ins] == ["Team Blue", "Ann Lee"]
     assert noted(found, "Not in roster.csv", "Team Blue")
+
+
+def test_what_is_found_is_what_the_grader_opens(tmp_path: Path, finder: Finder) -> None:
+    by_id = finder.by_id(lay(tmp_path / "m", FOLDERS))
+    for id, what in (("101", "turtle_controller.py"), ("105", "node.py")):
+        path = by_id[id].path
+        assert path
+        with open_submission(path) as submission:
+            assert what in submission.found
+    assert by_id["106"].path
+    with pytest.raises(SubmissionError, match="cannot be unpacked as a zip"):
+        open_submission(by_id["106"].path).__enter__()
 
 
 @pytest.mark.parametrize("kind", ["zip", "tar.gz"])

@@ -76,3 +76,10 @@ def test_a_pattern_that_fits_nothing_says_what_there_is(tmp_path: Path, finder: 
     folder = lay(tmp_path / "c", {"alice.py": NODE, "bob.py": NODE})
     with pytest.raises(UsageError, match=r"fits none of what was found: alice\.py, bob\.py"):
         finder(folder, pattern="{id}_{name}")
+
+
+def test_no_name_keeps_a_pattern_busy(tmp_path: Path, finder: Finder) -> None:
+    """A regular expression would try all ways to part it: 10 million millions."""
+    folder = lay(tmp_path / "c", {"_" * 200 + "x.py": NODE, "1_2_3_4_5_6_7_1_.py": NODE})
+    found = finder(folder, pattern="{id}_{a}_{b}_{c}_{d}_{e}_{f}_{attempt}_")
+    assert [each.id for each in found.hand_ins] == ["1"]

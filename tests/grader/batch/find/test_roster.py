@@ -58,6 +58,7 @@ def test_a_table_is_read_however_it_was_saved(tmp_path: Path, content: str | byt
             "username,first_name,last_name,email,section,github_id\nann-gh,Ann,Lee,,,17\n",
             [("ann-gh", "Ann Lee")],
         ),
+        ("Identifier,Status\nParticipant 7,\nParticipant 8,\n", [("7", ""), ("8", "")]),  # blind
         ("First Name,Last Name,SID,Email\nAnn,Lee,001,a@x.org\n", [("001", "Ann Lee")]),
         ("Name\nAnn Lee\n", [("Ann Lee", "Ann Lee")]),
     ],
@@ -91,7 +92,7 @@ def test_a_roster_adds_names_and_whoever_handed_in_nothing(tmp_path: Path, finde
     ]
     assert found.hand_ins[0].at == datetime(2026, 11, 1, 12, tzinfo=UTC)
     assert noted(found, "2 hand-ins, 1 missing")
-    assert noted(found, "Not in Roster.csv", "1 hand-in (bob)")
+    assert noted(found, "Not in Roster.csv", "bob")
     assert noted(found, "several rows of the same id", "carol")
     assert noted(found, "1 of the rows", "neither an id nor a name")
 
@@ -111,3 +112,42 @@ def test_two_files_of_one_student_are_attempts(tmp_path: Path, finder: Finder) -
     found = finder(lay(tmp_path / "c", files))
     assert [each.id for each in found.hand_ins] == ["s1"]
     assert noted(found, "Several attempts", "Alice")
+
+
+def test_nobody_gets_anothers_place_by_his_name(tmp_path: Path, finder: Finder) -> None:
+    """Names can be chosen, in Moodle, Canvas and GitHub alike."""
+    files = {
+        "Ann Lee_1_assignsubmission_file/node.py": NODE,
+        "Ann Lee_2_assignsubmission_file/node.py": "import evil",
+        "Bob_3_assignsubmission_file/node.py": NODE,
+    }
+    table = "id,name\na,Ann Lee\nb,Bob\n"
+    found = finder(lay(tmp_path / "m", {**files, "roster.csv": table}))
+    assert [(each.id, bool(each.path)) for each in found.hand_ins] == [
+        ("1", True),
+        ("2", True),
+        ("a", False),
+        ("b", True),
+    ]
+    assert noted(found, "Not in roster.csv", "Ann Lee, Ann Lee")
+    files = {"ann_12_55_x.py": NODE, "eve_12_56_66_x.py": "import evil"}
+    found = finder(lay(tmp_path / "c", files))
+    assert len(found.hand_ins) == 2
+    assert noted(found, "Some ids stand there with several names")
+
+
+def test_the_users_of_repositories_begin_at_the_same_place(tmp_path: Path, finder: Finder) -> None:
+    for name in ("hw-ann", "hw-x-ann", "hw-bob"):
+        lay(tmp_path / "c" / name, {"node.py": NODE, ".classroom50.yml": ""})
+    lay(tmp_path / "c", {"roster.csv": "username,name\nann,Ann\nbob,Bob\n"})
+    found = finder(tmp_path / "c")
+    assert {each.id: each.name for each in found.hand_ins} == {
+        "ann": "Ann",
+        "bob": "Bob",
+        "x-ann": "x-ann",
+    }
+
+
+def test_another_table_of_scores_is_no_roster(tmp_path: Path, finder: Finder) -> None:
+    found = finder(lay(tmp_path / "c", {**FILES, "scores.csv": "colour\nred\n"}))
+    assert [each.id for each in found.hand_ins] == ["alice", "bob"]
