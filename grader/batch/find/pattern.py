@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Final
 
@@ -100,7 +101,7 @@ class Pattern:
         Raises:
             UsageError: nothing fits.
         """
-        attempts, others, notes = [], [], list[str]()
+        attempts, others, notes = list[Attempt](), list[str](), list[str]()
         for path in self._paths(items, ()):
             said = self.fields_of(path)
             if said is None or is_junk(said.get("filename") or "a"):
@@ -112,6 +113,8 @@ class Pattern:
             raise UsageError(
                 f"--pattern {shown(self.text)} fits none of what was found: {found}. {_ADVICE}"
             )
+        if "filename" in self._fields:
+            attempts = _together(attempts)
         if others:
             notes.append(f"Left out, since the pattern does not fit: {listed(others)}.")
         return Reading(f"the pattern {shown(self.text)} says", attempts, notes)
@@ -140,6 +143,16 @@ class Pattern:
 
     def _refused(self, why: str) -> UsageError:
         return UsageError(f"--pattern {shown(self.text)}: {why}. {_ADVICE}")
+
+
+def _together(attempts: Sequence[Attempt]) -> list[Attempt]:
+    """The same, with all files that were handed in at once as one attempt."""
+    found: dict[object, Attempt] = {}
+    for each in attempts:
+        same = (each.whose, each.number, each.at)
+        before = found.get(same)
+        found[same] = replace(before, pieces=before.pieces + each.pieces) if before else each
+    return list(found.values())
 
 
 def _attempt(item: Item, said: dict[str, str], notes: list[str]) -> Attempt:

@@ -9,7 +9,7 @@ import pytest
 
 from grader.batch.find.pattern import Pattern
 from grader.errors import UsageError
-from tests.grader.batch.find.exports import NODE, Finder, lay, noted
+from tests.grader.batch.find.exports import NODE, Finder, content, lay, noted
 
 
 def test_names_of_files_are_taken_apart(tmp_path: Path, finder: Finder) -> None:
@@ -76,6 +76,13 @@ def test_a_pattern_that_fits_nothing_says_what_there_is(tmp_path: Path, finder: 
     folder = lay(tmp_path / "c", {"alice.py": NODE, "bob.py": NODE})
     with pytest.raises(UsageError, match=r"fits none of what was found: alice\.py, bob\.py"):
         finder(folder, pattern="{id}_{name}")
+
+
+def test_files_of_one_attempt_are_one_submission(tmp_path: Path, finder: Finder) -> None:
+    files = {"ann_1_x.py": NODE, "ann_2_setup.py": "", "ann_2_node.py": NODE, "bob_1_x.py": NODE}
+    by_id = finder.by_id(lay(tmp_path / "c", files), pattern="{id}_{attempt}_{filename}")
+    assert content(by_id["ann"]) == {"setup.py", "node.py"}
+    assert (by_id["ann"].attempt, by_id["bob"].attempt) == (2, 1)
 
 
 def test_no_name_keeps_a_pattern_busy(tmp_path: Path, finder: Finder) -> None:
