@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from grader.grading import grade, judge, load_recordings, record, save_recordings
     from grader.recording.recording import Recording, Recordings
     from grader.result.result import Result
+    from grader.result.visible import student_view
     from grader.submission.opening import open_submission
 
 #: module -> its public names
@@ -38,6 +39,7 @@ _PUBLIC = {
     "grader.exercise.verdict": ("Evidence", "Finding", "Verdict"),
     "grader.recording.recording": ("Recording", "Recordings"),
     "grader.result.result": ("Result",),
+    "grader.result.visible": ("student_view",),
     "grader.errors": (
         *("GraderError", "UsageError", "SubmissionError"),
         *("ExerciseError", "RecordingError", "GraderFailure"),
@@ -69,6 +71,7 @@ __all__ = [
     "open_submission",
     "record",
     "save_recordings",
+    "student_view",
 ]
 
 
