@@ -59,7 +59,14 @@ class HandedIn:
             ValueError: its time is none, or has no zone.
         """
         at = data["at"]
-        if at is not None and datetime.fromisoformat(at).utcoffset() is None:
-            raise ValueError(f"is damaged: handed_in.at has no time zone: {at!r}")
+        if at is not None and not _is_a_time(at):
+            raise ValueError(f"is damaged: its handed_in.at is no time with a zone: {at:.60}")
         whole = {key: int(data[key]) for key in ("attempt", "days")}
         return cls(**{**data, **whole})
+
+
+def _is_a_time(text: str) -> bool:
+    try:
+        return datetime.fromisoformat(text).utcoffset() is not None
+    except ValueError:
+        return False

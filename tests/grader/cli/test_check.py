@@ -131,3 +131,41 @@ def test_the_exercise_is_the_one_that_it_was_made_for(graded, tmp_path, capsys):
     assert main(["check", str(graded)]) == 2
     assert "not installed here; give its folder" in capsys.readouterr().err
     assert main(["check", str(graded), "--exercise", str(folder)]) == 0
+
+
+def test_what_students_are_not_to_see_is_in_the_result_alone(graded, tmp_path, capsys):
+    capsys.readouterr()
+    hiding = edited(tmp_path, visible={"edge_stop": "never", "picture": "after_due"})
+    for words in (["check", str(graded)], ["run", "alice.py"]):
+        assert main([*words, "--exercise", hiding, "--json", "whole.json"]) == 0
+        made = json.loads((tmp_path / "whole.json").read_text())
+        seen = {each["check"]: each.get("visible") for each in made["verdicts"]}
+        assert (seen["edge_stop"], seen["picture"], seen["moves"]) == ("never", "after_due", None)
+        assert made["max_score"] == 100
+        shown = capsys.readouterr().out
+        assert "2 checks worth" in shown
+        assert "edge_stop" not in shown
+    assert result(graded) == made
+    page = (graded / "report.html").read_text()
+    assert "2 checks worth" in page
+    assert "edge_stop" not in page
+
+
+def test_whose_a_result_is_stays_known_and_lateness_costs_what_it_costs_now(graded, tmp_path):
+    before = result(graded)
+    handed_in = {"id": "4711", "name": "Zoë", "attempt": 2, "at": "2026-12-01T01:00:00+01:00"}
+    before["handed_in"] = handed_in | {"late_s": 0, "days": 0, "deducted": 0}
+    (graded / "result.json").write_text(json.dumps(before))
+    late = {"due": "2026-12-01T00:00:00Z", "per_day": 3}
+    assert main(["check", str(graded), "--exercise", edited(tmp_path, late=late)]) == 0
+    assert result(graded)["handed_in"]["deducted"] == 0
+    late["due"] = "2026-11-30T22:00:00Z"
+    assert main(["check", str(graded), "--exercise", edited(tmp_path, late=late)]) == 0
+    assert result(graded)["handed_in"] == handed_in | {"late_s": 7200, "days": 1, "deducted": 3}
+
+
+def test_a_recording_keeps_the_starts_that_everybody_had(graded, tmp_path, capsys):
+    own = edited(tmp_path, varied_runs={"per_student": True})
+    assert main(["check", str(graded), "--exercise", own]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "was made with varied_runs.per_student 0; the exercise now says 1." in said

@@ -80,6 +80,18 @@ EVIDENCE = st.fixed_dictionaries(
 )
 
 
+HAND_INS = st.fixed_dictionaries(
+    {
+        "id": TEXTS,
+        "name": TEXTS,
+        "attempt": st.integers(1, 3),
+        "at": st.sampled_from([None, "2026-12-01T01:00:00+01:00"]),
+        "late_s": st.sampled_from([0.0, 300.0]),
+        "days": st.just(0),
+        "deducted": st.just(0.0),
+    }
+)
+
 #: What a runner of CI would obey in what a step prints.
 COMMANDS = re.compile(r"^\s*::[a-z-]+[ :]|##\[|##vso\[", re.MULTILINE | re.IGNORECASE)
 #: What a terminal would: no format needs any of it.
@@ -145,6 +157,8 @@ def any_results(draw):
     made = samples.result(
         *listed, submission=draw(TEXTS), exercise=draw(TEXTS), run=facts, varied_runs=[facts]
     )
+    if draw(st.booleans()):
+        made["handed_in"] = draw(HAND_INS)
     diagnosis = draw(st.none() | diagnoses())
     return made if diagnosis is None else made | {"diagnosis": diagnosis}
 
