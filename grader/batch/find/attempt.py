@@ -119,7 +119,7 @@ def mostly(items: Iterable[Item], fits: Callable[[Item], object]) -> bool:
 
 def person(id: str, name: str = "", columns: Mapping[str, str] | None = None) -> Person:
     """Somebody, by what strangers have written: in one line, without control characters."""
-    named = {_clean(title): _clean(value) for title, value in (columns or {}).items() if value}
+    named = {_clean(title): _clean(value) for title, value in (columns or {}).items()}
     return Person(_clean(id), _clean(name), named)
 
 

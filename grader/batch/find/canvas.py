@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
@@ -62,10 +63,11 @@ def read(items: Sequence[Item]) -> Reading:
         if match is None:
             others.append(item.name)
             continue
-        late = "yes" if match["late"] or match["late_too"] else ""
+        is_late = match["late"] or match["late_too"]
         name, user = match["name"] or "", match["user"] or ""
         whose = (user or match["code"], name)
-        people[whose] = person(whose[0], name, {"ID": user, "Late": late})
+        columns = {"ID": user} if user else {}
+        people[whose] = person(whose[0], name, columns | ({"Late": "yes"} if is_late else {}))
         own = files[whose]
         if match["file"] and not is_junk(match["filename"]):
             own.append(_file(item, match))
@@ -120,6 +122,9 @@ def _newest(files: list[_File]) -> tuple[list[_File], list[_File]]:
 
 def _attempt(whose: str, student: Person, files: list[_File]) -> Attempt:
     pieces = tuple(Piece(file.item.path, file.filename) for file in files)
+    if files:  # by which Canvas knows a feedback file as that student's
+        columns = {**student.columns, "Exported as": files[0].item.name}
+        student = replace(student, columns=columns)
     number = 1 + max((file.again for file in files), default=0)
     problem = "" if pieces else _ONLY_TEXT
     return Attempt(whose, (student,), pieces, number, problem=problem)
