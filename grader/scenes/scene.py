@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
 from grader.scenes.channel import Channel
-from grader.scenes.view import Pictures, Plane, View
+from grader.scenes.view import Floats, Pictures, Plane, View
 
 #: Why a run is over: it came to rest, nothing ever moved, the submission is gone, time is up.
 Reason = Literal["", "rest", "no_motion", "gone", "time_limit"]
@@ -113,6 +113,33 @@ class Forecast:
 
     publishers: tuple[Any, ...]
     ticks: list[tuple[bytes, ...]]
+
+
+class Command(NamedTuple):
+    """Something that a submission asked of a scene.
+
+    Attributes:
+        tick: when.
+        name: what; of one that asks the same of something else it is another.
+        values: how, in the scene's own order and units; may be not a number.
+    """
+
+    tick: int
+    name: str
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """What a submission did, as far as another could do just the same.
+
+    Attributes:
+        commands: what it asked for, in order; of each what has an effect, and no names of its own.
+        path: where what the exercise is about went, float64 (n, 2) [m]; all of it finite.
+    """
+
+    commands: tuple[Command, ...]
+    path: Floats
 
 
 class Simulation(Protocol):
@@ -279,6 +306,9 @@ class Scene(Protocol):
 
     def scenario(self, trace: Trace) -> dict[str, Any]:
         """The inputs, to be replayed without ROS."""
+
+    def behaviour(self, trace: Trace) -> Behaviour:
+        """What the submission did, for whoever compares submissions; see `grader.batch.similar`."""
 
     # Diagnosis and reports --------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from grader.scenes.channel import Channel
 from grader.scenes.scene import (
+    Behaviour,
     Endpoint,
     Hooks,
     Introduction,
@@ -17,7 +18,16 @@ from grader.scenes.scene import (
     Start,
     Trace,
 )
-from grader.scenes.turtlesim import endpoints, interfaces, remarks, starts, trace, trying, view
+from grader.scenes.turtlesim import (
+    behaviour,
+    endpoints,
+    interfaces,
+    remarks,
+    starts,
+    trace,
+    trying,
+    view,
+)
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.scenes.view import Pictures, View
 from turtlesim_py.world import sprites
@@ -122,6 +132,10 @@ class Turtlesim:
         events = TurtleTrace.of(made).events
         within = [to_json(event) for event in events if 1 <= event.tick <= made.ticks]
         return {"ticks": made.ticks, "events": within}
+
+    def behaviour(self, made: Trace) -> Behaviour:
+        """Commands, pens, jumps, and the way of the first turtle."""
+        return behaviour.behaviour(TurtleTrace.of(made))
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
         """Those of the node and of each turtle."""

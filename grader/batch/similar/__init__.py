@@ -1,0 +1,1 @@
+"""Look at these together: hand-ins that behave alike, or are written alike, side by side."""

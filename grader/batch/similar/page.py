@@ -1,0 +1,66 @@
+"""similar.html: one self-contained page, without any script, in the looks of a report's page."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup
+
+from grader import text
+from grader.batch.similar import compare, fingerprints
+from grader.batch.similar.shown import Class, percent, person, shown
+from grader.reports.page.compiled import BesideTheTemplates
+
+_TEMPLATES = Path(__file__).parent / "templates"
+
+
+def render(found: Class, exercise: str) -> str:
+    """The page.
+
+    Args:
+        exercise: its title.
+    """
+    look = found.look
+    return (
+        _environment()
+        .get_template("similar.html")
+        .render(
+            exercise=exercise,
+            look=look,
+            size=len(found.entries),
+            pairs=list(shown(found)),
+            groups=[[person(found, number) for number in members] for members in look.groups],
+            only_given=[person(found, number) for number in look.only_given],
+            not_compared=[person(found, number) for number in look.not_compared],
+            is_cut=not bool(look.source_index.followed.all()),
+        )
+    )
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_TEMPLATES),
+        bytecode_cache=BesideTheTemplates(_TEMPLATES),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    of_reports = files("grader.reports.page") / "templates" / "page.css"
+    style = of_reports.read_text(encoding="utf-8")
+    style += (_TEMPLATES / "similar.css").read_text(encoding="utf-8")
+    environment.globals.update(
+        counted=text.count,
+        percent=percent,
+        style=Markup(style),
+        length=fingerprints.LENGTH,
+        window=fingerprints.WINDOW,
+        least_share=compare.LEAST_SHARE,
+        large_class=compare.LARGE_CLASS,
+        one_in=compare.ONE_IN,
+    )
+    return environment
