@@ -13,7 +13,7 @@ import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.batch.similar.syntax import Unit
+from grader.batch.similar.syntax import MOST_WORDS, Unit
 
 LENGTH = 8
 WINDOW = 3
@@ -37,7 +37,14 @@ def hash_of(words: Iterable[str]) -> int:
 
 def of_units(units: Iterable[Unit]) -> list[Fingerprint]:
     """The selected fingerprints of a source, in its order."""
-    return [found for unit in units for found in _winnowed(list(_all(unit)))]
+    left = MOST_WORDS
+    selected: list[Fingerprint] = []
+    for unit in units:
+        selected += _winnowed(list(_all(unit[:left])))
+        left -= len(unit)
+        if left <= 0:
+            break
+    return selected
 
 
 def all_of(units: Iterable[Unit]) -> set[int]:

@@ -29,6 +29,11 @@ class Place:
     first: int
     last: int
 
+    def lines(self) -> set[tuple[int, int]]:
+        """File and number of each."""
+        last = min(self.last, self.first + MOST_LINES)
+        return {(self.file, line) for line in range(self.first, last + 1)}
+
     def meets(self, other: Place) -> bool:
         """Whether they overlap, or follow one another."""
         return (
@@ -58,14 +63,19 @@ class Passage:
 
 @dataclass(frozen=True)
 class Line:
-    """A line of a source: its number, its text, and the passage that it is in, from 1; 0: none.
+    """A line of a source.
 
-    A line with the number 0 stands for lines that are left out.
+    Attributes:
+        number: its own; 0 stands for lines that are left out.
+        text: fit to be shown.
+        passage: which one it is in, from 1; 0: none.
+        begins: whether it is the first line of it that is shown.
     """
 
     number: int
     text: str
-    passage: int
+    passage: int = 0
+    begins: bool = False
 
 
 def passages(
@@ -87,7 +97,22 @@ def passages(
             found[-1] = Passage(last.one.with_(new.one), last.other.with_(new.other), hands)
         else:
             found.append(new)
-    return found
+    return _each_seen(found)
+
+
+def _each_seen(found: list[Passage]) -> list[Passage]:
+    """Those that have a line on either side which is in none before."""
+    here: set[tuple[int, int]] = set()
+    there: set[tuple[int, int]] = set()
+    seen = []
+    for each in found:
+        one, other = each.one.lines(), each.other.lines()
+        if one <= here or other <= there:
+            continue
+        here |= one
+        there |= other
+        seen.append(each)
+    return seen
 
 
 def lines(
@@ -106,7 +131,10 @@ def lines(
     left = MOST_LINES
     for number, name in enumerate(files):
         inside = _inside([(n, p) for n, p in enumerate(places, 1) if p.file == number])
-        every = [Line(n, line, inside.get(n, 0)) for n, line in enumerate(texts.get(name, ()), 1)]
+        every = [
+            Line(n, line, *inside.get(n, (0, False)))
+            for n, line in enumerate(texts.get(name, ()), 1)
+        ]
         chosen = (every if whole else _near(every))[:left]
         left -= len(chosen)
         if chosen:
@@ -118,12 +146,12 @@ def _place(each: Print) -> Place:
     return Place(each.file, each.first, each.last)
 
 
-def _inside(places: Sequence[tuple[int, Place]]) -> dict[int, int]:
-    """Of each line, which passage it is in; of several the first."""
-    found: dict[int, int] = {}
+def _inside(places: Sequence[tuple[int, Place]]) -> dict[int, tuple[int, bool]]:
+    """Of each line, which passage it is in, of several the first, and whether it is its first."""
+    found: dict[int, tuple[int, bool]] = {}
     for number, place in places:
-        for line in range(place.first, min(place.last, place.first + MOST_LINES) + 1):
-            found.setdefault(line, number)
+        free = [line for _, line in sorted(place.lines()) if line not in found]
+        found.update((line, (number, line == free[0])) for line in free)
     return found
 
 
@@ -140,7 +168,7 @@ def _near(every: list[Line]) -> list[Line]:
         if line.number in wanted:
             found.append(line)
         elif not found or found[-1].number:
-            found.append(Line(0, "", 0))
+            found.append(Line(0, ""))
     return found
 
 

@@ -41,7 +41,8 @@ POINTS: Final = 64
 #: A path that is shorter is none [m].
 SHORTEST_M: Final = 0.5
 _FARTHEST_MM: Final = 10_000_000
-#: Of one file; an ordinary one takes 10 ms.
+#: Of one file; an ordinary one takes 10 ms. After so many that hit them no more are tried.
+MOST_HITS: Final = 2
 PARSING: Final = Limits(cpu_s=10.0, wall_s=60.0, memory_bytes=512 * 2**20, answer_bytes=2**22)
 _MOST_BYTES: Final = 2**22
 
@@ -160,17 +161,25 @@ def _parsed(files: list[File]) -> list[tuple[list[Fingerprint], str]]:
         except SyntaxError as error:
             return json.dumps({"why": f"does not parse, line {error.lineno or '?'}"}).encode()
         found = fingerprints.of_units(units(tree, modules))
-        return json.dumps({"prints": found[:MOST_PRINTS]}).encode()
+        return json.dumps({"prints": found[: MOST_PRINTS + 1]}).encode()
 
+    found: list[tuple[list[Fingerprint], str]] = []
+    hits = 0
     with Copy(answer, PARSING) as copy:
-        return [_asked(copy, number) for number in range(len(files))]
+        for number in range(len(files)):
+            if hits >= MOST_HITS:
+                found.append(([], "not tried, since others took too much"))
+                continue
+            try:
+                found.append(_said(copy.ask(number)))
+            except LimitHit as hit:
+                hits += 1
+                found.append(([], f"parsing it {hit}"))
+    return found
 
 
-def _asked(copy: Copy, number: int) -> tuple[list[Fingerprint], str]:
-    try:
-        said = strict_json.loads(copy.ask(number).decode("ascii"))
-    except LimitHit as hit:
-        return [], f"parsing it {hit}"
+def _said(answer: bytes) -> tuple[list[Fingerprint], str]:
+    said = strict_json.loads(answer.decode("ascii"))
     if "why" in said:
         return [], str(said["why"])
     return [Fingerprint(*_of(each, int, int, int)) for each in said["prints"]], ""

@@ -18,7 +18,7 @@ from grader.submission.folder import MAX_SOURCE_BYTES, files_below, read_bounded
 
 SOURCE: Final = "source"
 MOST_FILES: Final = 60
-MOST_BYTES: Final = 4_000_000  # of all of them together
+MOST_BYTES: Final = 1_000_000  # of all of them together
 _STRANGE = re.compile(r"[^A-Za-z0-9._+-]|^[.-]")
 
 

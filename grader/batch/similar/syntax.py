@@ -20,6 +20,8 @@ from typing import NamedTuple
 
 #: What stands for a name of the file's own, a number, a text.
 OWN, NUMBER, TEXT = "own", "number", "text"
+#: Words of a unit, and of a source, that are looked at; a long submission has some 2,000.
+MOST_WORDS = 60_000
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _LEFT_OUT = (ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal, ast.Pass)
 #: Methods of a logger; what a statement only tells is no part of what a program does.
@@ -47,13 +49,13 @@ class _Names:
     imported: dict[str, str] = field(default_factory=dict)
 
 
-def units(tree: ast.Module, own_modules: Iterable[str] = ()) -> list[Unit]:
+def units(tree: ast.Module, own_modules: Iterable[str] = ()) -> Iterator[Unit]:
     """The units of a file, in the order in which they begin.
 
     Args:
         own_modules: modules that were handed in with it: what is imported from them is own, too.
     """
-    return list(_Reader(_names(tree, set(own_modules))).units(tree))
+    yield from _Reader(_names(tree, set(own_modules))).units(tree)
 
 
 def _names(tree: ast.Module, own_modules: set[str]) -> _Names:
@@ -133,7 +135,7 @@ class _Reader:
         inner: list[ast.AST] = []
         line = getattr(top, "lineno", 1)
         pending: list[tuple[_Item, int]] = [(item, line) for item in reversed(self._begin(top))]
-        while pending:
+        while pending and len(found) < MOST_WORDS:
             item, line = pending.pop()
             if isinstance(item, str):
                 found.append(Word(item, line))

@@ -51,6 +51,7 @@ def hand_in(
     else:
         kept = {n: t.encode() if isinstance(t, str) else t for n, t in handed_in.items()}
     copy = out.parent / "copies" / who
+    copy.mkdir(parents=True)
     for file, data in kept.items():
         (copy / file).parent.mkdir(parents=True, exist_ok=True)
         (copy / file).write_bytes(data)

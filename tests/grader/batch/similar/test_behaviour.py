@@ -1,0 +1,67 @@
+"""Behaviour alone lists two only where it is unusual in a class that is large enough to tell."""
+
+import pytest
+
+from grader.batch.similar.commands import equal
+from grader.batch.similar.compare import LARGE_CLASS, HandedIn, compare
+from grader.batch.similar.signature import POINTS, Asked, Signature
+
+
+def behaves(number, end_mm=4000, step=31):
+    """Somebody with commands and a way of his own kind, and nothing else."""
+    commands = tuple(Asked(step * n, 100 * number + n) for n in range(20))
+    path = tuple(value for n in range(POINTS) for value in (n * end_mm // POINTS, number * n))
+    return HandedIn("", Signature((), (), commands, path))
+
+
+def listed(handed_in):
+    return [(pair.first, pair.second) for pair in compare(handed_in).pairs]
+
+
+def usual(many):
+    """Three ways to do it, each of which many have chosen."""
+    return [behaves(n % 3, 4000 + 500 * (n % 3)) for n in range(many)]
+
+
+def test_a_behaviour_that_many_have_lists_nobody():
+    assert listed(usual(60)) == []
+
+
+def test_a_behaviour_that_two_have_and_nobody_else_lists_them():
+    assert listed([*usual(60), behaves(50), behaves(50)]) == [(60, 61)]
+
+
+def test_in_a_small_class_it_lists_nobody():
+    assert listed([*usual(LARGE_CLASS - 3), behaves(50), behaves(50)]) == []
+
+
+def test_ways_that_are_nearly_the_same_are_found_though_no_command_is():
+    near = behaves(50)
+    other = HandedIn("", Signature((), (), behaves(51).signature.commands, near.signature.path))
+    (pair,) = compare([*usual(60), near, other]).pairs
+    assert (pair.first, pair.second, pair.path_mm, pair.equal_commands) == (60, 61, 0, 0.0)
+
+
+def test_who_did_nothing_is_like_nobody():
+    nothing = HandedIn("", Signature())
+    assert listed([*usual(60), nothing, nothing, HandedIn("", None)]) == []
+
+
+def test_how_many_others_behave_so_is_told():
+    found = compare([*usual(60), behaves(50), behaves(50)]).pairs[0]
+    assert (found.commands.hands, found.path_hands) == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "ticks", "share"),
+    [
+        ([(0, 1), (31, 2), (62, 3)], [(0, 1), (31, 2), (62, 3)], 63, 1.0),
+        ([(0, 1), (31, 2), (62, 3)], [(0, 1), (31, 2), (62, 4)], 62, 0.6667),
+        ([(0, 1), (31, 2), (62, 3)], [(0, 1), (30, 2), (62, 3)], 30, 0.6667),
+        ([(0, 1), (31, 2)], [(0, 1)], 31, 0.5),
+        ([], [(0, 1)], 0, 0.0),
+    ],
+)
+def test_commands_are_compared_tick_by_tick(one, other, ticks, share):
+    both = ([Asked(*each) for each in commands] for commands in (one, other))
+    assert equal(*both) == (ticks, share)
