@@ -1,0 +1,183 @@
+"""What the scores of a class say: how they are spread, and how each check did as a test item.
+
+Classical test theory. Of a check, over all whose submission ran:
+
+- difficulty index p: the mean share of its points, 0 to 1; what was not judged counts 0. Where a
+  check gives all or nothing, that is the share of those who passed (Crocker & Algina 1986, ch. 14).
+- discrimination: Pearson's correlation between the check's points and those of all *other* checks,
+  the corrected item-total correlation (Henrysson 1963, Psychometrika 28, 211-218). Where a check
+  gives all or nothing it is the point-biserial one. Words for it as Ebel & Frisbie (1991) have them.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from grader.exercise.verdict import Verdict
+from grader.result.result import Result
+
+BINS = 10
+#: Below so many, a correlation says nothing.
+LEAST = 10
+_WORDS = (
+    (0.4, "separates strong from weak very well"),
+    (0.3, "separates strong from weak well"),
+    (0.2, "separates strong from weak a little"),
+    (0.0, "hardly separates strong from weak"),
+    (-1.0, "the weak do better here than the strong: look at what it asks for"),
+)
+_EASY, _HARD = 0.85, 0.3
+
+
+@dataclass(frozen=True)
+class Bar:
+    """So many scores from `low` on and below `high`, or in the last bar up to it [points]."""
+
+    low: float
+    high: float
+    count: int
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """How scores are spread [points].
+
+    Attributes:
+        spread: the standard deviation of a sample (n - 1); 0 of a single score.
+        quartiles: a quarter is not above the first, a quarter not below the second.
+        full: how many have all points.
+    """
+
+    count: int
+    mean: float
+    median: float
+    spread: float
+    quartiles: tuple[float, float]
+    lowest: float
+    highest: float
+    full: int
+    bars: tuple[Bar, ...]
+
+    @property
+    def most(self) -> int:
+        """The count of the highest bar."""
+        return max(bar.count for bar in self.bars)
+
+
+@dataclass(frozen=True)
+class Item:
+    """How a check did.
+
+    Attributes:
+        check, title, max_score: its own.
+        count: how many it was asked about.
+        passed, partial, failed, not_judged: of them; `partial` failed and earned points.
+        difficulty: the mean share of its points, 0 to 1.
+        discrimination: -1 to 1; None where it is not defined, and then `why_not` says why.
+    """
+
+    check: str
+    title: str
+    max_score: float
+    count: int
+    passed: int
+    partial: int
+    failed: int
+    not_judged: int
+    difficulty: float
+    discrimination: float | None
+    why_not: str = ""
+
+    @property
+    def parts(self) -> tuple[tuple[str, str, int], ...]:
+        """The four counts with a class of the style sheet and a word."""
+        return (
+            ("passed", "passed", self.passed),
+            ("partial", "partly", self.partial),
+            ("failed", "failed", self.failed),
+            ("not_judged", "not judged", self.not_judged),
+        )
+
+    @property
+    def words(self) -> str:
+        """What the figures mean."""
+        ease = (
+            "Easy" if self.difficulty >= _EASY else "Hard" if self.difficulty < _HARD else "Medium"
+        )
+        if self.discrimination is None:
+            return f"{ease}; {self.why_not}."
+        rounded = round(self.discrimination, 2)
+        return f"{ease}; {next(words for least, words in _WORDS if rounded >= least)}."
+
+
+def distribution(scores: Sequence[float], max_score: float) -> Distribution | None:
+    """How the scores are spread; None where there are none."""
+    if not scores:
+        return None
+    single = len(scores) == 1
+    first, _, third = (
+        [scores[0]] * 3 if single else statistics.quantiles(scores, method="inclusive")
+    )
+    return Distribution(
+        len(scores),
+        statistics.fmean(scores),
+        statistics.median(scores),
+        0.0 if single else statistics.stdev(scores),
+        (first, third),
+        min(scores),
+        max(scores),
+        sum(score >= max_score - 1e-9 for score in scores),
+        _bars(scores, max_score),
+    )
+
+
+def _bars(scores: Sequence[float], max_score: float) -> tuple[Bar, ...]:
+    width = max(max_score, *scores, 1e-9) / BINS
+    places = [min(int(score / width + 1e-9), BINS - 1) for score in scores]
+    return tuple(Bar(k * width, (k + 1) * width, places.count(k)) for k in range(BINS))
+
+
+def items(results: Sequence[Result], points: Mapping[str, float]) -> list[Item]:
+    """How each check did: those of the exercise in its order, then what else was judged."""
+    of_each = [{verdict.check: verdict for verdict in result.verdicts} for result in results]
+    names = dict.fromkeys([*points, *(name for verdicts in of_each for name in verdicts)])
+    return [
+        _item([(verdicts[name], verdicts) for verdicts in of_each if name in verdicts])
+        for name in names
+        if any(name in verdicts for verdicts in of_each)
+    ]
+
+
+def _item(asked: Sequence[tuple[Verdict, Mapping[str, Verdict]]]) -> Item:
+    verdicts = [verdict for verdict, _ in asked]
+    # rounded: equal sums of other parts are equal, and a constant is one
+    rest = [
+        round(sum(v.score for v in others.values()) - verdict.score, 6) for verdict, others in asked
+    ]
+    found, why_not = _discrimination([verdict.score for verdict in verdicts], rest)
+    return Item(
+        verdicts[0].check,
+        verdicts[0].title or verdicts[0].check,
+        verdicts[0].max_score,
+        len(verdicts),
+        sum(verdict.passed for verdict in verdicts),
+        sum(verdict.is_partial for verdict in verdicts),
+        sum(verdict.status == "failed" and not verdict.is_partial for verdict in verdicts),
+        sum(verdict.status == "not_judged" for verdict in verdicts),
+        statistics.fmean(verdict.share for verdict in verdicts),
+        found,
+        why_not,
+    )
+
+
+def _discrimination(scores: list[float], rest: list[float]) -> tuple[float | None, str]:
+    """The correlation; or None and why there is none."""
+    if len(scores) < LEAST:
+        return None, f"fewer than {LEAST} are too few to tell whom it separates"
+    if len(set(scores)) == 1:
+        return None, "all have the same points here, so it separates nobody"
+    if len(set(rest)) == 1:
+        return None, "all have the same points elsewhere, so there is nothing to compare with"
+    return statistics.correlation(scores, rest), ""

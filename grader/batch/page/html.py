@@ -1,0 +1,87 @@
+"""The class page: one file, to be opened from anywhere; made of entries and nothing else.
+
+Equal entries make equal bytes: neither the time nor the machine comes into it. Whatever the size of
+a class, the page has a bounded number of pictures, paths and rows.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import jinja2
+
+from grader import text
+from grader.batch.entry import Entry
+from grader.batch.page import clusters, figures
+from grader.batch.page.students import STATES, Student, evenly, students
+from grader.batch.page.thumb import EDGE_PX, UNITS, Thumb
+from grader.exercise.loading import Exercise
+from grader.reports.page import templating
+from grader.scenes import load_scene
+
+_TEMPLATES = Path(__file__).parent / "templates"
+#: So many students have a picture and a path, and so many a row of the table.
+MOST_PICTURES, MOST_ROWS = 500, 4000
+
+
+def render(
+    entries: Sequence[Entry], exercise: Exercise, links: Mapping[str, str] | None = None
+) -> str:
+    """The page.
+
+    Args:
+        entries: of the whole class, in any order.
+        links: what lies beside the page: words -> relative address.
+    """
+    everybody = students(entries)
+    judged = [student for student in everybody if student.entry.result is not None]
+    handed_in = [s.score for s in everybody if s.entry.state != "nothing" and s.score is not None]
+    items = figures.items([s.entry.result for s in judged if s.entry.result], exercise.points)
+    rows = everybody[:MOST_ROWS]
+    template = _environment().get_template("class.html")
+    return template.render(
+        exercise=exercise,
+        thing=load_scene(exercise.scene).thing,
+        links=links or {},
+        total=len(everybody),
+        rows=rows,
+        spread=figures.distribution(handed_in, exercise.max_score),
+        states=_states(everybody),
+        judged=len(judged),
+        items=items,
+        first=clusters.to_mend_first(everybody),
+        nothing_to_mend=sum(all(v.passed for v in s.verdicts.values()) for s in judged),
+        lost={item.check: clusters.of_check(judged, item.check) for item in items},
+        drawn=_drawn(rows),
+    )
+
+
+def _states(everybody: Sequence[Student]) -> list[tuple[str, int]]:
+    """How many have no result, and why."""
+    counted = Counter(student.entry.state for student in everybody)
+    return [(words, counted[state]) for state, words in STATES.items() if counted[state]]  # type: ignore[index]
+
+
+def _drawn(rows: Sequence[Student]) -> list[Student]:
+    """Those who have a picture, and it."""
+    judged = [student for student in rows if student.entry.result is not None]
+    chosen = evenly(judged, MOST_PICTURES)
+    read = (replace(student, thumb=Thumb.read(student.entry.folder)) for student in chosen)
+    return [student for student in read if student.thumb is not None]
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    made = templating.environment(_TEMPLATES / "class.js", _TEMPLATES / "class.css")
+    made.globals.update(
+        edge=EDGE_PX,
+        units=UNITS,
+        least=figures.LEAST,
+        rarer=clusters.RARER,
+        plain=lambda value: text.one_line(text.plain(value)),
+    )
+    return made

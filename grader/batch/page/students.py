@@ -1,0 +1,148 @@
+"""The hand-ins of a class as its page shows them: names made safe, words for what became of each."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import cached_property
+from typing import Protocol, cast
+from urllib.parse import quote
+
+from grader import text
+from grader.batch.entry import SUBMISSIONS, Entry
+from grader.batch.page.thumb import Thumb
+from grader.exercise.verdict import Verdict
+from grader.result.result import PAGE
+
+_NAME_LIMIT, _WORD_LIMIT = 80, 40
+#: What is told of those without a result.
+STATES = {
+    "unusable": "cannot be started",
+    "nothing": "nothing handed in",
+    "failed": "the grader failed",
+}
+_GAP = "…"
+
+
+class _HandedIn(Protocol):
+    """What a result says of the time it was handed in at."""
+
+    late_s: float
+    days: int
+    deducted: float
+
+
+@dataclass(frozen=True)
+class Student:
+    """One hand-in.
+
+    Attributes:
+        number: stands for it where names are hidden; tells nothing of them.
+        entry: what is known of it.
+        id, name: safe to show.
+        thumb: its picture and path; None where there is none.
+    """
+
+    number: int
+    entry: Entry
+    id: str
+    name: str
+    thumb: Thumb | None = field(default=None, repr=False)
+
+    @property
+    def report(self) -> str:
+        """The address of its report, as the class page sees it; '' where there is none."""
+        if self.entry.result is None:
+            return ""
+        return f"{SUBMISSIONS}/{quote(self.entry.id, safe='@+')}/{PAGE}"
+
+    @property
+    def score(self) -> float | None:
+        """Its points."""
+        return self.entry.score
+
+    @cached_property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        """Those of its result, by check."""
+        result = self.entry.result
+        return {} if result is None else {verdict.check: verdict for verdict in result.verdicts}
+
+    @property
+    def status(self) -> str:
+        """How its run ended, or why there was none."""
+        result = self.entry.result
+        if result is None:
+            return STATES.get(self.entry.state, self.entry.state)
+        return text.clip(text.plain(result.run.outcome), _WORD_LIMIT).replace("_", " ")
+
+    @property
+    def at(self) -> datetime | None:
+        """When it was handed in."""
+        return self.entry.hand_in.at
+
+    @property
+    def at_text(self) -> str:
+        """The same as people read it, with its zone; '' where nobody knows."""
+        return "" if self.at is None else self.at.isoformat(" ", "minutes")
+
+    @property
+    def late_s(self) -> float:
+        """How late that was [s]."""
+        return 0.0 if self._handed_in is None else self._handed_in.late_s
+
+    @property
+    def late(self) -> str:
+        """The same in words, and what it cost; '' where it was in time."""
+        told = self._handed_in
+        if told is None or told.late_s <= 0:
+            return ""
+        minutes = max(int(told.late_s // 60), 1)
+        days, hours = divmod(minutes // 60, 24)
+        length = f"{days} d {hours} h" if days else f"{hours} h {minutes % 60} min"
+        return f"{length}, −{text.points(told.deducted)}" if told.deducted else length
+
+    @property
+    def _handed_in(self) -> _HandedIn | None:
+        # results of exercises that are never due do not have it
+        return cast("_HandedIn | None", getattr(self.entry.result, "handed_in", None))
+
+    def without_names(self, sentence: str) -> str:
+        """A sentence in which neither the name nor an id of this student stands."""
+        people = self.entry.hand_in.people
+        told = [self.entry.id, self.name, *(person.id for person in people)]
+        words = {word for name in told for word in re.split(r"[\W_]+", name) if len(word) > 2}
+        for word in sorted(words, key=lambda word: (-len(word), word)):
+            sentence = re.sub(rf"(?<!\w){re.escape(word)}(?!\w)", _GAP, sentence, flags=re.I)
+        return sentence
+
+
+def students(entries: Iterable[Entry]) -> list[Student]:
+    """All of them by name; each has a number that no order of names or ids tells."""
+    listed = list(entries)
+    order = sorted(listed, key=lambda entry: hashlib.sha256(entry.id.encode()).digest())
+    numbers = {entry.id: number for number, entry in enumerate(order, 1)}
+    made = [
+        Student(numbers[entry.id], entry, _ids(entry), _safe(entry.hand_in.name) or _ids(entry))
+        for entry in listed
+    ]
+    return sorted(made, key=lambda student: (student.name.casefold(), student.entry.id))
+
+
+def evenly(chosen: Sequence[Student], most: int) -> list[Student]:
+    """So many at most, spread over all scores; the best first."""
+    ordered = sorted(chosen, key=lambda student: (-(student.score or 0.0), student.number))
+    if len(ordered) <= most:
+        return ordered
+    return [ordered[k * len(ordered) // most] for k in range(most)]
+
+
+def _ids(entry: Entry) -> str:
+    told = ", ".join(person.id for person in entry.hand_in.people) or entry.id
+    return _safe(told) or entry.id
+
+
+def _safe(name: str) -> str:
+    return text.clip(text.one_line(text.plain(name)), _NAME_LIMIT)
