@@ -6,7 +6,7 @@ Classical test theory. Of a check, over all whose submission ran:
   check gives all or nothing, that is the share of those who passed (Crocker & Algina 1986, ch. 14).
 - discrimination: Pearson's correlation between the check's points and those of all *other* checks,
   the corrected item-total correlation (Henrysson 1963, Psychometrika 28, 211-218). Where a check
-  gives all or nothing it is the point-biserial one. Words for it as Ebel & Frisbie (1991) have them.
+  gives all or nothing it is the point-biserial one. The words are those of Ebel & Frisbie (1991).
 """
 
 from __future__ import annotations
@@ -117,15 +117,13 @@ def distribution(scores: Sequence[float], max_score: float) -> Distribution | No
     if not scores:
         return None
     single = len(scores) == 1
-    first, _, third = (
-        [scores[0]] * 3 if single else statistics.quantiles(scores, method="inclusive")
-    )
+    quartiles = [scores[0]] * 3 if single else statistics.quantiles(scores, method="inclusive")
     return Distribution(
         len(scores),
         statistics.fmean(scores),
         statistics.median(scores),
         0.0 if single else statistics.stdev(scores),
-        (first, third),
+        (quartiles[0], quartiles[2]),
         min(scores),
         max(scores),
         sum(score >= max_score - 1e-9 for score in scores),

@@ -63,7 +63,7 @@ def render(
 def _states(everybody: Sequence[Student]) -> list[tuple[str, int]]:
     """How many have no result, and why."""
     counted = Counter(student.entry.state for student in everybody)
-    return [(words, counted[state]) for state, words in STATES.items() if counted[state]]  # type: ignore[index]
+    return [(words, counted[state]) for state, words in STATES.items() if counted[state]]
 
 
 def _drawn(rows: Sequence[Student]) -> list[Student]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from grader.scenes.view import Floats
 
@@ -24,7 +23,8 @@ def simplified(points: Floats, tolerance: float) -> Floats:
 
     The way of Ramer (1972) and of Douglas and Peucker (1973).
     """
-    points = points[:: max(1, -(-len(points) // _MOST_POINTS))]
+    step = max(1, -(-len(points) // _MOST_POINTS))
+    points = np.concatenate([points[:-1:step], points[-1:]])
     kept = np.zeros(len(points), dtype=bool)
     kept[[0, -1]] = True
     open_ended = [(0, len(points) - 1)]
@@ -41,11 +41,10 @@ def simplified(points: Floats, tolerance: float) -> Floats:
     return points[kept]
 
 
-def _distances(points: Floats, start: Floats, end: Floats) -> npt.NDArray[np.float64]:
+def _distances(points: Floats, start: Floats, end: Floats) -> Floats:
     """How far the points are from the straight line between two others."""
     along = end - start
-    length = float(np.hypot(*along))
-    if length == 0:
-        return np.hypot(*(points - start).T)
-    at = np.clip((points - start) @ along / length**2, 0, 1)
-    return np.hypot(*(points - start - np.outer(at, along)).T)
+    squared = float(along @ along)
+    at = np.clip((points - start) @ along / squared, 0, 1) if squared else np.zeros(len(points))
+    off = points - start - np.outer(at, along)
+    return np.asarray(np.sqrt((off**2).sum(axis=1)))

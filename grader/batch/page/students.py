@@ -1,4 +1,4 @@
-"""The hand-ins of a class as its page shows them: names made safe, words for what became of each."""
+"""The hand-ins of a class as its page shows them: safe names, and what became of each in words."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
-from typing import Protocol, cast
+from typing import Final, Protocol, cast
 from urllib.parse import quote
 
 from grader import text
-from grader.batch.entry import SUBMISSIONS, Entry
+from grader.batch.entry import SUBMISSIONS, Entry, State
 from grader.batch.page.thumb import Thumb
 from grader.exercise.verdict import Verdict
 from grader.result.result import PAGE
 
 _NAME_LIMIT, _WORD_LIMIT = 80, 40
 #: What is told of those without a result.
-STATES = {
+STATES: Final[Mapping[State, str]] = {
     "unusable": "cannot be started",
     "nothing": "nothing handed in",
     "failed": "the grader failed",

@@ -1,6 +1,6 @@
 """A run as a class page shows it: the picture at the end and the way that led there, both small.
 
-    thumb.json      {"schema": ..., "picture": "data:image/png;base64,...", "path": [[x, y, ...], ...]}
+    thumb.json      {"schema": ..., "picture": "data:image/png;base64,...", "path": [[x, y, ...]]}
 
 Reading a recording takes a second's part, and a class has hundreds: so it is made once, when a
 student's folder is. The same recording always makes the same bytes.
@@ -62,6 +62,8 @@ class Thumb:
         try:
             with (folder / THUMB).open("rb") as file:
                 data = file.read(_LIMIT_BYTES + 1)
+            if len(data) > _LIMIT_BYTES:
+                return None
             return cls._from_json(strict_json.loads(data.decode("utf-8")))
         except (OSError, ValueError, RecursionError):
             return None
@@ -70,7 +72,8 @@ class Thumb:
     def _from_json(cls, data: Any) -> Self:
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             raise ValueError(f"expected the schema {SCHEMA}")
-        picture, path = data.get("picture"), data.get("path")
+        picture: Any = data.get("picture")
+        path: Any = data.get("path")
         if not _is_picture(picture) or not _is_path(path):
             raise ValueError("expected a PNG and a path")
         return cls(picture, tuple(tuple(piece) for piece in path))

@@ -1,0 +1,25 @@
+"""What the class page adds to the colours of all pages can be told apart as well."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.grader.reports.page.test_contrast import OTHER, SCHEMES, TEXT, contrast
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_points_can_be_read_in_every_row_and_in_the_chosen_one(scheme):
+    colors = SCHEMES[scheme]
+    texts = ("ink", "link", "good", "bad", "open")
+    for text, ground in product(texts, ("card", "open-wash")):
+        assert contrast(colors[text], colors[ground]) >= TEXT, (text, ground)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_bars_and_the_chosen_path_are_seen(scheme):
+    colors = SCHEMES[scheme]
+    for drawn in ("curve", "good", "bad", "soft"):
+        assert contrast(colors[drawn], colors["card"]) >= OTHER, drawn
+    assert contrast(colors["bad"], colors["paper"]) >= OTHER

@@ -1,0 +1,126 @@
+"""The class page: complete, alone, safe, bounded, and the same for the same class."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from datetime import UTC, datetime
+
+import pytest
+
+from grader.batch.page import html
+from grader.batch.page.thumb import THUMB, thumb
+from grader.exercise.loading import load_exercise
+from grader.recording.recording import Recordings
+from tests.grader.batch.page.classes import entry, result
+from tests.grader.driving import Spiral, drive
+from tests.grader.reports import readers
+
+EXERCISE = load_exercise("turtlesim_challenge")
+BAD, GOOD = {"moves": 10.0, "spiral": 2.5}, {"moves": 10.0, "spiral": 10.0}
+EVIL = "\"><script>alert(1)</script>' onload='x"
+
+
+@pytest.fixture(scope="module")
+def some(tmp_path_factory):
+    """Five of them; only Zoë has a picture."""
+    zoe = tmp_path_factory.mktemp("zoe")
+    (zoe / THUMB).write_bytes(thumb(Recordings(drive(Spiral()))))
+    at = datetime(2026, 11, 1, 12, tzinfo=UTC)
+    return [
+        entry("zoe", result(GOOD), name="Zoë Müller", folder=zoe, at=at),
+        entry("bob", result(BAD), name="Bob"),
+        entry("eve", result(BAD, EVIL), name=EVIL),
+        entry("dan", state="unusable", message=f"The zip {EVIL} is damaged.", name="Dan"),
+        entry("kim", state="nothing", message="Nothing was handed in.", name="Kim"),
+        entry("uma", state="failed", message="The disk is full.", name="Uma"),
+    ]
+
+
+@pytest.fixture(scope="module")
+def page(some):
+    return html.render(some, EXERCISE, {"Gradebook": "gradebook.csv"})
+
+
+def elements(page, name):
+    return [attrs for tag, attrs in readers.balanced(page).tags if tag == name]
+
+
+def test_it_is_well_formed_and_loads_nothing(page):
+    readers.balanced(page)
+    policy = next(a["content"] for a in elements(page, "meta") if "http-equiv" in a)
+    (script,) = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert policy == (
+        "default-src 'none'; img-src data:; style-src 'unsafe-inline'; "
+        f"script-src 'sha256-{digest}'"
+    )
+    assert all(attrs["src"].startswith("data:image/png;base64,") for attrs in elements(page, "img"))
+
+
+def test_what_strangers_wrote_is_text(page):
+    assert "<script>alert" not in page
+    for _, attrs in readers.balanced(page).tags:
+        assert not [name for name in attrs if name.startswith("on")]
+
+
+def test_links_lead_to_what_lies_beside_it(page):
+    links = {attrs["href"] for attrs in elements(page, "a") if "href" in attrs}
+    reports = {f"submissions/{id}/report.html" for id in ("zoe", "bob", "eve")}
+    assert {link for link in links if not link.startswith("#")} == {"gradebook.csv", *reports}
+
+
+def test_every_name_and_id_stands_where_the_script_can_replace_it(page):
+    text = re.sub(r'<bdi data-(name|id)="\d+">.*?</bdi>', "", page)
+    text = re.sub(r'href="submissions/.*?"', "", text)
+    text = re.sub(r'<p class="named">.*?</p>', "", text)
+    for told in ("Zoë", "Müller", "zoe", "Bob", "bob", "alert(1)", "Dan", "Kim", "uma"):
+        assert told not in text
+
+
+def test_nobody_is_missing_in_the_table(page):
+    body = page.partition('<table id="class">')[2]
+    assert len(re.findall(r'<tr data-of="\d+">', body)) == 6
+    assert body.count("–</b>") == 1  # the grader's own failure is no 0
+    assert '<time datetime="2026-11-01T12:00:00+00:00">2026-11-01 12:00+00:00</time>' in body
+
+
+def test_scores_are_of_those_who_handed_in(page):
+    assert "Of the 4 who handed something in" in page
+    assert "1 nothing handed in" in page
+
+
+def test_it_depends_on_nothing_but_the_entries(some, page):
+    assert html.render(list(reversed(some)), EXERCISE, {"Gradebook": "gradebook.csv"}) == page
+
+
+def test_a_path_is_drawn_and_a_picture_shown_for_who_has_one(page):
+    assert len(re.findall(r'<path data-of="\d+" d="M[\d l-]+"/>', page)) == 1
+    assert len(elements(page, "img")) == 1
+
+
+def test_an_empty_class_has_a_page():
+    readers.balanced(html.render([], EXERCISE))
+
+
+def test_a_class_without_results_has_a_page():
+    page = html.render([entry("kim", state="nothing")], EXERCISE)
+    assert "Nothing was judged." in page
+    readers.balanced(page)
+
+
+def test_three_hundred_pictures_and_paths_have_less_than_three_megabytes(some):
+    zoe = some[0]
+    many = [entry(f"s{k}", zoe.result, name="A name " * 5, folder=zoe.folder) for k in range(300)]
+    assert len(html.render(many, EXERCISE).encode()) < 3_000_000
+
+
+def test_a_class_of_no_end_has_a_page_of_bounded_length(some, monkeypatch):
+    monkeypatch.setattr(html, "MOST_ROWS", 20)
+    monkeypatch.setattr(html, "MOST_PICTURES", 5)
+    zoe = some[0]
+    page = html.render([entry(f"s{k}", zoe.result, folder=zoe.folder) for k in range(50)], EXERCISE)
+    assert len(elements(page, "img")) == 5
+    assert len(re.findall(r'<tr data-of="\d+">', page)) == 20
+    assert "the first 20 of 50" in page

@@ -1,0 +1,64 @@
+"""The class page as a browser shows it; where there is no Chromium, nothing of this is asked."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from grader.batch.page import html
+from grader.exercise.loading import load_exercise
+from tests.grader.batch.page.classes import entry, result
+
+BROWSER = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
+)
+pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    bad = "NameError: Zoë is not 1"
+    path = tmp_path_factory.mktemp("class") / "index.html"
+    shown = html.render(
+        [
+            entry("zoe17", result({"moves": 0.0}, bad), name="Zoë Müller"),
+            entry("bob18", result({"moves": 10.0}), name="Bob Brown"),
+            entry("kim19", state="nothing", message="kim19 handed in nothing.", name="Kim"),
+        ],
+        load_exercise("turtlesim_challenge"),
+    )
+    path.write_text(shown, encoding="utf-8")
+    return path
+
+
+def shown(page, fragment=""):
+    """The document once the script has run."""
+    usual = ("--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={page.parent}/user")
+    command = [BROWSER, *usual, "--dump-dom", page.as_uri() + fragment]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def seen(dom):
+    """Its text and the attributes of what is not hidden; without script and style."""
+    dom = re.sub(r"<(script|style)>.*?</\1>", "", dom, flags=re.DOTALL)
+    return re.sub(r'<p class="\w+" hidden="">.*?</p>', "", dom)
+
+
+def test_columns_can_be_sorted_and_names_found(page):
+    dom = shown(page)
+    assert len(re.findall(r"<th scope=\"col\"[^>]*><button type=\"button\">", dom)) == 7
+    assert re.search(r'<div class="tools" role="search" aria-label="[^"]*">', dom)
+    assert "Zoë Müller" in seen(dom)
+
+
+def test_hidden_names_are_nowhere(page):
+    dom = seen(shown(page, "#names-hidden"))
+    for told in ("Zoë", "Müller", "zoe17", "bob18", "Bob", "Brown", "kim19", "Kim"):
+        assert told not in dom
+    table = re.sub(r">\s+<", "><", dom.partition('<table id="class">')[2])
+    rows = re.findall(r'<tr data-of="\d"><th scope="row">.*?>(Student \d)</bdi>', table)
+    assert rows == ["Student 1", "Student 2", "Student 3"]
+    assert dom.count('aria-disabled="true"') == 4  # two rows, two clusters
