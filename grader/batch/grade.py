@@ -14,6 +14,8 @@ from pathlib import Path
 from grader import files, grading, scratch
 from grader.batch.entry import Entry
 from grader.batch.hand_in import HandIn
+from grader.batch.page.thumb import THUMB, thumb
+from grader.batch.similar import signature, sources
 from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
 from grader.batch.task import Task
 from grader.errors import SubmissionError, UsageError
@@ -24,7 +26,7 @@ from grader.result import json_file
 from grader.result.error import ErrorResult
 from grader.result.handed_in import HandedIn
 from grader.result.result import ARTIFACTS, PAGE, RESULT
-from grader.submission.opening import open_submission
+from grader.submission.opening import Submission, open_submission
 from grader.text import plain
 
 
@@ -74,12 +76,24 @@ def _run(task: Task, exercise: Exercise) -> Recordings | str:
             submission = held.enter_context(open_submission(path))
             runner = grading.RUNNERS[task.time]
             recordings = grading.run_all(submission, exercise, runner, seed=task.seed)
+            _look_at(submission, recordings, place)
     except (SubmissionError, UsageError) as error:
         told = ErrorResult.of(error, exercise.max_score)
         files.put(place / ERROR, json_file.text(told.to_json()).encode())
         return told.message
     grading.save_recordings(recordings, place / RECORDING)
     return recordings
+
+
+def _look_at(submission: Submission, recordings: Recordings, place: Path) -> None:
+    """Keep what the pages of a whole class need to know of a run: they open no recording."""
+    copy = submission.copy
+    left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE)
+    nominal = recordings.nominal
+    files.put(place / THUMB, thumb(recordings))
+    files.put(
+        place / signature.NAME, signature.signature(place / sources.SOURCE, nominal, left_out)
+    )
 
 
 def _loaded(run: Path) -> Recordings | str:

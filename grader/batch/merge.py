@@ -9,7 +9,7 @@ from pathlib import Path
 
 from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
-from grader.batch.store import RECORDING, RUN, STUDENTS, Store
+from grader.batch.store import RUN, SHARED, STUDENTS, Store
 from grader.errors import UsageError
 
 
@@ -66,7 +66,7 @@ def _take(entry: Entry, source: Store, store: Store) -> None:
     try:
         if source.has(entry.key) and not store.has(entry.key):
             shutil.copytree(source.run(entry.key), place / RUN)
-        leave = shutil.ignore_patterns(RECORDING)
+        leave = shutil.ignore_patterns(*SHARED)
         shutil.copytree(entry.folder, place / STUDENTS / entry.id, ignore=leave)
     except (OSError, shutil.Error) as error:
         raise UsageError(f"cannot copy {entry.folder}: {error}") from None

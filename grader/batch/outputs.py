@@ -8,11 +8,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from grader import files
 from grader.batch.entry import Entry
-from grader.batch.gradebook.write import Options
+from grader.batch.gradebook.write import CSV, Options
 from grader.batch.gradebook.write import write as write_gradebook
+from grader.batch.page import html
+from grader.batch.similar import look
 from grader.exercise.loading import Exercise
 from grader.result.visible import View
+
+PAGE = "index.html"
 
 
 def write(
@@ -30,5 +35,7 @@ def write(
     Raises:
         UsageError: one of them cannot be written.
     """
-    options = Options(exercise.title, view, assignment)
-    return write_gradebook(out, entries, options)
+    look.write(entries, exercise, out)
+    links = {"Look at these together": look.PAGE, "Gradebook": CSV}
+    files.put(out / PAGE, html.render(entries, exercise, links).encode("utf-8"))
+    return write_gradebook(out, entries, Options(exercise.title, view, assignment))

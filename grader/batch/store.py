@@ -1,6 +1,7 @@
 """The folder of a class, as it is written: everything comes into its place whole or not at all.
 
-    store/KEY/          what one run has left: recording/, output.txt, source/; or error.json
+    store/KEY/          what one run has left: recording/, source/, similar.json, thumb.json, which
+                        everybody who has handed it in has too; or error.json
     submissions/ID/     what came of it for one hand-in; see `grader.batch.entry`
     .unfinished/        what is being made; whatever an interrupted call has left there goes
 
@@ -19,6 +20,9 @@ from pathlib import Path
 from grader import files
 from grader.batch.class_file import CLASS
 from grader.batch.entry import SUBMISSIONS
+from grader.batch.page.thumb import THUMB
+from grader.batch.similar.signature import NAME as SIGNATURE
+from grader.batch.similar.sources import SOURCE
 from grader.errors import UsageError
 from grader.removal import remove
 
@@ -26,6 +30,8 @@ STORE, UNFINISHED = "store", ".unfinished"
 #: What a worker leaves: one run, and a folder for each hand-in.
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
+#: What of a run lies in the folder of everybody who has handed it in, too.
+SHARED = (RECORDING, SOURCE, SIGNATURE, THUMB)
 
 
 class Store:
@@ -86,10 +92,9 @@ class Store:
             if (place / RUN).is_dir():
                 self.run(key).parent.mkdir(exist_ok=True)
                 _replace(place / RUN, self.run(key), place)
-            recording = self.run(key) / RECORDING
             for made in sorted((place / STUDENTS).glob("*/")):
-                if key and recording.is_dir():
-                    _link_tree(recording, made / RECORDING)
+                if key:
+                    _link_all(self.run(key), made)
                 _replace(made, self.student(made.name), place)
         except OSError as error:
             raise UsageError(f"cannot write into {self.out}: {error}") from None
@@ -122,14 +127,18 @@ def _flush(place: Path) -> None:
                 os.fsync(file.fileno())
 
 
-def _link_tree(source: Path, target: Path) -> None:
-    """The same files in another folder: links where the file system has them, else copies."""
+def _link_all(run: Path, student: Path) -> None:
+    """What is shared, in a student's folder too: as links, or as copies where there are none."""
+    for name in SHARED:
+        if (run / name).is_dir():
+            shutil.copytree(run / name, student / name, copy_function=_link)
+        elif (run / name).exists():
+            _link(str(run / name), str(student / name))
 
-    def link(here: str, there: str) -> str:
-        try:
-            os.link(here, there)
-        except OSError:
-            shutil.copy2(here, there)
-        return there
 
-    shutil.copytree(source, target, copy_function=link)
+def _link(source: str, target: str) -> str:
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copy2(source, target)
+    return target
