@@ -29,6 +29,9 @@ from grader.result.result import ARTIFACTS, PAGE, RESULT
 from grader.submission.opening import Submission, open_submission
 from grader.text import plain
 
+#: Where a student's traceback says that the hand-in lies.
+SHOWN = "/submission"
+
 
 def make(task: Task) -> None:
     """Fill a task's folder.
@@ -73,7 +76,7 @@ def _run(task: Task, exercise: Exercise) -> Recordings | str:
             if task.filename and path.is_file() and path.name != task.filename:
                 path = held.enter_context(scratch.make_folder()) / task.filename
                 shutil.copyfile(task.path, path)
-            submission = held.enter_context(open_submission(path))
+            submission = _without_place(held.enter_context(open_submission(path)))
             runner = grading.RUNNERS[task.time]
             recordings = grading.run_all(submission, exercise, runner, seed=task.seed)
             _look_at(submission, recordings, place)
@@ -94,6 +97,18 @@ def _look_at(submission: Submission, recordings: Recordings, place: Path) -> Non
     files.put(
         place / signature.NAME, signature.signature(place / sources.SOURCE, nominal, left_out)
     )
+
+
+def _without_place(submission: Submission) -> Submission:
+    """The same, but that nothing tells where it was handed in.
+
+    That may be the folder of another student who has handed in the same; and it is another one on
+    each machine, or each time that an archive is unpacked.
+    """
+    copy = submission.copy
+    if copy is None:
+        return submission
+    return replace(submission, copy=replace(copy, prefix=str(copy.folder), shown=SHOWN))
 
 
 def _loaded(run: Path) -> Recordings | str:
