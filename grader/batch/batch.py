@@ -115,8 +115,6 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
     by_key: dict[str, list[HandIn]] = {}
     trivial, done = [], []
     for hand_in, run in _with_keys(hand_ins, order):
-        if not is_in(run or hand_in.id, order.shard):
-            continue
         if _is_done(_there(store.student(hand_in.id)), hand_in, run, order):
             done.append(hand_in)
             continue
@@ -146,8 +144,24 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
             for hand_in in task.hand_ins:
                 folder = place / STUDENTS / hand_in.id
                 grade.failed(hand_in, order.exercise, folder, told)
+        _check_same_exercise(task, place, order)
         store.put(task.key, place)
         yield from task.hand_ins
+
+
+def _check_same_exercise(task: Task, place: Path, order: Order) -> None:
+    """Refuse what was judged by another exercise than everything else.
+
+    Raises:
+        UsageError: it was.
+    """
+    for hand_in in task.hand_ins:
+        if Entry.read(place / STUDENTS / hand_in.id).exercise_sha256 != order.exercise.sha256:
+            raise UsageError(
+                f"the exercise {order.exercise.name} was changed while a class was graded by it, "
+                "or a worker of the cluster has another edition of it. What was graded before is "
+                "kept; see to it that there is one edition, and call again"
+            )
 
 
 def is_in(name: str, shard: tuple[int, int]) -> bool:
@@ -157,19 +171,29 @@ def is_in(name: str, shard: tuple[int, int]) -> bool:
 
 
 def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandIn, str]]:
-    """Each with the key of its run; '' where there is nothing to run."""
+    """Each of our part with the key of its run; '' where there is nothing to run.
+
+    What has the same content is in the same part, whatever versions a machine has.
+    """
     for hand_in in hand_ins:
         if hand_in.path is None:
-            yield hand_in, ""
+            if is_in(hand_in.id, order.shard):
+                yield hand_in, ""
             continue
         try:
             content = key.of_hand_in(hand_in.path, hand_in.filename)
         except OSError as error:
-            why = f"It cannot be read: {error.strerror or error}"
-            yield replace(hand_in, problem=why, path=None), ""
+            if is_in(hand_in.id, order.shard):
+                why = f"It cannot be read: {error.strerror or error}"
+                yield replace(hand_in, problem=why, path=None), ""
             continue
-        seed = order.seed_of(hand_in)
-        yield hand_in, key.of_run(content, order.exercise, order.time, seed)
+            if is_in(hand_in.id, order.shard):
+                why = f"It cannot be read: {error.strerror or error}"
+                yield replace(hand_in, problem=why, path=None), ""
+            continue
+        if is_in(content, order.shard):
+            seed = order.seed_of(hand_in)
+            yield hand_in, key.of_run(content, order.exercise, order.time, seed)
 
 
 def _there(folder: Path) -> Entry | None:
