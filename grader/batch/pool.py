@@ -80,43 +80,59 @@ class _Worker(threading.Thread):
         patience_s: float,
     ) -> None:
         super().__init__(daemon=True)
-        self._waiting, self._over, self._patience_s = waiting, over, patience_s
-        self._process: subprocess.Popen[bytes] | None = None
-        self._lock = threading.Lock()
-        self._is_over = False
+        self._waiting, self._over = waiting, over
+        self._process = Process(patience_s)
 
     def run(self) -> None:
         try:
-            while not self._is_over and (task := self._waiting.take()) is not None:
-                self._over.put((task, self._done(task)))
+            while not self._process.is_over and (task := self._waiting.take()) is not None:
+                self._over.put((task, self._process.done(task)))
         except BaseException as error:  # in whoever makes tasks: for the thread that waits
             self._over.put(error)
         finally:
-            self._end()
+            self._process.end()
             self._over.put(None)
 
     def stop(self) -> None:
         """End it, and whatever it does."""
+        self._process.stop()
+
+
+class Process:
+    """A worker, started when it is first asked and, if it has ended since, once more.
+
+    It ends with this process, and with this object.
+    """
+
+    def __init__(self, patience_s: float = MOST_S) -> None:
+        self._patience_s = patience_s
+        self._process: subprocess.Popen[bytes] | None = None
+        self._lock = threading.Lock()
+        self.is_over = False
+
+    def stop(self) -> None:
+        """End it, whatever it does, for good; any thread may."""
         with self._lock:
-            self._is_over = True
+            self.is_over = True
             if self._process is not None:
                 self._process.kill()
 
-    def _done(self, task: Task) -> Answer:
+    def done(self, task: Task) -> Answer:
+        """Have a task done; whatever becomes of the process is an answer."""
         ended = ""
         for _ in range(_TRIES):
-            if self._is_over:
+            if self.is_over:
                 break
             line = self._ask(task)
             with suppress(ValueError):
                 return Answer.from_line(line)
-            ended = self._end()
+            ended = self.end()
         return Answer("failed", f"the process that graded it ended ({ended}), {_TRIES} times")
 
     def _ask(self, task: Task) -> bytes:
         """The line that the process answers; empty if it ends instead."""
         with self._lock:
-            if self._process is None and not self._is_over:
+            if self._process is None and not self.is_over:
                 self._process = start()
         process = self._process
         if process is None or process.stdin is None or process.stdout is None:
@@ -133,7 +149,7 @@ class _Worker(threading.Thread):
         finally:
             patience.cancel()
 
-    def _end(self) -> str:
+    def end(self) -> str:
         """Have it gone; how it ended."""
         with self._lock:
             process, self._process = self._process, None
@@ -143,7 +159,7 @@ class _Worker(threading.Thread):
             if pipe is not None:
                 with suppress(OSError):
                     pipe.close()
-        if process.poll() is None and not self._is_over:
+        if process.poll() is None and not self.is_over:
             with suppress(subprocess.TimeoutExpired):
                 process.wait(10.0)  # it ends by itself where nobody asks any more
         process.kill()
