@@ -1,6 +1,6 @@
 """Packages that only part of the grader needs: named in one line where they are missing.
 
-pip brings all of them. `rosdep install` brings what Ubuntu has; the rest is for pip, which may not
+pip brings all of them, but for the extra `cluster`. `rosdep install` brings what Ubuntu has; the rest is for pip, which may not
 touch the Python of Ubuntu unless it is told to.
 """
 
@@ -16,6 +16,11 @@ from grader.errors import GraderFailure
 #: are those of pyproject.toml.
 OPTIONAL = {
     "rosbags": ("rosbags.rosbag2", "recordings are rosbag2 folders", "rosbags>=0.11.9,<0.12"),
+    "distributed": (
+        "distributed",
+        "--scheduler speaks to a dask cluster with it",
+        "distributed>=2025.1.0",
+    ),
     "watchdog": ("watchdog.observers", "--watch waits for saves with it", "watchdog>=3.0.0,<7"),
 }
 

@@ -17,7 +17,7 @@ from grader.exercise import DEFAULT
 from grader.text import for_terminal
 
 if TYPE_CHECKING:
-    from grader.batch.batch import Order
+    from grader.batch.batch import Order, Work
     from grader.batch.store import Store
     from grader.result.visible import View
 
@@ -36,6 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="DIR", help="the folder of the class")
     parser.add_argument(
         "--jobs", type=_jobs, metavar="N", help="so many gradings at once (as many as cores)"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="grade on the workers of a dask cluster instead"
     )
     parser.add_argument(
         "--exercise",
@@ -91,7 +94,7 @@ def main(args: argparse.Namespace) -> int:
     """Grade a class; 0: all are judged, 3: the grader failed for some."""
     if args.out is None or (args.submissions is None) == (not args.merge):
         raise UsageError("name the submissions, or parts to --merge; and a folder: --out DIR")
-    if args.isolation:
+    if args.isolation and not args.scheduler:
         from grader.run.processes import levels
 
         levels.require(args.isolation)
@@ -120,18 +123,34 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _grade(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> None:
-    from grader.batch import batch, pool
+    from grader.batch import batch
     from grader.batch.find import find
     from grader.cli import class_progress
-    from grader.run.processes import cores
 
-    jobs = args.jobs or max(1, round(cores.share()))
+    work = _on_a_cluster(args, messages) if args.scheduler else _on_this_machine(args)
     with find(args.submissions, args.pattern, args.roster) as found:
         _tell(messages, found.notes)
         planned = batch.plan(found.hand_ins, order, store)
         with class_progress.shown(messages, planned, store) as show:
-            for hand_in in batch.carry_out(planned, order, store, lambda t: pool.work(t, jobs)):
+            for hand_in in batch.carry_out(planned, order, store, work):
                 show(hand_in)
+
+
+def _on_this_machine(args: argparse.Namespace) -> Work:
+    from grader.batch import pool
+    from grader.run.processes import cores
+
+    jobs = args.jobs or max(1, round(cores.share()))
+    return lambda tasks: pool.work(tasks, jobs)
+
+
+def _on_a_cluster(args: argparse.Namespace, messages: Console) -> Work:
+    from grader.batch import cluster
+
+    def tell(note: str) -> None:
+        _tell(messages, [note])
+
+    return lambda tasks: cluster.work(tasks, args.scheduler, tell, args.isolation or "")
 
 
 def _merge(args: argparse.Namespace, store: Store, messages: Console) -> None:

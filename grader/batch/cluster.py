@@ -1,0 +1,253 @@
+"""The tasks of a class on a dask cluster: `grader batch --scheduler ADDRESS`.
+
+Each worker of the cluster has the grader installed, as this machine has; nothing else is shared
+with it, no folder and no file. A task that was lost with a worker is given to another one by the
+scheduler. When the scheduler itself goes, everything that had not come back is given to the next
+that answers at its address.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from itertools import chain
+from typing import TYPE_CHECKING, Any
+
+from grader.batch import pool, remote
+from grader.batch.parcel import Unfit
+from grader.batch.task import Answer, Task
+from grader.errors import UsageError
+from grader.requirements import require
+from grader.text import count
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+#: So long a scheduler is waited for, at first and after it was lost [s].
+FIRST_S, AGAIN_S = 30.0, 600.0
+#: So often in a row, with no task done between, a scheduler may be lost.
+MOST_LOSSES = 3
+#: So many more tasks are underway than the cluster has threads: none of them waits for the next.
+AHEAD = 2
+#: Of all that is underway [bytes]: the scheduler holds it in memory.
+MOST_BYTES = 1_000_000_000
+#: So long an answer may need from its worker to here, else we look again later [s].
+FETCH_S = 60.0
+LOOK_S = 1.0
+
+Done = tuple[Task, Answer]
+Tell = Callable[[str], None]
+
+
+def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: str = "") -> Iterator[Done]:
+    """Do tasks on a cluster; yields each as soon as it is over.
+
+    A task is taken from the iterable when there is room for it. What is underway when the iterator
+    ends is cancelled: what runs already comes to its end over there, and goes nowhere.
+
+    Args:
+        address: of the scheduler, as dask takes it.
+        tell: is told what a person may want to know meanwhile.
+        isolation: the least that a worker has to offer; see `grader.run.processes.levels`.
+
+    Raises:
+        UsageError: there is no scheduler, or a worker is not fit to grade this class.
+    """
+    require("distributed", load=False)
+    waiting, losses, patience_s = iter(tasks), 0, FIRST_S
+    while True:
+        with _connected(address, patience_s) as client:
+            session = _Session(client, waiting, isolation, tell)
+            try:
+                for done in session.work():
+                    losses = 0
+                    yield done
+                return
+            except _SchedulerLost as lost:
+                losses += 1
+                if losses > MOST_LOSSES:
+                    told = f"the scheduler at {address} goes again and again: {lost}"
+                    raise UsageError(told) from None
+                waiting = chain(session.unfinished(), waiting)
+            finally:
+                session.cancel()
+        tell(f"The scheduler at {address} is gone. Waiting for it, {AGAIN_S / 60:g} minutes ...")
+        patience_s = AGAIN_S
+
+
+class _SchedulerLost(Exception):
+    """Nothing that is underway will come back."""
+
+
+@contextmanager
+def _connected(address: str, patience_s: float) -> Iterator[Client]:
+    """A client of a scheduler.
+
+    Raises:
+        UsageError: there is none.
+    """
+    from distributed import Client
+
+    end = time.monotonic() + patience_s
+    while True:
+        left_s = max(1.0, end - time.monotonic())
+        try:
+            client = Client(address, timeout=left_s)
+            break
+        except OSError as error:  # also of one that goes as soon as it has come
+            if time.monotonic() > end:
+                raise UsageError(f"there is no scheduler at {address}: {error}") from None
+        except (ValueError, TypeError, RuntimeError) as error:
+            raise UsageError(f"{address} is no address of a scheduler: {error}") from None
+        time.sleep(LOOK_S)
+    try:
+        yield client
+    finally:
+        with suppress(OSError, TimeoutError):
+            client.close()
+
+
+class _Session:
+    """Tasks on one scheduler, for as long as that is there."""
+
+    def __init__(self, client: Client, waiting: Iterator[Task], isolation: str, tell: Tell) -> None:
+        self._client, self._waiting = client, waiting
+        self._isolation, self._tell = isolation, tell
+        self._underway: dict[Future, tuple[Task, int]] = {}
+        self._homeless: list[Task] = []
+        self._has_workers = True
+        self._here = pool.Process()
+
+    def work(self) -> Iterator[Done]:
+        """Do tasks; yields each as soon as it is over.
+
+        Raises:
+            _SchedulerLost: the scheduler is gone; the rest is `unfinished`.
+            UsageError: a worker is not fit.
+        """
+        self._check_workers()
+        while True:
+            yield from self._fill()
+            if not self._underway:
+                return
+            yield from self._look()
+
+    def unfinished(self) -> list[Task]:
+        """What was given to this scheduler, and did not come back."""
+        return [*(task for task, _ in self._underway.values()), *self._homeless]
+
+    def cancel(self) -> None:
+        """Have nothing underway any more."""
+        self._here.stop()
+        self._here.end()
+        if self._underway and self._client.status == "running":
+            with suppress(Exception):  # then there is nobody to tell it
+                self._client.cancel(list(self._underway))
+        self._underway.clear()
+
+    def _check_workers(self) -> None:
+        """Refuse a cluster that would come to other verdicts, before anything is sent to it."""
+        found = self._ask(lambda: self._client.run(remote.own_versions, on_error="return"))
+        wanted = remote.own_versions()
+        for worker, theirs in found.items():
+            if isinstance(theirs, dict) and theirs == wanted:
+                continue
+            if isinstance(theirs, OSError):
+                continue  # it has gone meanwhile
+            raise UsageError(
+                f"the worker at {worker} cannot grade this class: found {theirs}, expected "
+                f"{wanted}. Have the same installed there as here."
+            )
+
+    def _threads(self) -> int:
+        """How much the cluster does at once."""
+        threads: int = sum(self._ask(self._client.nthreads).values())
+        if bool(threads) != self._has_workers:
+            self._has_workers = bool(threads)
+            told = "has no worker. Waiting for one ..." if not threads else "has workers again."
+            self._tell(f"The scheduler {told}")
+        return threads
+
+    def _fill(self) -> Iterator[Done]:
+        """Have enough tasks underway; those that cannot be sent are over at once."""
+        most = AHEAD + self._threads()
+        while len(self._underway) < most and self._bytes() < MOST_BYTES:
+            task = next(self._waiting, None)
+            if task is None:
+                return
+            try:
+                package = remote.packed(task, self._isolation)
+            except Unfit:  # too large to be a submission: it is refused, not run
+                yield task, self._here.done(task)
+            except OSError as error:
+                yield task, Answer("failed", f"cannot be sent: {error}")
+            else:
+                self._submit(task, package)
+
+    def _submit(self, task: Task, package: bytes) -> None:
+        import dask
+
+        self._homeless = [task]
+        quiet = {"distributed.admin.large-graph-warning-threshold": f"{2 * MOST_BYTES}B"}
+        with dask.config.set(quiet):
+            # each has a name of its own: an equal task is not an equal call
+            future = self._ask(lambda: self._client.submit(remote.graded, package, pure=False))
+        self._underway[future] = task, len(package)
+        self._homeless = []
+
+    def _bytes(self) -> int:
+        return sum(size for _, size in self._underway.values())
+
+    def _look(self) -> Iterator[Done]:
+        """Wait a moment, and take out what is over."""
+        from distributed import CancelledError, wait
+
+        with suppress(TimeoutError, CancelledError):
+            wait(list(self._underway), timeout=LOOK_S, return_when="FIRST_COMPLETED")
+        if self._client.status not in ("running", "connecting"):
+            raise _SchedulerLost("the connection is closed")
+        # lost: with the worker that had it, and done again elsewhere
+        for future in [f for f in self._underway if f.status not in ("pending", "lost")]:
+            answer = self._answer(future)
+            if answer is not None:
+                task, _ = self._underway.pop(future)
+                yield task, answer
+
+    def _answer(self, future: Future) -> Answer | None:
+        """How a task has ended; None: look again."""
+        task, _ = self._underway[future]
+        if future.status == "error":
+            return self._failure(self._ask(future.exception))
+        try:
+            package = future.result(timeout=FETCH_S)
+        except TimeoutError:
+            return None
+        except Exception as error:
+            if future.status in ("error", "lost", "pending"):
+                return None
+            raise _SchedulerLost(str(error)) from None
+        return remote.unpack(package, task)
+
+    def _failure(self, error: BaseException | None) -> Answer:
+        if isinstance(error, UsageError):  # no task should go there
+            raise error
+        from distributed import KilledWorker
+
+        if isinstance(error, KilledWorker):
+            lost = count(error.allowed_failures + 1, "worker")
+            return Answer("failed", f"{lost} of the cluster ended while grading it")
+        return Answer("failed", f"a worker failed: {type(error).__name__}: {error}")
+
+    def _ask(self, call: Callable[[], Any]) -> Any:
+        """What the scheduler answers.
+
+        Raises:
+            _SchedulerLost: nothing.
+        """
+        from distributed import CancelledError
+
+        try:
+            return call()
+        except (OSError, CancelledError) as error:
+            raise _SchedulerLost(str(error) or type(error).__name__) from None

@@ -1,0 +1,165 @@
+"""One task on another machine: everything it needs goes there, everything it made comes back.
+
+What travels is a parcel (`grader.batch.parcel`), with task and answer as JSON in it. `graded` is
+what a cluster calls.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from grader import scratch, strict_json, versions
+from grader.batch import parcel, pool
+from grader.batch.parcel import Unfit
+from grader.batch.store import RUN, STUDENTS
+from grader.batch.task import Answer, Task
+from grader.errors import UsageError
+from grader.exercise import places
+from grader.exercise.places import CHECKS
+from grader.run.processes import levels
+from grader.submission.folder import is_generated, is_junk
+
+TASK, ANSWER, NEEDS = "task.json", "answer.json", "needs.json"
+#: Where all else lies on the worker, below a folder of the task's own.
+SUBMISSION, EXERCISE, STORED, MADE = map(Path, ("submission", "exercise", "stored", "made"))
+
+_of_thread = threading.local()
+
+
+def own_versions() -> dict[str, str]:
+    """What has to be the same on all machines that grade one class."""
+    return {
+        "grader": versions.grader(),
+        "python": versions.python(),
+        "rclpy": versions.rclpy(),
+        "ros_distro": versions.ros_distro(),
+    }
+
+
+def check_versions(wanted: Mapping[str, str]) -> None:
+    """Refuse to grade with others than those of whoever asks.
+
+    Raises:
+        UsageError: there are others here.
+    """
+    found = own_versions()
+    differences = [
+        f"{name} {found.get(name) or 'none'}, and {value or 'none'} where the class is"
+        for name, value in wanted.items()
+        if found.get(name) != value
+    ]
+    if differences:
+        raise UsageError(
+            f"a worker has other versions: {'; '.join(differences)}. Install the same on both."
+        )
+
+
+def packed(task: Task, isolation: str = "") -> bytes:
+    """A task with what was handed in, the run if there is one and, unless installed, the exercise.
+
+    Args:
+        isolation: the least that the worker has to offer; see `grader.run.processes.levels`.
+
+    Raises:
+        Unfit: it is too large.
+        OSError: something of it cannot be read.
+    """
+    sent = replace(task, path=Path(SUBMISSION, task.path.name), into=Path(MADE))
+    trees = {str(sent.path): task.path}
+    if not places.is_installed(task.exercise):
+        exercise = Path(task.exercise)
+        # an edited copy beside its original means that one
+        base = exercise.parent if (exercise.parent / CHECKS).is_file() else exercise
+        trees[f"{EXERCISE}/{base.name}"] = base
+        sent = replace(sent, exercise=str(EXERCISE / exercise.relative_to(base.parent)))
+    if task.run is not None:
+        sent = replace(sent, run=Path(STORED, RUN))
+        trees[str(sent.run)] = task.run
+    needs = {"versions": own_versions(), "isolation": isolation}
+    texts = {TASK: sent.to_line(), NEEDS: json.dumps(needs).encode()}
+    return parcel.pack(texts, trees, _is_left_out)
+
+
+def graded(package: bytes) -> bytes:
+    """Do a task that was packed, in a process of its own; returns what `unpack` takes.
+
+    Raises:
+        UsageError: this machine is not fit for it; no other task should come here either.
+    """
+    with scratch.make_folder() as folder:
+        texts = parcel.unpack(package, folder, "tar")
+        needs = strict_json.loads(texts[NEEDS].decode())
+        check_versions(needs["versions"])
+        if needs["isolation"]:
+            levels.require(needs["isolation"])
+        task = _here(Task.from_line(texts[TASK]), folder)
+        answer = _process().done(task)
+        try:
+            return parcel.pack({ANSWER: answer.to_line()}, _made(task))
+        except Unfit as unfit:
+            answer = Answer("failed", f"what came of it cannot be sent: {unfit}")
+            return parcel.pack({ANSWER: answer.to_line()}, {})
+
+
+def unpack(package: bytes, task: Task) -> Answer:
+    """Put what `graded` has made into a task's folder; how it ended.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    try:
+        texts = parcel.unpack(package, task.into)
+        answer = Answer.from_line(texts.get(ANSWER, b""))
+    except (Unfit, ValueError) as error:
+        return Answer("failed", f"what a worker sent back cannot be used: {error}")
+    except OSError as error:
+        raise UsageError(f"cannot write into {task.into}: {error.strerror or error}") from None
+    expected = {RUN, *(f"{STUDENTS}/{each.id}" for each in task.hand_ins)}
+    if answer.state == "done" and not _names(task.into) <= expected:
+        return Answer("failed", "a worker sent back what nobody has asked for")
+    return answer
+
+
+def _here(task: Task, folder: Path) -> Task:
+    """The same task with the places of this machine."""
+    (folder / MADE).mkdir()
+    is_sent = Path(task.exercise).is_relative_to(EXERCISE)
+    return replace(
+        task,
+        path=folder / task.path,
+        exercise=str(folder / task.exercise) if is_sent else task.exercise,
+        run=None if task.run is None else folder / task.run,
+        into=folder / MADE,
+    )
+
+
+def _is_left_out(path: Path) -> bool:
+    """Whether something is neither handed in nor part of an exercise, as far as a run sees."""
+    is_folder = path.is_dir() and not path.is_symlink()
+    return is_junk(path.name) or (is_folder and is_generated(path))
+
+
+def _process() -> pool.Process:
+    """The process that does the tasks of this thread of a worker.
+
+    Of its own, because a grading forks, handles signals and adopts orphans, and a worker of a
+    cluster has threads that know nothing of that. It ends when this process does.
+    """
+    if not hasattr(_of_thread, "process"):
+        _of_thread.process = pool.Process()
+    process: pool.Process = _of_thread.process
+    return process
+
+
+def _made(task: Task) -> dict[str, Path]:
+    return {name: task.into / name for name in sorted(_names(task.into))}
+
+
+def _names(into: Path) -> set[str]:
+    """What is in a task's folder: the run, and each student's folder."""
+    students = {f"{STUDENTS}/{path.name}" for path in into.glob(f"{STUDENTS}/*")}
+    return students | {path.name for path in into.iterdir() if path.name != STUDENTS}
