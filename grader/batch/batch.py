@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader.batch import grade, key
-from grader.batch.class_file import CLASS, ClassFile
+from grader.batch.class_file import CLASS, VERSIONS, ClassFile
 from grader.batch.entry import Entry
 from grader.batch.hand_in import HandIn
 from grader.batch.store import STUDENTS, Store
@@ -74,19 +74,18 @@ class Planned:
         return sum(len(t.hand_ins) for t in self.tasks) + len(self.trivial) + len(self.done)
 
 
-def check_same_class(store: Store, order: Order) -> None:
+def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
     """Refuse to grade into the folder of another class; write down what a new one is for.
 
     Raises:
         UsageError: it holds another class, or is no folder of one and not empty.
     """
-    wanted = order.class_file
     if not (store.out / CLASS).is_file():
         wanted.put(store.out)
         return
     found = ClassFile.read(store.out)
     differences = wanted.differences(found)
-    if order.again == "all" and differences.keys() <= {"grader", "ros", "exercise_sha256"}:
+    if again == "all" and differences.keys() <= {*VERSIONS, "exercise_sha256"}:
         wanted.put(store.out)
         return
     if not differences:
@@ -96,7 +95,7 @@ def check_same_class(store: Store, order: Order) -> None:
         advice = (
             f"See what the new one would change: grader batch --regrade {store.out} --exercise ..."
         )
-    elif differences.keys() <= {"grader", "ros"}:
+    elif differences.keys() <= VERSIONS:
         advice = "Give another --out, or have everything graded by this one: --again all."
     told = "; ".join(differences.values())
     raise UsageError(
@@ -105,7 +104,7 @@ def check_same_class(store: Store, order: Order) -> None:
 
 
 def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
-    """What is to be done for these hand-ins.
+    """What is to be done for these hand-ins; how many they are is written down.
 
     Raises:
         UsageError: `again` names nobody.
@@ -124,7 +123,9 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
             trivial.append(hand_in)
     tasks = tuple(_task(run, everybody, order, store) for run, everybody in by_key.items())
     alike = sum(len(task.hand_ins) - (task.run is None) for task in tasks)
-    return Planned(tasks, tuple(trivial), tuple(done), alike)
+    planned = Planned(tasks, tuple(trivial), tuple(done), alike)
+    replace(order.class_file, hand_ins=planned.hand_ins).put(store.out)
+    return planned
 
 
 def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Iterator[HandIn]:
@@ -183,10 +184,6 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
         try:
             content = key.of_hand_in(hand_in.path, hand_in.filename)
         except OSError as error:
-            if is_in(hand_in.id, order.shard):
-                why = f"It cannot be read: {error.strerror or error}"
-                yield replace(hand_in, problem=why, path=None), ""
-            continue
             if is_in(hand_in.id, order.shard):
                 why = f"It cannot be read: {error.strerror or error}"
                 yield replace(hand_in, problem=why, path=None), ""

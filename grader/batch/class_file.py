@@ -18,6 +18,7 @@ SCHEMA = f"{FAMILY}v1"
 CLASS = "class.json"
 #: Characters of a value in a message: enough of a hash to tell two apart.
 MOST_SHOWN = 24
+VERSIONS = {"grader", "ros", "python"}
 _NAMED = {
     "exercise": "the exercise",
     "exercise_sha256": "the exercise's rubric",
@@ -25,6 +26,7 @@ _NAMED = {
     "seed": "the seed (--seed)",
     "grader": "the grader's version",
     "ros": "the version of rclpy and the ROS release",
+    "python": "the version of Python",
     "shard": "the shard (--shard)",
 }
 
@@ -38,8 +40,9 @@ class ClassFile:
         exercise_sha256: of all that it judges by.
         time: the clock that submissions lived by.
         seed: chose where the varied runs start; None: the exercise's own.
-        grader, ros: versions.
+        grader, ros, python: versions.
         shard: "I/N" where the folder holds one of several parts of a class; '' for all of it.
+        hand_ins: how many there will be when it is finished; 0 where nobody has said it yet.
     """
 
     exercise: str
@@ -48,13 +51,16 @@ class ClassFile:
     seed: int | None = None
     grader: str = ""
     ros: str = ""
+    python: str = ""
     shard: str = ""
+    hand_ins: int = 0
 
     @classmethod
     def of(cls, exercise: Exercise, time: Clock, seed: int | None, shard: str = "") -> Self:
         """Of a call."""
         ros = f"rclpy {versions.rclpy()} {versions.ros_distro()}".strip()
-        return cls(exercise.name, exercise.sha256, time, seed, versions.grader(), ros, shard)
+        ours, python = versions.grader(), versions.python()
+        return cls(exercise.name, exercise.sha256, time, seed, ours, ros, python, shard)
 
     def put(self, out: Path) -> None:
         """Write it.

@@ -7,35 +7,49 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from grader.batch.batch import check_same_class
 from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
 from grader.batch.store import RUN, SHARED, STUDENTS, Store
 from grader.errors import UsageError
+from grader.exercise.loading import Exercise
+from grader.text import count
 
 
-def merge(parts: Sequence[Path], store: Store) -> list[str]:
+def merge(parts: Sequence[Path], exercise: Exercise, store: Store) -> list[str]:
     """Bring the parts of a class into one folder; they stay as they are.
 
     Returns:
-        Notes: which parts are missing.
+        Notes: which parts are missing, or not finished.
 
     Raises:
         UsageError: one is no part of a class, two do not fit together, or tell different things of
-            the same hand-in. Nothing has changed then.
+            the same hand-in, or another exercise has judged them. Nothing has changed then.
     """
     found = {part: ClassFile.read(part) for part in parts}
     whole = _common(found)
+    _must_be_judged_by(exercise, whole)
     graded = {part: entries(part) for part in parts}
     _must_agree(graded)
+    check_same_class(store, whole)
     for part, those in graded.items():
         for entry in those:
             _take(entry, Store(part), store)
     whole.put(store.out)
-    return list(_missing([file.shard for file in found.values()]))
+    unfinished = [
+        f"{part} is not finished: {len(graded[part])} of {count(file.hand_ins, 'hand-in')}."
+        for part, file in found.items()
+        if len(graded[part]) < file.hand_ins
+    ]
+    return [*_missing([file.shard for file in found.values()]), *unfinished]
 
 
 def _common(found: dict[Path, ClassFile]) -> ClassFile:
-    (first, whole), *others = ((part, replace(file, shard="")) for part, file in found.items())
+    hand_ins = {file.shard: file.hand_ins for file in found.values()}
+    (first, whole), *others = (
+        (part, replace(file, shard="", hand_ins=sum(hand_ins.values())))
+        for part, file in found.items()
+    )
     for part, other in others:
         if differences := whole.differences(other):
             told = "; ".join(differences.values())
@@ -44,6 +58,16 @@ def _common(found: dict[Path, ClassFile]) -> ClassFile:
                 "graded by the same exercise and grader."
             )
     return whole
+
+
+def _must_be_judged_by(exercise: Exercise, whole: ClassFile) -> None:
+    ours = replace(whole, exercise=exercise.name, exercise_sha256=exercise.sha256)
+    if differences := ours.differences(whole):
+        told = "; ".join(differences.values())
+        raise UsageError(
+            f"these parts were judged by something else ({told}). Nothing was changed. Name what "
+            "they were judged by: --exercise ..."
+        )
 
 
 def _must_agree(graded: dict[Path, list[Entry]]) -> None:

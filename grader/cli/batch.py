@@ -19,6 +19,7 @@ from grader.text import for_terminal
 if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
     from grader.batch.store import Store
+    from grader.exercise.loading import Exercise
     from grader.result.visible import View
 
 JUDGED, GRADER_FAILED = 0, 3
@@ -110,10 +111,10 @@ def main(args: argparse.Namespace) -> int:
     order = Order(exercise, path, args.time, args.seed, args.again, args.shard)
     messages = Console(stderr=True, highlight=False)
     with Store.opened(args.out) as store:
-        check_same_class(store, order)
         if args.merge:
-            _merge(args, store, messages)
+            _merge(args, exercise, store, messages)
         else:
+            check_same_class(store, order.class_file, order.again)
             _grade(args, order, store, messages)
         graded = entries(args.out)
         view: View = "after_due" if args.after_due else "student"
@@ -153,10 +154,10 @@ def _on_a_cluster(args: argparse.Namespace, messages: Console) -> Work:
     return lambda tasks: cluster.work(tasks, args.scheduler, tell, args.isolation or "")
 
 
-def _merge(args: argparse.Namespace, store: Store, messages: Console) -> None:
+def _merge(args: argparse.Namespace, exercise: Exercise, store: Store, messages: Console) -> None:
     from grader.batch.merge import merge
 
-    _tell(messages, merge(args.merge, store))
+    _tell(messages, merge(args.merge, exercise, store))
 
 
 def _tell(console: Console, notes: Sequence[str]) -> None:
