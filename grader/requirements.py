@@ -1,7 +1,7 @@
 """Packages that only part of the grader needs: named in one line where they are missing.
 
-pip brings all of them, but for the extra `cluster`. `rosdep install` brings what Ubuntu has; the rest is for pip, which may not
-touch the Python of Ubuntu unless it is told to.
+pip brings all of them, the extra `cluster` only if it is asked for. `rosdep install` brings what
+Ubuntu has; the rest is for pip, which may not touch the Python of Ubuntu unless it is told to.
 """
 
 from __future__ import annotations

@@ -35,6 +35,7 @@ MOST_BYTES = 1_000_000_000
 #: So long an answer may need from its worker to here, else we look again later [s].
 FETCH_S = 60.0
 LOOK_S = 1.0
+ADVICE = "Install the same there as where the class is"
 
 Done = tuple[Task, Answer]
 Tell = Callable[[str], None]
@@ -151,14 +152,10 @@ class _Session:
         found = self._ask(lambda: self._client.run(remote.own_versions, on_error="return"))
         wanted = remote.own_versions()
         for worker, theirs in found.items():
-            if isinstance(theirs, dict) and theirs == wanted:
-                continue
-            if isinstance(theirs, OSError):
-                continue  # it has gone meanwhile
-            raise UsageError(
-                f"the worker at {worker} cannot grade this class: found {theirs}, expected "
-                f"{wanted}. Have the same installed there as here."
-            )
+            if isinstance(theirs, dict):
+                remote.check_versions(wanted, theirs, f"the worker at {worker}")
+            elif not isinstance(theirs, OSError):  # it has not just gone
+                raise UsageError(f"the worker at {worker} cannot grade ({theirs}). {ADVICE}")
 
     def _threads(self) -> int:
         """How much the cluster does at once."""
@@ -232,6 +229,8 @@ class _Session:
     def _failure(self, error: BaseException | None) -> Answer:
         if isinstance(error, UsageError):  # no task should go there
             raise error
+        if isinstance(error, ImportError):
+            raise UsageError(f"a worker cannot grade ({error}). {ADVICE}")
         from distributed import KilledWorker
 
         if isinstance(error, KilledWorker):

@@ -7,6 +7,7 @@ what a cluster calls.
 from __future__ import annotations
 
 import json
+import socket
 import threading
 from collections.abc import Mapping
 from dataclasses import replace
@@ -40,13 +41,16 @@ def own_versions() -> dict[str, str]:
     }
 
 
-def check_versions(wanted: Mapping[str, str]) -> None:
+def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: str) -> None:
     """Refuse to grade with others than those of whoever asks.
 
+    Args:
+        wanted, found: from `own_versions`, where the class is and of the worker.
+        worker: what a message calls it.
+
     Raises:
-        UsageError: there are others here.
+        UsageError: they are not the same.
     """
-    found = own_versions()
     differences = [
         f"{name} {found.get(name) or 'none'}, and {value or 'none'} where the class is"
         for name, value in wanted.items()
@@ -54,7 +58,7 @@ def check_versions(wanted: Mapping[str, str]) -> None:
     ]
     if differences:
         raise UsageError(
-            f"a worker has other versions: {'; '.join(differences)}. Install the same on both."
+            f"{worker} has other versions: {'; '.join(differences)}. Install the same on both"
         )
 
 
@@ -93,7 +97,7 @@ def graded(package: bytes) -> bytes:
     with scratch.make_folder() as folder:
         texts = parcel.unpack(package, folder, "tar")
         needs = strict_json.loads(texts[NEEDS].decode())
-        check_versions(needs["versions"])
+        check_versions(needs["versions"], own_versions(), f"the worker {socket.gethostname()}")
         if needs["isolation"]:
             levels.require(needs["isolation"])
         task = _here(Task.from_line(texts[TASK]), folder)
