@@ -21,7 +21,11 @@ PAGE = "index.html"
 
 
 def write(
-    out: Path, entries: Sequence[Entry], exercise: Exercise, view: View, assignment: str = ""
+    out: Path,
+    entries: Sequence[Entry],
+    exercise: Exercise,
+    view: View = "student",
+    assignment: str = "",
 ) -> list[str]:
     """Write gradebook and pages.
 

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from grader import files
 from grader.batch.class_file import CLASS
-from grader.batch.entry import SUBMISSIONS
+from grader.batch.entry import ENTRY, SUBMISSIONS
 from grader.batch.page.thumb import THUMB
 from grader.batch.similar.signature import NAME as SIGNATURE
 from grader.batch.similar.sources import SOURCE
@@ -32,6 +32,8 @@ RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
 #: What of a run lies in the folder of everybody who has handed it in, too.
 SHARED = (RECORDING, SOURCE, SIGNATURE, THUMB)
+#: Before the name of what is being replaced, beside what replaces it.
+_OLDER = "older-"
 
 
 class Store:
@@ -51,6 +53,7 @@ class Store:
         _check_is_ours(out)
         files.make_folder(out)
         with files.sole_writer(out):
+            _put_back(out)
             remove(out / UNFINISHED)
             try:
                 for name in (STORE, SUBMISSIONS, UNFINISHED):
@@ -115,8 +118,17 @@ def _check_is_ours(out: Path) -> None:
 
 def _replace(made: Path, target: Path, place: Path) -> None:
     if os.path.lexists(target):
-        target.rename(place / f"older-{target.name}")
+        target.rename(place / f"{_OLDER}{target.name}")
     made.rename(target)
+
+
+def _put_back(out: Path) -> None:
+    """Give a hand-in its folder back that an interrupted call had taken away to replace it."""
+    for older in sorted((out / UNFINISHED).glob(f"*/{_OLDER}*")):
+        target = out / SUBMISSIONS / older.name.removeprefix(_OLDER)
+        if (older / ENTRY).is_file() and not os.path.lexists(target):
+            with suppress(OSError):
+                older.rename(target)
 
 
 def _flush(place: Path) -> None:

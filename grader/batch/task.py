@@ -27,6 +27,7 @@ class Task:
         seed: chooses where the varied runs start; None takes the exercise's own.
         run: the folder of the run, if it is made already.
         into: an empty folder for what is made; see `grader.batch.store`.
+        judge_only: whether results alone are asked for: no pages, no pictures.
     """
 
     key: str
@@ -38,12 +39,14 @@ class Task:
     seed: int | None
     run: Path | None
     into: Path
+    judge_only: bool = False
 
     def to_line(self) -> bytes:
         """As it is sent."""
         data: dict[str, Any] = {
             **{name: getattr(self, name) for name in ("key", "filename", "exercise", "time")},
             "seed": self.seed,
+            "judge_only": self.judge_only,
             "path": str(self.path),
             "run": None if self.run is None else str(self.run),
             "into": str(self.into),

@@ -73,6 +73,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="put parts together that --shard has made, instead of grading",
     )
     parser.add_argument(
+        "--regrade",
+        type=Path,
+        metavar="DIR",
+        help="show what --exercise would change in the class of this folder; run nothing",
+    )
+    parser.add_argument(
+        "--apply", action="store_true", help="with --regrade: write it; what was before is kept"
+    )
+    parser.add_argument(
         "--after-due",
         action="store_true",
         help="students may see now what their exercise hides until it is due",
@@ -93,8 +102,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Grade a class; 0: all are judged, 3: the grader failed for some."""
-    if args.out is None or (args.submissions is None) == (not args.merge):
-        raise UsageError("name the submissions, or parts to --merge; and a folder: --out DIR")
+    _check_words(args)
+    view: View = "after_due" if args.after_due else "student"
+    if args.regrade:
+        from grader.cli import regrading
+
+        return regrading.run(args, _jobs_of(args), view)
     if args.isolation and not args.scheduler:
         from grader.run.processes import levels
 
@@ -117,7 +130,6 @@ def main(args: argparse.Namespace) -> int:
             check_same_class(store, order.class_file, order.again)
             _grade(args, order, store, messages)
         graded = entries(args.out)
-        view: View = "after_due" if args.after_due else "student"
         _tell(messages, outputs.write(args.out, graded, exercise, view, args.assignment))
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
@@ -137,11 +149,27 @@ def _grade(args: argparse.Namespace, order: Order, store: Store, messages: Conso
                 show(hand_in)
 
 
-def _on_this_machine(args: argparse.Namespace) -> Work:
-    from grader.batch import pool
+def _check_words(args: argparse.Namespace) -> None:
+    """Refuse a call that asks for two things, or for none."""
+    asked = [bool(args.submissions), bool(args.merge), bool(args.regrade)]
+    if sum(asked) != 1:
+        raise UsageError("name one: the submissions, parts to --merge, or a class to --regrade")
+    if args.apply and not args.regrade:
+        raise UsageError("--apply belongs to --regrade DIR")
+    if args.out is None and not args.regrade:
+        raise UsageError("name a folder for the class: --out DIR")
+
+
+def _jobs_of(args: argparse.Namespace) -> int:
     from grader.run.processes import cores
 
-    jobs = args.jobs or max(1, round(cores.share()))
+    return args.jobs or max(1, round(cores.share()))
+
+
+def _on_this_machine(args: argparse.Namespace) -> Work:
+    from grader.batch import pool
+
+    jobs = _jobs_of(args)
     return lambda tasks: pool.work(tasks, jobs)
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from grader.exercise.verdict import Finding
+from grader.recording.provenance import Provenance
 from grader.recording.recording import Recording, Recordings
 from grader.scenes import load_scene
 from grader.text import without_controls
@@ -105,13 +106,14 @@ def remarks(recording: Recording, all_passed: bool = False) -> list[str]:
     return found
 
 
-def not_followed(recording: Recording, conditions: Mapping[str, float]) -> list[str]:
+def not_followed(origin: Provenance | None, conditions: Mapping[str, float]) -> list[str]:
     """What of an exercise's conditions a recording that was made before cannot follow.
 
     Args:
+        origin: the nominal recording's; None where it does not tell.
         conditions: see `grader.exercise.loading.Exercise`.
     """
-    told = {} if recording.provenance is None else recording.provenance.conditions
+    told = {} if origin is None else origin.conditions
     then = {**_OFF, **told} if told else {}
     return [
         f"The recording was made with {key} {then[key]:g}; the exercise now says {value:g}. "

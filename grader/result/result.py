@@ -251,4 +251,5 @@ def build(
 def _nominal(recording: Recording, exercise: Exercise, all_passed: bool) -> RunSummary:
     """The nominal run, with what of the exercise came too late for it."""
     run = RunSummary.of(recording, all_passed)
-    return replace(run, flags=(*run.flags, *not_followed(recording, exercise.conditions)))
+    late = not_followed(recording.provenance, exercise.conditions)
+    return replace(run, flags=(*run.flags, *late))

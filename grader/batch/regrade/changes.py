@@ -1,0 +1,225 @@
+"""The difference between two judgements of a class: who changes, by how much, which check, why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from grader.batch.entry import Entry
+from grader.exercise.loading import Exercise
+from grader.exercise.verdict import Verdict
+from grader.reports.wording import title_of
+from grader.text import count, points
+
+#: Differences below this come from rounding [points].
+NOTHING = 0.005
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A check of which two judgements say different things.
+
+    Attributes:
+        check: its name; '' of what is deducted from the whole.
+        title: as students read it.
+        before, after: what was, and is, said of it; None where it was not, or is no longer, asked.
+        points: what that changes.
+        why: a sentence.
+    """
+
+    check: str
+    title: str
+    before: Verdict | None
+    after: Verdict | None
+    points: float
+    why: str
+
+
+@dataclass(frozen=True)
+class Change:
+    """Somebody who gets other points, or another verdict.
+
+    Attributes:
+        before, after: what is kept of the hand-in, as it is and as it would be.
+        differences: the checks that have changed.
+    """
+
+    before: Entry
+    after: Entry
+    differences: tuple[Difference, ...]
+
+    @property
+    def points(self) -> float:
+        """More, or less, in the gradebook."""
+        return round((self.after.score or 0.0) - (self.before.score or 0.0), 2)
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A hand-in that could not be judged again; it stays as it is."""
+
+    entry: Entry
+    why: str
+
+
+@dataclass(frozen=True)
+class OfCheck:
+    """What a check adds to the change, over the class.
+
+    Attributes:
+        gain, lose: so many get more points for it, or less; others get another verdict only.
+        points: in all.
+    """
+
+    check: str
+    title: str
+    gain: int
+    lose: int
+    changed: int
+    points: float
+
+
+@dataclass(frozen=True)
+class Regrade:
+    """What an exercise would change in a class.
+
+    Attributes:
+        out: the folder of the class.
+        exercise: the one that it is judged by again.
+        exercise_path: as a worker loads it.
+        entries: all of the class, as they are.
+        changes: of the points or a verdict, the largest first.
+        reworded: those of whom other words are said for the same points.
+        failures: those who could not be judged again.
+        judged: so many were.
+        notes: what else is to be known.
+    """
+
+    out: Path
+    exercise: Exercise
+    exercise_path: str
+    entries: tuple[Entry, ...]
+    changes: tuple[Change, ...]
+    reworded: tuple[Change, ...]
+    failures: tuple[Failure, ...]
+    judged: int
+    notes: tuple[str, ...]
+
+    @property
+    def headline(self) -> str:
+        """In a line: '7 of 312 change: 2 get more points, 5 get fewer points.'."""
+        total = len(self.entries)
+        if not self.changes:
+            return f"None of {total} changes."
+        more = sum(change.points >= NOTHING for change in self.changes)
+        less = sum(change.points <= -NOTHING for change in self.changes)
+        same = len(self.changes) - more - less
+        told = [
+            f"{number} {what}"
+            for number, what in (
+                (more, "get more points"),
+                (less, "get fewer points"),
+                (same, "by other verdicts for the same points"),
+            )
+            if number
+        ]
+        changing = "changes" if len(self.changes) == 1 else "change"
+        return f"{len(self.changes)} of {total} {changing}: {', '.join(told)}."
+
+    @property
+    def more_notes(self) -> list[str]:
+        """Notes, with what the numbers say."""
+        found = list(self.notes)
+        worth = sorted({entry.max_score for entry in self.entries} - {self.exercise.max_score})
+        if worth:
+            before = " or ".join(map(points, worth))
+            found.append(
+                f"The exercise is worth {points(self.exercise.max_score)} points; it was {before}."
+            )
+        if self.reworded:
+            more = count(len(self.reworded), "more hand-in")
+            found.append(f"Of {more} something else is said, for the same points.")
+        unjudged = len(self.entries) - self.judged - len(self.failures)
+        if unjudged:
+            found.append(f"{count(unjudged, 'hand-in')} without a run stay as they are.")
+        return found
+
+    @cached_property
+    def of_checks(self) -> list[OfCheck]:
+        """Each check that changes anything; the one that moves most points first."""
+        found: dict[str, list[Difference]] = {}
+        for change in self.changes:
+            for each in change.differences:
+                found.setdefault(each.check, []).append(each)
+        made = [
+            OfCheck(
+                name,
+                each[0].title,
+                sum(one.points >= NOTHING for one in each),
+                sum(one.points <= -NOTHING for one in each),
+                len(each),
+                round(sum(one.points for one in each), 2),
+            )
+            for name, each in found.items()
+        ]
+        return sorted(made, key=lambda one: (-one.gain - one.lose, -abs(one.points), one.check))
+
+
+def compared(before: Entry, after: Entry) -> Change | None:
+    """What of a judged hand-in has changed; None where nothing has."""
+    differences = tuple(_of_checks(before, after))
+    # what is deducted from the score, e.g. for being late
+    taken = [_deducted(entry) for entry in (before, after)]
+    if abs(taken[1] - taken[0]) >= NOTHING:
+        why = f"{points(taken[1])} points are deducted from the score, not {points(taken[0])}"
+        late = Difference("", "Handed in late", None, None, round(taken[0] - taken[1], 2), why)
+        differences = (*differences, late)
+    return Change(before, after, differences) if differences else None
+
+
+def is_of_words(change: Change) -> bool:
+    """Whether points and verdicts are the same, and only what is said of them is not."""
+    return all(
+        each.before is not None
+        and each.after is not None
+        and each.before.status == each.after.status
+        and abs(each.points) < NOTHING
+        for each in change.differences
+    )
+
+
+def _of_checks(before: Entry, after: Entry) -> Iterable[Difference]:
+    old, new = ({v.check: v for v in _verdicts(entry)} for entry in (before, after))
+    for name in [*new, *(name for name in old if name not in new)]:
+        was, is_ = old.get(name), new.get(name)
+        if was is None or is_ is None or _said(was) != _said(is_):
+            some = is_ or was
+            assert some is not None
+            gained = (is_.score if is_ else 0.0) - (was.score if was else 0.0)
+            yield Difference(name, title_of(some), was, is_, round(gained, 2), _why(was, is_))
+
+
+def _said(verdict: Verdict) -> tuple[object, ...]:
+    """What a student may care about; evidence comes with the words."""
+    return verdict.status, round(verdict.score, 2), verdict.rationale
+
+
+def _why(was: Verdict | None, is_: Verdict | None) -> str:
+    if is_ is None:
+        return "It is no longer asked for."
+    if was is None:
+        return f"It was not asked for before. {is_.rationale}"
+    if (was.status, was.rationale) == (is_.status, is_.rationale):
+        worth = f"worth {points(is_.max_score)} points, not {points(was.max_score)}"
+        return f"It is {worth}. {is_.rationale}"
+    return is_.rationale
+
+
+def _verdicts(entry: Entry) -> tuple[Verdict, ...]:
+    return () if entry.result is None else entry.result.verdicts
+
+
+def _deducted(entry: Entry) -> float:
+    return 0.0 if entry.result is None else entry.result.score - (entry.score or 0.0)
