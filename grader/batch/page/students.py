@@ -8,13 +8,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
-from typing import Final, Protocol, cast
+from typing import Final
 from urllib.parse import quote
 
 from grader import text
 from grader.batch.entry import SUBMISSIONS, Entry, State
 from grader.batch.page.thumb import Thumb
 from grader.exercise.verdict import Verdict
+from grader.result.handed_in import HandedIn
 from grader.result.result import PAGE
 
 _NAME_LIMIT, _WORD_LIMIT = 80, 40
@@ -25,14 +26,6 @@ STATES: Final[Mapping[State, str]] = {
     "failed": "the grader failed",
 }
 _GAP = "…"
-
-
-class _HandedIn(Protocol):
-    """What a result says of the time it was handed in at."""
-
-    late_s: float
-    days: int
-    deducted: float
 
 
 @dataclass(frozen=True)
@@ -105,9 +98,8 @@ class Student:
         return f"{length}, −{text.points(told.deducted)}" if told.deducted else length
 
     @property
-    def _handed_in(self) -> _HandedIn | None:
-        # results of exercises that are never due do not have it
-        return cast("_HandedIn | None", getattr(self.entry.result, "handed_in", None))
+    def _handed_in(self) -> HandedIn | None:
+        return None if self.entry.result is None else self.entry.result.handed_in
 
     def without_names(self, sentence: str) -> str:
         """A sentence in which neither the name nor an id of this student stands."""

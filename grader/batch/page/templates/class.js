@@ -194,12 +194,19 @@
     sort(sorted.column, sorted.descending);  // an order by names would tell them
     find();
     if (chosen) choose(chosen);
-    // a page that is loaded again in front of a class hides them again
-    history.replaceState(null, "", hide ? "#names-hidden" : "#");
+    remember();
   }
+
+  /** A page that is loaded again in front of a class hides them again. */
+  function remember() {
+    history.replaceState(null, "", isHidden() ? "#names-hidden" : "#");
+  }
+
+  const isHidden = () => by("hide").getAttribute("aria-pressed") === "true";
+  window.addEventListener("hashchange", () => { if (isHidden()) remember(); });
 
   document.querySelector(".tools").hidden = false;
   by("find").addEventListener("input", find);
-  by("hide").addEventListener("click", () => hideNames(by("hide").getAttribute("aria-pressed") !== "true"));
+  by("hide").addEventListener("click", () => hideNames(!isHidden()));
   if (location.hash === "#names-hidden") hideNames(true);
 })();

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC, datetime
-from types import SimpleNamespace
 
 from grader.batch.page.students import evenly, students
+from grader.result.handed_in import HandedIn
 from tests.grader.batch.page.classes import entry, result, student
 
 GOOD = {"a": 10.0}
@@ -41,12 +42,12 @@ def test_the_report_is_beside_the_page_and_only_where_there_is_one():
 
 
 def test_how_late_it_was_is_told_with_what_it_cost():
-    judged = result(GOOD)
-    object.__setattr__(judged, "handed_in", SimpleNamespace(late_s=93_600, days=2, deducted=10))
-    assert student(judged).late == "1 d 2 h, −10"
-    object.__setattr__(judged, "handed_in", SimpleNamespace(late_s=90, days=0, deducted=0))
-    assert student(judged).late == "0 h 1 min"
-    assert student(result(GOOD)).late == ""
+    def late(**told):
+        return student(replace(result(GOOD), handed_in=HandedIn("zoe", **told))).late
+
+    assert late(late_s=93_600, days=2, deducted=10) == "1 d 2 h, −10"
+    assert late(late_s=90) == "0 h 1 min"
+    assert late() == student(result(GOOD)).late == ""
 
 
 def test_the_time_keeps_its_own_zone():
