@@ -6,6 +6,7 @@ import csv
 import io
 import re
 import shutil
+from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 
@@ -38,6 +39,13 @@ points: {moves: 5, spiral: 30, steady_rate: 5, edge_stop: 25, pen_per_quadrant: 
 tolerances: {edge_m: 1.0}
 """
 NAMES = {"far": '=HYPERLINK("x")', "red": "<script>alert(1)</script>\x1b[31m"}
+
+
+def call(
+    out: Path, changed: str, *, jobs: int, apply: bool = False, into: Path | None = None
+) -> int:
+    words = Namespace(regrade=out, exercise=changed, apply=apply, out=into, assignment="")
+    return regrading.run(words, jobs, "student")
 
 
 class StopsFar(Spiral):
@@ -282,7 +290,7 @@ def test_a_recording_that_lies_with_the_hand_in_alone_is_judged_and_kept(
     out, changed, runs, in_process
 ):
     shutil.rmtree(Store(out).run("b" * 32))
-    assert regrading.run(out, changed, jobs=1, apply=True) == 0
+    assert call(out, changed, jobs=1, apply=True) == 0
     (far,) = (entry for entry in entries(out) if entry.id == "far")
     assert far.score == in_memory(runs, changed)["far"][1]
     assert (far.folder / RECORDING / "recording.mcap").is_file()
@@ -294,7 +302,9 @@ def test_a_recording_that_lies_with_the_hand_in_alone_is_judged_and_kept(
 
 def test_nothing_is_written_that_is_not_asked_for(out, changed, in_process, capsys):
     before = tree(out)
-    assert regrading.run(out, changed, jobs=1) == 0
+    assert call(out, changed, jobs=1) == 0
+    assert names(out / "regrade") == ["changes.csv", "changes.html"]
+    shutil.rmtree(out / "regrade")
     assert tree(out) == before
     said = capsys.readouterr().out
     assert said.startswith("4 of 6 change: ")
@@ -303,13 +313,13 @@ def test_nothing_is_written_that_is_not_asked_for(out, changed, in_process, caps
 
 def test_table_and_page_are_written_where_they_are_asked_for(out, changed, in_process, tmp_path):
     before = tree(out)
-    regrading.run(out, changed, jobs=1, into=tmp_path / "look")
+    call(out, changed, jobs=1, into=tmp_path / "look")
     assert tree(out) == before
     assert names(tmp_path / "look") == ["changes.csv", "changes.html"]
 
 
 def applied(out: Path, changed: str) -> int:
-    return regrading.run(out, changed, jobs=1, apply=True)
+    return call(out, changed, jobs=1, apply=True)
 
 
 def test_applied_everybody_has_the_new_result_and_the_old_one_is_beside(
@@ -343,7 +353,7 @@ def test_who_has_no_result_stays_so(out, changed, in_process):
 def test_what_is_applied_is_applied_once(out, changed, in_process, capsys):
     applied(out, changed)
     capsys.readouterr()
-    regrading.run(out, changed, jobs=1)
+    call(out, changed, jobs=1)
     assert capsys.readouterr().out.startswith("None of 6 changes.")
 
 
@@ -482,7 +492,8 @@ def test_what_is_kept_before_anything_changes_is_whole_or_not_there(
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(applying.html, "render", full)
+    monkeypatch.setattr(applying.table, "render", full)
+    monkeypatch.setattr(regrading, "_write", lambda *_: None)
     with pytest.raises(UsageError, match="No space left"):
         applied(out, changed)
     assert tree(out) == before
