@@ -92,7 +92,7 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
     """Say what came of it."""
     states = Counter(entry.state for entry in entries)
     told = ", ".join(f"{states[state]} {what}" for state, what in _STATES.items() if states[state])
-    console.print(f"{count(len(entries), 'hand-in')}: {told}.")
+    console.print(f"{count(len(entries), 'hand-in')}{f': {told}' if told else ''}.")
     scores = [
         entry.score for entry in entries if entry.state == "judged" and entry.score is not None
     ]

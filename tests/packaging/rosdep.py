@@ -41,10 +41,12 @@ sys.meta_path.insert(0, Hidden())
 """
 
 
-def dependencies() -> dict[str, str]:
-    """What setup.py tells pip to install, by name."""
+def dependencies(extra: str = "") -> dict[str, str]:
+    """What setup.py tells pip to install, or what an extra adds to it, by name."""
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    return {_name(line): line for line in pyproject["tool"]["turtlesim-py"]["dependencies"]}
+    extras = pyproject["project"]["optional-dependencies"]
+    wanted = extras[extra] if extra else pyproject["tool"]["turtlesim-py"]["dependencies"]
+    return {_name(line): line for line in wanted}
 
 
 def depends(manifest: str, release: str) -> set[str]:

@@ -92,9 +92,12 @@ def test_package_xml_asks_for_the_interfaces_that_a_release_has(manifest, releas
 
 
 def test_a_package_that_is_missing_is_named_with_the_bounds_of_pyproject():
+    known = {**dependencies(), **dependencies("cluster")}
     assert {name: wanted for name, (_, _, wanted) in OPTIONAL.items()} == {
-        name: dependencies()[name] for name in OPTIONAL
+        name: known[name] for name in OPTIONAL
     }
+    for name, wanted in dependencies("cluster").items():
+        assert dependencies("test")[name] == wanted
 
 
 def test_what_is_not_in_package_xml_is_hidden_from_these_tests(shell):

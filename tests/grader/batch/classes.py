@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[3]
 DEADLINE_S = 240.0
 #: When it was run, and how long that took.
 CLOCKS = re.compile(rb'("wall_s"|"date"): [^,\n]+')
-GRADEBOOK = ("class.json", "gradebook.csv", "gradebook.jsonl")
+OF_ALL = ("class.json", "gradebook.csv", "gradebook.jsonl", "index.html", "similar.html")
 #: Of each student; the page tells how long the run took, as the result does.
 EACH = ("entry.json", "result.json", "output.txt", "canvas.png")
 
@@ -49,7 +49,7 @@ ENV = {
 
 def told(out: Path) -> dict[str, bytes]:
     """What a class has come to, but for when that was, and how long it took."""
-    files = [out / name for name in GRADEBOOK]
+    files = [out / name for name in OF_ALL]
     files += [path for name in EACH for path in sorted(out.glob(f"submissions/*/{name}"))]
     return {
         path.relative_to(out).as_posix(): CLOCKS.sub(rb"\1: -", path.read_bytes()) for path in files
