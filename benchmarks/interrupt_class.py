@@ -16,12 +16,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 import psutil
 from measuring import machine
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from grader.batch.entry import entries  # noqa: E402
+
 #: What differs between two gradings of the same: when, and how long it took.
 CHANCE = ("submissions", "store")
 
@@ -30,7 +35,10 @@ def start(submissions: Path, out: Path, jobs: int) -> subprocess.Popen[bytes]:
     """Start `grader batch`."""
     command = [sys.executable, "-m", "grader", "batch", str(submissions), "--out", str(out)]
     return subprocess.Popen(
-        [*command, "--jobs", str(jobs)], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=sys.stderr
+        [*command, "--jobs", str(jobs)],
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
 
 
@@ -97,10 +105,12 @@ def main() -> int:
         began = time.monotonic()
         interrupted(folder / "class", folder / "cut", args.jobs, at)
         print(f"with {args.kills} kills: {time.monotonic() - began:.0f} s")
+        states = Counter(entry.state for entry in entries(folder / "whole"))
+        print(", ".join(f"{number} {state}" for state, number in sorted(states.items())))
         one, other = digests(folder / "whole"), digests(folder / "cut")
         different = [name for name in one.keys() | other.keys() if one.get(name) != other.get(name)]
         print(f"{len(one)} files compared; {len(different)} differ: {' '.join(sorted(different))}")
-    return 1 if different or not one else 0
+    return 1 if different or not one or states["failed"] else 0
 
 
 if __name__ == "__main__":

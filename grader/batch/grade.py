@@ -80,8 +80,9 @@ def _run(task: Task, exercise: Exercise) -> Recordings | str:
     try:
         with ExitStack() as held:
             path = task.path
-            if task.filename and path.is_file() and path.name != task.filename:
-                path = held.enter_context(scratch.make_folder()) / task.filename
+            if path.is_file():  # under its own name, and without its neighbours, who are others'
+                name = task.filename or path.name
+                path = held.enter_context(scratch.make_folder()) / name
                 shutil.copyfile(task.path, path)
             submission = _without_place(held.enter_context(open_submission(path)))
             runner = grading.RUNNERS[task.time]
