@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import re
+import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -47,3 +51,19 @@ def test_what_was_built_with_another_ros_is_built_again(built, monkeypatch):
     monkeypatch.setattr(build, "_ros_version", lambda: "0.24.2")
     make()
     assert built == [*build.PACKAGES] * 2
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="nothing is built there")
+def test_what_is_linked_comes_with_what_a_build_asks_for():
+    """A build for a wheel has nothing else; that of `make install` has all."""
+    pyproject = tomllib.loads((build.HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))
+    for release in pyproject["tool"]["turtlesim-py"]["ros"].values():
+        found: set[str] = set()
+        wanted = [re.split(r"[\[=]", line)[0] for line in release["build"]]
+        while wanted:
+            name = wanted.pop()
+            if name not in found:
+                found.add(name)
+                lines = metadata.requires(name) or []
+                wanted += [re.match(r"[\w.-]+", line)[0] for line in lines if "extra" not in line]
+        assert {f"ros-{name.replace('_', '-')}" for name in build.DEPENDENCIES} <= found
