@@ -23,7 +23,8 @@ _TRIES = 2
 #: -P: no module of the current folder, where anything may lie.
 _COMMAND = (
     *("-P", "-c"),
-    "import sys; sys.path.append(sys.argv[1]); from grader.batch import worker; worker.main()",
+    "import sys; sys.argv[1] in sys.path or sys.path.insert(0, sys.argv[1]); "
+    "from grader.batch import worker; worker.main()",
     str(Path(__file__).parents[2]),
 )
 
