@@ -121,7 +121,7 @@ class Regrade:
             for number, what in (
                 (more, "get more points"),
                 (less, "get fewer points"),
-                (same, "by other verdicts for the same points"),
+                (same, "keep theirs by other verdicts"),
             )
             if number
         ]

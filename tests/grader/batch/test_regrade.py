@@ -161,9 +161,7 @@ def test_who_changes_and_by_how_much_is_what_judging_in_memory_finds(out, change
     assert scores(found) == expected  # each has lost a check that is asked for no more
     assert not found.failures
     assert found.judged == len(expected) == 4
-    assert found.headline == (
-        "4 of 6 change: 2 get fewer points, 2 by other verdicts for the same points."
-    )
+    assert found.headline == ("4 of 6 change: 2 get fewer points, 2 keep theirs by other verdicts.")
 
 
 def test_which_check_and_why_is_told_of_each(out, changed, runs, in_process):
