@@ -22,6 +22,18 @@ LONGEST = 300
 
 EndKind = Literal["subscription", "publisher", "client", "action_client"]
 StopKind = Literal["callback", "call", "loop", "init", "going"]
+SlipKind = Literal[
+    "unread",
+    "local",
+    "global",
+    "uncalled",
+    "method",
+    "without_self",
+    "called",
+    "class",
+    "unsent",
+    "beside",
+]
 
 
 @dataclass(frozen=True)
@@ -51,6 +63,7 @@ class End:
         used: how many messages it has sent, received, or requests sent; of a process that was ended
             by force, so many at least.
         place: where it was made.
+        used_at: where it was used first, to send something.
     """
 
     kind: EndKind
@@ -59,6 +72,7 @@ class End:
     is_met: bool
     used: int
     place: Place | None = None
+    used_at: Place | None = None
 
 
 @dataclass(frozen=True)
@@ -89,6 +103,62 @@ class Slow:
     place: Place
     longest_s: float
     times: int
+
+
+@dataclass(frozen=True)
+class Timer:
+    """A line that makes a timer.
+
+    Attributes:
+        period_s: of the last that it has made.
+        times: how many it has made; of a process that was ended by force, so many at least.
+    """
+
+    place: Place
+    period_s: float
+    times: int
+
+
+@dataclass(frozen=True)
+class Caught:
+    """An exception of a callback that did not end the program.
+
+    Attributes:
+        type, text: as in `Raised`.
+        time_s: when it was seen first.
+        times: how often it was seen; not every call of a callback is looked at.
+        place: the last line of the submission's own that it came from.
+        by: the `except` in the callback that caught it; None: it has left the callback.
+    """
+
+    type: str
+    text: str
+    time_s: float
+    times: int
+    place: Place
+    by: Place | None = None
+
+
+@dataclass(frozen=True)
+class Slip:
+    """What a look at the source shows: nothing wrong by itself, and seldom what was meant.
+
+    Attributes:
+        kind: `unread` - self.NAME is set outside of __init__ and never read, NEAR is a little
+            different and read; `local` - NAME is set in a function and not read there, NEAR
+            (self.NAME, or NAME of the module) is meant; `global` - NAME of the module is set and
+            read in a function, without `global`; `uncalled` - the method or function NAME stands
+            there without its brackets; `method` - self.NAME is set, and is a method, too;
+            `without_self` - the method NAME has no self; `called` - what was to be handed over to
+            NEAR is called at once; `class` - the class NAME is handed over to NEAR, not what is
+            made of it; `unsent` - a request of NAME is made, and nothing ever calls a service;
+            `beside` - the module NAME that is not found lies beside, and its name is NEAR.
+    """
+
+    kind: SlipKind
+    name: str
+    near: str
+    place: Place
 
 
 @dataclass(frozen=True)
@@ -134,6 +204,9 @@ class Conduct:
         spun_s: when an executor was first spun; None for never.
         waits: services and the like that were waited for longer than a second, or in vain.
         slow: callbacks that let time pass.
+        timers: the lines that have made timers, in the order in which they came.
+        caught: exceptions of callbacks that the program went on after.
+        slips: in the files that it has loaded.
         stop: where it got stuck.
         raised: what ended it; of a thread that spun, the program may have gone on without it.
         returned_s: when its program came to its end by itself, without an error.
@@ -144,6 +217,9 @@ class Conduct:
     spun_s: float | None = None
     waits: tuple[Wait, ...] = ()
     slow: tuple[Slow, ...] = ()
+    timers: tuple[Timer, ...] = ()
+    caught: tuple[Caught, ...] = ()
+    slips: tuple[Slip, ...] = ()
     stop: Stop | None = None
     raised: Raised | None = None
     returned_s: float | None = None
@@ -166,10 +242,20 @@ class Conduct:
             _perhaps_time(data["spun_s"]),
             tuple(_wait(each) for each in _list(data["waits"])),
             tuple(_slow(each) for each in _list(data["slow"])),
+            tuple(_timer(each) for each in _list(data["timers"])),
+            tuple(_caught(each) for each in _list(data["caught"])),
+            tuple(_slip(each) for each in _list(data["slips"])),
             None if data["stop"] is None else _stop(data["stop"]),
             None if data["raised"] is None else _raised(data["raised"]),
             _perhaps_time(data["returned_s"]),
         )
+
+
+#: What older recordings do not have.
+_LATER: Mapping[type[Any], Mapping[str, Any]] = {
+    Conduct: {"timers": [], "caught": [], "slips": []},
+    End: {"used_at": None},
+}
 
 
 def _end(data: Any) -> End:
@@ -181,6 +267,7 @@ def _end(data: Any) -> End:
         _is(data["is_met"], bool),
         _count(data["used"]),
         _perhaps_place(data["place"]),
+        _perhaps_place(data["used_at"]),
     )
 
 
@@ -193,6 +280,24 @@ def _wait(data: Any) -> Wait:
 def _slow(data: Any) -> Slow:
     data = _object(data, Slow)
     return Slow(_place(data["place"]), _time(data["longest_s"]), _count(data["times"]))
+
+
+def _timer(data: Any) -> Timer:
+    data = _object(data, Timer)
+    return Timer(_place(data["place"]), _time(data["period_s"]), _count(data["times"]))
+
+
+def _caught(data: Any) -> Caught:
+    data = _object(data, Caught)
+    place, by = _place(data["place"]), _perhaps_place(data["by"])
+    time_s, times = _time(data["time_s"]), _count(data["times"])
+    return Caught(_text(data["type"]), _text(data["text"]), time_s, times, place, by)
+
+
+def _slip(data: Any) -> Slip:
+    data = _object(data, Slip)
+    kind = _one_of(data["kind"], SlipKind)
+    return Slip(kind, _text(data["name"]), _text(data["near"]), _place(data["place"]))
 
 
 def _stop(data: Any) -> Stop:
@@ -222,9 +327,10 @@ def _place(data: Any) -> Place:
 
 def _object(data: Any, kind: type[Any]) -> Mapping[str, Any]:
     wanted = {field.name for field in fields(kind)}
-    if not isinstance(data, dict) or data.keys() != wanted:
+    later = _LATER.get(kind, {})
+    if not isinstance(data, dict) or {**later, **data}.keys() != wanted:
         raise ValueError(f"expected an object of {', '.join(sorted(wanted))}, found {data!r:.80}")
-    return data
+    return {**later, **data}
 
 
 def _list(data: Any) -> list[Any]:

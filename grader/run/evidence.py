@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from itertools import chain
 from typing import Any
 
 from grader import strict_json, system
@@ -25,6 +26,8 @@ MOST_BYTES = 65_536
 PATIENCE_S = 1.0
 #: It writes line by line, and has said all when nothing more comes for so long [s].
 QUIET_S = 0.1
+#: What is told by number, and again when it is more -> where it is kept.
+_LISTS = {"wait": "waits", "slow": "slow", "timer": "timers", "caught": "caught"}
 
 
 class Evidence:
@@ -111,6 +114,7 @@ def _conduct(text: str, submission: Submission, ended_s: float, computes: bool) 
         raise ValueError(f"more than {MOST_BYTES} bytes")
     told: dict[str, Any] = {
         **{"is_told": True, "ends": [], "spun_s": None, "waits": [], "slow": []},
+        **{"timers": [], "caught": [], "slips": []},
         **{"stop": None, "raised": None, "returned_s": None},
     }
     lines = text.splitlines()
@@ -132,13 +136,18 @@ def _add(told: dict[str, Any], line: Any) -> None:
     ((what, value),) = line.items()
     match what:
         case "end":
-            told["ends"].append({**value, "is_met": False, "used": 0})
+            told["ends"].append({**value, "is_met": False, "used": 0, "used_at": None})
         case "used":
             number, used, is_met = value
             told["ends"][number].update(used=used, is_met=is_met)
-        case "wait" | "slow":
+        case "used_at":
+            number, place = value
+            told["ends"][number].update(used_at=place)
+        case "slip":
+            told["slips"].append(value)
+        case "wait" | "slow" | "timer" | "caught":
             number, value = value
-            entries = told["waits" if what == "wait" else "slow"]
+            entries = told[_LISTS[what]]
             if number == len(entries):
                 entries.append(value)
             else:
@@ -157,7 +166,9 @@ def _add(told: dict[str, Any], line: Any) -> None:
 
 def _places(told: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """Every place in it that there is."""
-    ends = (told["stop"], told["raised"])
-    for entry in (*told["ends"], *told["waits"], *told["slow"], *ends):
-        if entry is not None and entry["place"] is not None:
-            yield entry["place"]
+    lists = (told[name] for name in ("ends", "slips", *_LISTS.values()))
+    ends = [end for end in (told["stop"], told["raised"]) if end is not None]
+    for entry in (*chain.from_iterable(lists), *ends):
+        for name in ("place", "used_at", "by"):
+            if entry.get(name) is not None:
+                yield entry[name]

@@ -27,7 +27,7 @@ from grader.scenes.scene import Introduction
 from grader.submission.opening import Submission
 
 WAITS_FOR_EVER = "every thread of the node waits for something that will not come"
-STUCK = "the node waits for something that can no longer happen; its output says where"
+STUCK = "the node waits for something that can no longer happen"
 STOPPED = "the node's process was stopped (SIGSTOP), and nobody let it go on"
 FLOODING = "the node sent so much that the simulator used more than {:.0f} s of processor time"
 #: So long a process that has hung up, or was killed, may take to end on a busy machine [s].

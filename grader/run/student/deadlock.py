@@ -78,7 +78,7 @@ def find_refused(error: BaseException, now_ns: int) -> Stuck | None:
 
     Returns: None for another exception.
     """
-    lines = trace(error)
+    lines = trace(error.__traceback__)
     is_refused = (
         isinstance(error, RuntimeError)
         and str(error) == "Executor is already spinning"

@@ -1,4 +1,4 @@
-"""What a submission waits for, and which of its callbacks let time pass; told like all else.
+"""What a submission waits for, its timers, and which callbacks let time pass; told like all else.
 
 `Waits` are those for a service, its answer or an action server that last, or are in vain.
 `Callbacks` adds up, while one runs, how long each of the submission's own lines has waited.
@@ -162,3 +162,45 @@ class Callbacks:
         longest_s = round(slow.longest_s, 9)
         told = {"place": slow.place, "longest_s": longest_s, "times": slow.times}
         self._teller.tell("slow", [slow.number, told], is_last=is_last)
+
+
+@dataclass
+class Timer:
+    """A line that makes timers; see `grader.recording.conduct.Timer`."""
+
+    number: int
+    place: dict[str, Any]
+    period_s: float = 0.0
+    times: int = 0
+    told: int = 0
+
+
+class Timers:
+    """All timers, by the line that has made them."""
+
+    def __init__(self, teller: Teller) -> None:
+        self._teller = teller
+        self._made: dict[tuple[str, int], Timer] = {}
+
+    def made(self, place: dict[str, Any] | None, period_s: float) -> None:
+        """The program has made one, there."""
+        if place is None:
+            return
+        where = place["file"], place["line"]
+        if where not in self._made and len(self._made) >= MOST:
+            return
+        timer = self._made.setdefault(where, Timer(len(self._made), place))
+        timer.times, timer.period_s = timer.times + 1, period_s
+        if timer.times >= STEP * timer.told:
+            self._tell(timer)
+
+    def sum_up(self) -> None:
+        """Tell the last figures."""
+        for timer in list(self._made.values()):
+            if timer.told != timer.times:
+                self._tell(timer, is_last=True)
+
+    def _tell(self, timer: Timer, *, is_last: bool = False) -> None:
+        timer.told = timer.times
+        told = {"place": timer.place, "period_s": timer.period_s, "times": timer.times}
+        self._teller.tell("timer", [timer.number, told], is_last=is_last)

@@ -46,7 +46,7 @@ def _install(witness: Witness) -> None:
         "subscription", self, self.topic_name, self.msg_type))  # fmt: skip
     _after(client, "__init__", lambda self, _: witness.made(
         "client", self, self.handle.service_name, self.srv_type))  # fmt: skip
-    _after(publisher, "publish", lambda self, _: witness.used(self))
+    _after(publisher, "publish", lambda self, _: witness.used(self, is_sent=True))
     _after(client, "call_async", lambda self, future: _asked(witness, self, future))
     _awaits(witness, client, "wait_for_service", lambda self, _: self, lambda _, is_ready: is_ready)
     # what virtual time has put round it would take time
@@ -54,6 +54,7 @@ def _install(witness: Witness) -> None:
     _awaits(witness, executor, "spin_until_future_complete", _first, lambda it, _: is_done(it))
     _watch_callbacks(witness, rclpy.task.Task)
     _after(rclpy.timer.Timer, "__init__", lambda self, _: witness.is_given(self.callback))
+    _after(rclpy.timer.Timer, "__init__", lambda self, _: witness.has_timer(self))
     add = rclpy.task.Future.add_done_callback
 
     @functools.wraps(add)
@@ -122,7 +123,7 @@ def _after(owner: Any, name: str, look: Callable[[Any, Any], None]) -> None:
 
 def _asked(witness: Witness, client: Any, future: Any) -> None:
     """A request was sent; whoever waits for this future waits for the service."""
-    witness.used(client)
+    witness.used(client, is_sent=True)
     future._witnessed = client._witnessed
 
 
@@ -161,16 +162,18 @@ def _awaits(
 
 def _watch_callbacks(witness: Witness, task: Any) -> None:
     """Have the tasks that an executor runs tell when they begin and end."""
-    run, callbacks = task.__call__, witness.callbacks
+    run, callbacks, catching = task.__call__, witness.callbacks, witness.catching
 
     @functools.wraps(run)
     def call(self: Any) -> Any:
         lines = callbacks.begin()
         if lines is None:
             return run(self)
+        tracing = quietly(catching.begin)
         try:
             return run(self)
         finally:
+            quietly(catching.end, tracing, getattr(self, "_exception", None))
             quietly(callbacks.end, lines)
 
     task.__call__ = call

@@ -93,13 +93,23 @@ class Teller:
 
     def line(self, code: CodeType, number: int) -> dict[str, Any]:
         """A line of the submission's own, as a `grader.recording.conduct.Place`."""
-        file = code.co_filename
+        return self.place_in(code.co_filename, number, _function(code))
+
+    def place_in(self, file: str, number: int, function: str = "") -> dict[str, Any]:
+        """A line of a file of the submission's own, by the number."""
         return {
             "file": file.removeprefix(self.root)[:LONGEST],
             "line": number,
-            "function": _function(code)[:LONGEST],
+            "function": function[:LONGEST],
             "text": self._text(file, number),
         }
+
+    def loaded(self) -> dict[str, str]:
+        """The files of the submission's own that are loaded or were told of -> their texts."""
+        modules = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
+        files = {file for file in modules if isinstance(file, str) and self.is_own(file)}
+        files |= set(self._sources)
+        return {file: "\n".join(self.source(file)) for file in sorted(files)}
 
     def source(self, file: str) -> list[str]:
         """The lines of a file of the submission's own."""
@@ -120,10 +130,17 @@ def stack(frame: FrameType | None) -> list[Line]:
     return list(_outwards(frame))[::-1]
 
 
-def trace(error: BaseException) -> list[Line]:
+def text(error: BaseException) -> str:
+    """What an exception says, as far as it is told."""
+    try:
+        return str(error)[:LONGEST]
+    except Exception:
+        return ""
+
+
+def trace(traceback: TracebackType | None) -> list[Line]:
     """Where an exception has come from, outermost first."""
     found: list[Line] = []
-    traceback: TracebackType | None = error.__traceback__
     while traceback is not None:
         found.append((traceback.tb_frame, traceback.tb_lineno))
         traceback = traceback.tb_next

@@ -14,7 +14,9 @@ from typing import Any
 
 from grader.run.lockstep import faults
 from grader.run.student import loops, telling
-from grader.run.student.delays import Callbacks, Waits
+from grader.run.student.catching import Catching
+from grader.run.student.delays import Callbacks, Timers, Waits
+from grader.run.student.sources import Sources
 from grader.run.student.telling import Line, Teller
 
 #: So many ends and places are told of: `grader.recording.conduct.MOST`.
@@ -30,7 +32,13 @@ _EVERY_NODE = frozenset(
     )
 )
 #: Functions of rclpy's through which somebody makes an end.
-_MAKERS = ("create_publisher", "create_subscription", "create_client", "create_lifecycle_publisher")
+_MAKERS = (
+    "create_timer",
+    "create_publisher",
+    "create_subscription",
+    "create_client",
+    "create_lifecycle_publisher",
+)
 
 
 @dataclass
@@ -67,6 +75,9 @@ class Witness:
         self._uncallable: dict[str, Any] | None = None
         self.waits = Waits(teller)
         self.callbacks = Callbacks(teller)
+        self.timers = Timers(teller)
+        self.catching = Catching(teller)
+        self.sources = Sources(teller)
 
     # What rclpy's objects do ------------------------------------------------------------------
 
@@ -88,7 +99,13 @@ class Witness:
         if self._uncallable is None and not callable(callback):
             self._uncallable = self._teller.place(sys._getframe())
 
-    def used(self, entity: Any) -> None:
+    def has_timer(self, timer: Any) -> None:
+        """The program has made a timer."""
+        frame = sys._getframe(2)
+        if _maker(frame) is not None:
+            self.timers.made(self._teller.place(frame), timer.timer_period_ns / 1e9)
+
+    def used(self, entity: Any, *, is_sent: bool = False) -> None:
         """A message was sent or received, or a request sent."""
         end: End | None = getattr(entity, "_witnessed", None)
         if end is not None:
@@ -102,6 +119,9 @@ class Witness:
 
     def _count(self, end: End) -> None:
         end.used += 1
+        if is_sent and end.used == 1:
+            place = self._teller.place(sys._getframe())
+            self._teller.tell("used_at", [end.number, place])
         if end.used >= STEP * end.told[0]:
             self._tell_of(end)
 
@@ -125,6 +145,7 @@ class Witness:
     def spins(self) -> None:
         """An executor is spun for the first time."""
         self._teller.tell("spun", self._teller.now_s())
+        quietly(self.sources.look)
 
     # How it ends ------------------------------------------------------------------------------
 
@@ -161,14 +182,14 @@ class Witness:
 
     def thread_raised(self, error: BaseException) -> None:
         """An exception has ended a thread: the program goes on, but not what that thread spun."""
-        lines = telling.trace(error)
+        lines = telling.trace(error.__traceback__)
         if any(frame.f_globals.get("__name__") == "rclpy.executors" for frame, _ in lines):
             self._tell_once("raised", self._of_error(error, lines))
 
     def raised(self, error: BaseException) -> None:
         """An exception has ended the program, before our frames are taken out of its traceback."""
         if not isinstance(error, SystemExit) or error.code:
-            self._end("raised", self._of_error(error, telling.trace(error)))
+            self._end("raised", self._of_error(error, telling.trace(error.__traceback__)))
 
     def _of_error(self, error: BaseException, lines: list[Line]) -> dict[str, Any]:
         at = self._teller.own(lines)
@@ -177,7 +198,9 @@ class Witness:
             place = self._of_syntax(error)
         if isinstance(error, TypeError) and at < len(lines) - 1:
             place = self._of_callback(error, lines[-1][0]) or place
-        text = str(error.code) if isinstance(error, SystemExit) else _text(error)
+        if isinstance(error, ModuleNotFoundError) and place is not None:
+            self.sources.look_beside(str(error.name or ""), place)
+        text = str(error.code) if isinstance(error, SystemExit) else telling.text(error)
         kind = type(error).__name__[: telling.LONGEST]
         told = {"type": kind, "text": text[: telling.LONGEST], "time_s": self._teller.now_s()}
         return {**told, "place": place}
@@ -186,13 +209,13 @@ class Witness:
         """The callback that rclpy could not call: its `def`, or where it was given what is none."""
         if frame.f_globals.get("__name__") not in ("rclpy.executors", "rclpy.task"):
             return None
-        if "object is not callable" in _text(error):
+        if "object is not callable" in telling.text(error):
             return self._uncallable
         called = frame.f_locals.get("callback")
         code = getattr(getattr(called, "__func__", called), "__code__", None)
         if not isinstance(code, CodeType) or not self._teller.is_own(code.co_filename):
             return None
-        is_it = f"{code.co_name}() " in _text(error)
+        is_it = f"{code.co_name}() " in telling.text(error)
         return self._teller.line(code, code.co_firstlineno) if is_it else None
 
     def _of_syntax(self, error: SyntaxError) -> dict[str, Any] | None:
@@ -229,10 +252,13 @@ class Witness:
 
     def sum_up(self) -> None:
         """Tell the last figures, where this is the end."""
+        quietly(self.sources.look)
         for end in self._ends:
             self._tell_of(end, is_last=True)
         self.waits.look(is_last=True)
         self.callbacks.sum_up()
+        self.timers.sum_up()
+        self.catching.sum_up()
 
 
 def quietly(look: Callable[..., Any], *args: Any) -> Any:
@@ -258,10 +284,3 @@ def _maker(frame: FrameType | None) -> FrameType | None:
 def _ros_type(interface: type) -> str:
     package, kind, *_ = (*interface.__module__.split("."), "", "")
     return f"{package}/{kind}/{interface.__name__}"[: telling.LONGEST]
-
-
-def _text(error: BaseException) -> str:
-    try:
-        return str(error)
-    except Exception:
-        return ""

@@ -34,7 +34,8 @@ def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
     rotation = 'self.rotation = ActionClient(self, RotateAbsolute, "/turtle1/rotate_absolute")'
     assert conduct.ends == (
         End("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped", False, 6,
-            place(17, cmd_vel)),
+            place(17, cmd_vel),
+            Place("wrong_ends.py", 28, "main", "node.velocity.publish(TwistStamped())")),
         End("subscription", "/pose", "turtlesim/msg/Pose", False, 0,
             place(18, 'self.create_subscription(Pose, "/pose", print, 10)')),
         End("subscription", "/turtle1/pose", "turtlesim/msg/Pose", True, 0,

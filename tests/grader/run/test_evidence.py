@@ -44,6 +44,40 @@ def test_what_was_told_line_by_line_is_put_together(submission: Submission) -> N
     assert (conduct.spun_s, conduct.returned_s) == (0.5, 1.0)
 
 
+def test_what_was_seen_of_sources_timers_and_exceptions_is_believed_by_its_form(
+    submission: Submission,
+) -> None:
+    slip = {"kind": "unread", "name": "stoped", "near": "stopped", "place": PLACE}
+    timer = {"place": PLACE, "period_s": 0.1, "times": 1}
+    caught = {"type": "E", "text": "", "time_s": 1, "times": 2, "place": PLACE, "by": None}
+    lines = [say(end=END), say(used_at=[0, PLACE]), say(slip=slip), say(timer=[0, timer])]
+    lines += [say(timer=[0, {**timer, "times": 4}]), say(caught=[0, caught])]
+    conduct = told(submission, *lines)
+    assert [(each.kind, each.name, each.near) for each in conduct.slips] == [
+        ("unread", "stoped", "stopped")
+    ]
+    assert [each.times for each in conduct.timers] == [4]
+    assert [(each.type, each.times, each.by) for each in conduct.caught] == [("E", 2, None)]
+    assert conduct.ends[0].used_at is not None
+    assert Conduct.from_json(json.loads(json.dumps(conduct.to_json()))) == conduct
+    for wrong in (
+        say(slip={**slip, "kind": "sin"}),
+        say(slip={**slip, "place": None}),
+        say(timer=[0, {**timer, "period_s": -1}]),
+        say(caught=[0, {**caught, "times": 0.5}]),
+        say(used_at=[7, PLACE]),
+    ):
+        assert told(submission, *lines, wrong) == Conduct()
+
+
+def test_an_older_recording_without_them_is_still_read(submission: Submission) -> None:
+    data = json.loads(json.dumps(told(submission, say(end=END)).to_json()))
+    for name in ("timers", "caught", "slips"):
+        del data[name]
+    del data["ends"][0]["used_at"]
+    assert Conduct.from_json(data) == told(submission, say(end=END))
+
+
 @pytest.mark.parametrize(
     "line",
     [

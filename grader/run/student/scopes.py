@@ -1,0 +1,112 @@
+"""Names that a function sets for itself, where those round it were to be set."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def not_declared(
+    node: ast.AST, outer: tuple[ast.AST, ...] = ()
+) -> Iterator[tuple[str, str, str, int]]:
+    """Functions that set a name which what is round them has set, too.
+
+    Yields: the kind of slip, the name, the declaration that lacks, and a line; as in `Slip`.
+    """
+    for inner in _functions_in(node):
+        scopes = [*outer, node]
+        never_read = unread(inner)
+        for name, line in _assigned(inner).items():
+            home = next((scope for scope in reversed(scopes) if name in _assigned(scope)), None)
+            if home is None or isinstance(home, ast.ClassDef):
+                continue
+            word = "global" if isinstance(home, ast.Module) else "nonlocal"
+            if name in never_read and _is_read_beside(home, inner, name):
+                yield "local", name, f"{word} {name}", line
+            elif name not in never_read and _is_read_first(inner, name):
+                yield "global", name, f"{word} {name}", _assigned(home)[name]
+        yield from not_declared(inner, (*outer, node))
+    if isinstance(node, ast.Module):
+        for each in ast.walk(node):
+            if isinstance(each, ast.ClassDef):
+                yield from not_declared(each, (node,))
+
+
+def _functions_in(node: ast.AST) -> list[Function]:
+    """The functions that are defined there, but not in one of them or in a class."""
+    return [each for each in own_nodes(node) if isinstance(each, Function)]
+
+
+def own_nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """What belongs to a scope itself: not what is in functions and classes in it."""
+    waiting = list(ast.iter_child_nodes(node))
+    while waiting:
+        each = waiting.pop()
+        yield each
+        if not isinstance(each, Function | ast.ClassDef | ast.Lambda):
+            waiting += ast.iter_child_nodes(each)
+
+
+def _assigned(scope: ast.AST) -> dict[str, int]:
+    """The names that a scope has for itself, by plain assignments -> where first."""
+    lines: dict[str, int] = {}
+    others: set[str] = set()
+    arguments = scope.args if isinstance(scope, Function) else None
+    if arguments is not None:
+        others |= {each.arg for each in ast.walk(arguments) if isinstance(each, ast.arg)}
+    for node in own_nodes(scope):
+        match node:
+            case ast.Global(names=names) | ast.Nonlocal(names=names):
+                others |= set(names)
+            case ast.Assign(targets=targets):
+                for name in (each.id for t in targets for each in _plain(t)):
+                    lines[name] = min(node.lineno, lines.get(name, node.lineno))
+            case ast.AugAssign(target=ast.Name(id=name)) | ast.AnnAssign(target=ast.Name(id=name)):
+                lines[name] = min(node.lineno, lines.get(name, node.lineno))
+    return {name: line for name, line in lines.items() if name not in others}
+
+
+def _plain(target: ast.expr) -> list[ast.Name]:
+    parts = target.elts if isinstance(target, ast.Tuple) else [target]
+    return [each for each in parts if isinstance(each, ast.Name)]
+
+
+def unread(function: Function) -> dict[str, int]:
+    """The names that a function sets for itself and never reads -> where first."""
+    loads = {
+        node.id
+        for node in ast.walk(function)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+    }
+    added = {
+        node.target.id
+        for node in ast.walk(function)
+        if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name)
+    }
+    return {n: line for n, line in _assigned(function).items() if n not in loads | added}
+
+
+def _is_read_beside(home: ast.AST, function: Function, name: str) -> bool:
+    """Whether anything but a function itself reads a name."""
+    inside = set(map(id, ast.walk(function)))
+    return any(
+        isinstance(node, ast.Name)
+        and node.id == name
+        and isinstance(node.ctx, ast.Load)
+        and id(node) not in inside
+        for node in ast.walk(home)
+    )
+
+
+def _is_read_first(function: Function, name: str) -> bool:
+    """Whether a function reads a name no later than it sets it."""
+    uses = [n for n in own_nodes(function) if isinstance(n, ast.Name) and n.id == name]
+    reads = [node.lineno for node in uses if isinstance(node.ctx, ast.Load)]
+    sets = [node.lineno for node in uses if isinstance(node.ctx, ast.Store)]
+    adds = any(
+        isinstance(n, ast.AugAssign) and isinstance(n.target, ast.Name) and n.target.id == name
+        for n in own_nodes(function)
+    )
+    return adds or bool(reads and sets and min(reads) <= min(sets))
