@@ -6,7 +6,7 @@ import re
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis import printed, usual
+from grader.diagnosis import printed, slips, usual
 from grader.diagnosis.case import Case, at, line, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.recording.conduct import Place, Raised
@@ -15,14 +15,10 @@ from grader.text import clip
 #: What generated messages say of a value that they refuse.
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
 #: A package of messages, as its name goes, that is not there.
-_INTERFACES = re.compile(r"No module named '\w{1,60}_(?:interfaces|msgs|srvs)'")
 _RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
 _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
 #: What Python adds to some texts, and what is said in other words here.
-_PLACE, _PATH = (
-    re.compile(r" \([^()]*, line \d+\)$"),
-    re.compile(r" \((/[^()]*|unknown location)\)$"),
-)
+_PLACE = re.compile(r" \([^()]*, line \d+\)$")
 #: So much of an exception's text is in the cause, which is to be one short sentence [characters].
 _LONGEST_ERROR = 120
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
@@ -74,26 +70,6 @@ def _saved_wrongly(cause: str, raised: Raised) -> Diagnosis:
         "Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'.",
         place=raised.place,
     )
-
-
-def not_importable(case: Case) -> Diagnosis | None:
-    """It imports what is not there."""
-    raised = case.raised
-    if raised is None or raised.type not in ("ModuleNotFoundError", "ImportError"):
-        return None
-    text = _PATH.sub("", told(raised.text))
-    cause = f"Your program cannot import what it needs: {raised.type}: {text}"
-    help_ = (
-        "Compare the name with the one in the exercise or in ROS's documentation. A module of your "
-        "own has to be in what you hand in, beside the file or in its package."
-    )
-    if _INTERFACES.match(text):
-        help_ = (
-            "Compare the name. If it is right, this package is not installed where your node was "
-            "graded: take std_msgs, std_srvs or geometry_msgs instead, or ask whoever runs the "
-            "grader to install it."
-        )
-    return Diagnosis("not_importable", f"{cause}{line(raised.place)}.", help_, place=raised.place)
 
 
 def wrong_value(case: Case) -> Diagnosis | None:
@@ -166,8 +142,11 @@ def crashed(case: Case) -> Diagnosis | None:
     if case.run.outcome != "crashed" or raised is None:
         return None
     when = _when(case, raised)
-    cause = f"Your node crashed{at(when)}: {_error(raised)}{line(raised.place)}.{_limit(case)}"
-    return Diagnosis("crashed", cause, _mending(raised), time_s=when, place=raised.place)
+    said = slips.explains(case, raised) or usual.known(raised)
+    place = said.place if said is not None and said.place is not None else raised.place
+    at_line = place if said is not None and said.text else raised.place
+    cause = f"Your node crashed{at(when)}{_error(raised, said)}{line(at_line)}.{_limit(case)}"
+    return Diagnosis("crashed", cause, _mending(raised, said), time_s=when, place=place)
 
 
 def thread_crashed(case: Case) -> Diagnosis | None:
@@ -175,8 +154,9 @@ def thread_crashed(case: Case) -> Diagnosis | None:
     raised = case.raised or printed.in_thread(case.recording.output)
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
-    cause = f"A thread of your program crashed: {_error(raised)}{line(raised.place)}."
-    return Diagnosis("crashed", cause, _mending(raised), place=raised.place)
+    said = usual.known(raised)
+    cause = f"A thread of your program crashed{_error(raised, said)}{line(raised.place)}."
+    return Diagnosis("crashed", cause, _mending(raised, said), place=raised.place)
 
 
 def misses_message(case: Case) -> bool:
@@ -189,18 +169,17 @@ def misses_message(case: Case) -> bool:
     )
 
 
-def _error(raised: Raised) -> str:
+def _error(raised: Raised, said: usual.Said | None) -> str:
+    """': TypeError: what it says', or ' (TypeError): ' and what we say instead."""
     name, text = told(raised.type).rpartition(".")[2], told(raised.text).rstrip(".")
-    said = usual.known(raised)
     if said is not None and said.text:
-        text = said.text
+        return f" ({name}): {clip(said.text, _LONGEST_ERROR)}"
     text = clip(text, _LONGEST_ERROR)
-    return f"{name}: {text}" if text else name
+    return f": {name}: {text}" if text else f": {name}"
 
 
-def _mending(raised: Raised) -> str:
+def _mending(raised: Raised, said: usual.Said | None) -> str:
     whole = "The whole traceback is in output.txt."
-    said = usual.known(raised)
     help_ = said.help if said is not None else usual.meaning(raised)
     if not help_ and raised.place is None:
         help_ = "None of its lines is in your own files."

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
-from grader.diagnosis import connections, crash, standstill, warned
+from grader.diagnosis import caught, connections, crash, imports, slips, standstill, timers, warned
 from grader.diagnosis.case import Case, line, told
 from grader.diagnosis.costliest import costliest
 from grader.diagnosis.diagnosis import Diagnosis
@@ -24,13 +24,14 @@ Rule = Callable[[Case], Diagnosis | None]
 #: What keeps a run from going on.
 RULES: Final[tuple[Rule, ...]] = (
     crash.unreadable,
-    crash.not_importable,
+    imports.not_importable,
     crash.wrong_value,
     connections.misses_what_it_hears,
     crash.ended_itself,
     crash.crashed,
     crash.killed,
     crash.thread_crashed,
+    caught.ended_by_caught,
     connections.waits_in_vain,
     connections.publishes_to_nobody,
     warned.has_unfit_qos,
@@ -40,13 +41,17 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.stuck_in_callback,
     standstill.stuck_in_call,
     standstill.endless_loop,
+    slips.called_at_once,
     standstill.stays_in_init,
     standstill.never_spins,
     standstill.ends_early,
+    timers.waits_for_timer,
 )
 #: What only disturbs it; asked when nothing keeps any run from going on.
 DISTURBING: Final[tuple[Rule, ...]] = (
+    caught.hides_errors,
     warned.never_awaits,
+    timers.makes_timers,
     standstill.publishes_without_waiting,
     standstill.slow_callback,
     standstill.hears_once,
@@ -71,7 +76,7 @@ def diagnose(recordings: Recordings, verdicts: Sequence[Verdict] = ()) -> Diagno
             if found is not None:
                 return _in_run(found, number)
     found = costliest(verdicts)
-    return found if found is None else _with_unused(found, cases[found.run])
+    return found if found is None else _with_source(found, cases[found.run])
 
 
 def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
@@ -80,28 +85,58 @@ def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
 
 def _in_run(found: Diagnosis, number: int) -> Diagnosis:
     """What was found in a run, fit to be shown."""
+    where = f"In varied run {number}: " if number else ""
+    return _shown(replace(found, run=number, cause=f"{where}{found.cause}"))
+
+
+def _shown(found: Diagnosis) -> Diagnosis:
     place = found.place
     if place is not None:
         place = replace(
             place, file=told(place.file), function=told(place.function), text=told(place.text)
         )
-    where = f"In varied run {number}: " if number else ""
-    cause, help_ = one_line(f"{where}{found.cause}"), one_line(found.help)
-    return replace(found, run=number, cause=cause, help=help_, place=place)
+    return replace(found, cause=one_line(found.cause), help=one_line(found.help), place=place)
 
 
-def _with_unused(found: Diagnosis, case: Case) -> Diagnosis:
-    """The finding of a check, with a question where an end that it speaks of was never used."""
+def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
+    """The finding of a check, with what is known of the source that it may come from."""
+    with_slip = slips.beside(found, case)
+    if with_slip is not found:
+        return _shown(with_slip)
+    return _shown(_with_unused(found, case) or _with_place(found, case))
+
+
+def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
+    """The finding with the end that it speaks of, where that was never used."""
     if case.conduct.spun_s is None:
-        return found
+        return None
     there = {(each.name, each.type) for each in case.scene_has}
     for end in case.conduct.ends:
         is_meant = (end.name, end.type) in there and end.name in f"{found.cause} {found.help}"
-        if is_meant and not end.used and end.kind in ("publisher", "client"):
-            what = "request" if end.kind == "client" else "message"
-            asked = (
-                f"Your {end.kind}{line(end.place)} has sent no {what}: does a try/except hide an "
-                "error?"
-            )
-            return replace(found, help=one_line(f"{found.help} {asked}".strip()))
-    return found
+        if not is_meant or end.used or end.kind not in ("publisher", "client"):
+            continue
+        if end.kind == "publisher":
+            said = f"{found.help} Your publisher{line(end.place)} has sent no message."
+            return replace(found, help=said.strip(), place=end.place)
+        said = f"{found.cause} Your client{line(end.place)} has sent no request."
+        made = slips.unsent(case)
+        if made is None:
+            return replace(found, cause=said, place=end.place)
+        help_ = "Send the request that you make: call_async(request)."
+        return replace(found, cause=said, help=help_, place=made)
+    return None
+
+
+def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
+    """The finding with the line that sends what its text speaks of first."""
+    text = f"{found.cause} {found.help}"
+    driven_by = {(each.name, each.type) for each in case.scene_has if each.kind == "subscription"}
+    first, place = len(text), found.place
+    for end in case.conduct.ends:
+        words = [end.name.rpartition("/")[2], end.type.rpartition("/")[2]]
+        if end.kind == "publisher" and (end.name, end.type) in driven_by:
+            words += ["command"]
+        at = min((text.find(word) for word in words if word in text), default=len(text))
+        if at < first and end.used_at is not None:
+            first, place = at, end.used_at
+    return replace(found, place=place)

@@ -249,8 +249,10 @@ def hears_once(case: Case) -> Diagnosis | None:
                 )
             help_ = (
                 "The next message is handed out when the callback has returned: no loop may wait "
-                "in it; let create_timer() call you. And rclpy.spin(node) has to go on meanwhile."
+                "in it; let create_timer() call you."
             )
+            if loop is None or function(loop) in ("", "main()"):
+                help_ += " And rclpy.spin(node) has to go on meanwhile."
             return Diagnosis("hears_once", cause, help_, place=loop or end.place)
     return None
 

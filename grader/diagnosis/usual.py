@@ -62,10 +62,12 @@ class Said:
     Attributes:
         help: what to do.
         text: in place of what the exception says; '' where that is good as it is.
+        place: where to mend it; None where that is where it was raised.
     """
 
     help: str
     text: str = ""
+    place: Place | None = None
 
 
 def known(raised: Raised) -> Said | None:
@@ -210,6 +212,20 @@ def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
     )
 
 
+def _parameter(name: str, text: str, _: Place | None) -> Said | None:
+    """A parameter of the node, instead of its value, or one that nobody has declared."""
+    if name == "ParameterNotDeclaredException":
+        asked = re.search(r"parameter\(s\): ([\w.]{1,60})", text)
+        of = asked[1] if asked else "NAME"
+        return Said(f"Declare it first, in __init__: self.declare_parameter('{of}', 1.0).")
+    if name == "TypeError" and "'Parameter'" in text:
+        return Said(
+            "get_parameter() gives a Parameter; what it is set to is its value: "
+            "self.get_parameter('NAME').value."
+        )
+    return None
+
+
 def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
     """None, a name that is not there, a spin within a spin."""
     if "NoneType" in text and place is not None and ".result()" in place.text:
@@ -241,5 +257,5 @@ def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
 
 _RULES: tuple[Callable[[str, str, Place | None], Said | None], ...] = (
     *(_without_init, _taken_name, _class_for_instance, _no_node, _callback, _arguments, _no_entry),
-    _none_or_unknown,
+    *(_parameter, _none_or_unknown),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from typing import get_args
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from grader.diagnosis.diagnose import diagnose
 from grader.diagnosis.diagnosis import CHECK
 from grader.exercise.verdict import Evidence, Verdict
-from grader.recording.conduct import Conduct, Place, Raised, Slow, Stop
+from grader.recording.conduct import Conduct, Place, Raised, SlipKind, Slow, Stop
 from grader.recording.folder import load_all, save_all
 from grader.recording.recording import Recordings
 from grader.text import one_line
@@ -78,6 +79,7 @@ FORMS = {
     "float": st.floats(0, 1e9),
     "float | None": st.none() | st.floats(0, 1e9),
     "EndKind": st.sampled_from(["subscription", "publisher", "client", "action_client"]),
+    "SlipKind": st.sampled_from(get_args(SlipKind)),
     "StopKind": st.sampled_from(["callback", "call", "loop"]),
 }
 

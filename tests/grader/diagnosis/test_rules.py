@@ -8,7 +8,7 @@ import pytest
 
 from grader.diagnosis.diagnose import diagnose
 from grader.exercise.verdict import Verdict
-from grader.recording.conduct import End, Place, Raised, Slow, Stop, Wait
+from grader.recording.conduct import Caught, End, Place, Raised, Slip, Slow, Stop, Wait
 from grader.recording.recording import PublishedTopic, Recordings
 from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
 
@@ -375,17 +375,87 @@ SILENT = {
 }
 
 
-def test_a_check_that_found_an_end_unused_asks_for_a_hidden_error():
+def test_a_check_that_found_an_end_unused_says_which():
     recording = run_of(said(VELOCITY, POSES, replace(PEN, used=0, place=LINE)))
     verdict = Verdict(
         "pen", "Pen", "failed", 0, 20, "The pen was never changed.", "Call /turtle1/set_pen."
     )
     found = diagnose(Recordings(recording), [verdict])
     assert found is not None
-    assert found.help == (
-        "Call /turtle1/set_pen. Your client (drive.py, line 39) has sent no request: does a "
-        "try/except hide an error?"
+    assert found.cause == (
+        "The pen was never changed. Your client (drive.py, line 39) has sent no request."
     )
+    assert (found.help, found.place) == ("Call /turtle1/set_pen.", LINE)
+
+
+def of_check(rationale, help_="", **told):
+    verdict = Verdict("check", "Check", "failed", 0, 20, rationale, help_)
+    found = diagnose(Recordings(run_of(said(**told))), [verdict])
+    assert found is not None
+    return found
+
+
+SLIPS = {
+    "uncalled": ("self.near", "", "`self.near` stands there without brackets", "self.near()"),
+    "unread": ("stoped", "stopped", "`self.stoped` is set and never read", "self.stopped"),
+    "local": ("quad", "self.quad", "`quad` is a variable of this function", "self.quad = ..."),
+}
+
+
+@pytest.mark.parametrize("kind", SLIPS)
+def test_a_slip_stands_before_the_finding_that_it_may_explain(kind):
+    name, near, text, help_ = SLIPS[kind]
+    found = of_check("It ran into a wall.", slips=(Slip(kind, name, near, LINE),))
+    assert found.cause.startswith(text)
+    assert found.cause.endswith(" (drive.py, line 39). It ran into a wall.")
+    assert help_ in found.help
+    assert found.place == LINE
+
+
+def test_a_slip_that_explains_an_exception_only_is_not_told_of_anything_else():
+    slips = tuple(Slip(kind, "a", "b", LINE) for kind in ("method", "without_self", "class"))
+    assert of_check("It ran into a wall.", slips=slips).cause == "It ran into a wall."
+
+
+def test_a_request_that_is_made_and_never_sent_is_told_with_its_line():
+    made = Place("drive.py", 43, "watch", "request = SetPen.Request()")
+    ends = (VELOCITY, POSES, replace(PEN, used=0, place=LINE))
+    found = of_check(
+        "Call /turtle1/set_pen.", ends=ends, slips=(Slip("unsent", "SetPen", "", made),)
+    )
+    assert (found.place, found.help) == (
+        made,
+        "Send the request that you make: call_async(request).",
+    )
+
+
+def test_the_finding_of_a_check_has_the_line_that_sends_what_it_speaks_of():
+    sends = replace(LINE, line=50)
+    ends = (replace(VELOCITY, used_at=LINE), POSES, replace(PEN, used_at=sends))
+    assert of_check("set_pen was called 90 times.", ends=ends).place == sends
+    assert of_check("linear.x was 1 in every command.", ends=ends).place == LINE
+    assert of_check("It is all wrong.", ends=ends).place is None
+
+
+def test_a_message_that_is_none_at_first_is_no_hidden_error():
+    caught = Caught("AttributeError", "'NoneType' object has no attribute 'x'", 0.1, 3, LINE, LINE)
+    assert of_check("Seen.", caught=(caught,)).key == "check"
+    assert of_check("Seen.", caught=(replace(caught, times=90),)).key == "hides_errors"
+
+
+def test_what_a_program_looks_up_and_does_not_find_is_no_hidden_error():
+    by = replace(LINE, text="except KeyError:")
+    caught = Caught("KeyError", "'a'", 0.1, 30, LINE, by)
+    assert of_check("Seen.", caught=(caught,)).key == "check"
+
+
+def test_a_module_that_lies_beside_is_told_by_its_full_name():
+    place = replace(LINE, text="from my_colors import COLORS")
+    slip = Slip("beside", "my_colors", "my_package.my_colors", place)
+    recording = raising("ModuleNotFoundError", "No module named 'my_colors'", place, slips=(slip,))
+    found = diagnose(Recordings(recording))
+    assert found is not None
+    assert found.help == "Write `from my_package.my_colors import COLORS` there."
 
 
 @pytest.mark.parametrize("name", SILENT)

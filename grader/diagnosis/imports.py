@@ -1,0 +1,81 @@
+"""Rules about imports: of what is not there, is hidden, or has another name."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+from grader.diagnosis.case import Case, line, told
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.recording.conduct import Raised
+
+#: What Python adds to some texts, and nobody needs.
+_PATH = re.compile(r" \((/[^()]*|unknown location)\)$")
+#: A module that was found in place of a package, or of one's own.
+_NO_PACKAGE = re.compile(r"No module named '(\w{1,60})\.[\w.]{1,100}'; '\1' is not a package")
+_INTERFACES = re.compile(r"No module named '\w{1,60}_(?:interfaces|msgs|srvs)'")
+_FROM = re.compile(
+    r"cannot import name '\w{1,60}' from (?:partially initialized module )?'(\w{1,60})'"
+)
+
+
+def not_importable(case: Case) -> Diagnosis | None:
+    """It imports what is not there."""
+    raised = case.raised
+    if raised is None or raised.type not in ("ModuleNotFoundError", "ImportError"):
+        return None
+    hidden = _hides_package(raised) or _lies_beside(case, raised)
+    if hidden is not None:
+        return hidden
+    text = _PATH.sub("", told(raised.text))
+    cause = f"Your program cannot import what it needs: {raised.type}: {text}"
+    help_ = (
+        "Compare the name with the one in the exercise or in ROS's documentation. A module of your "
+        "own has to be in what you hand in, beside the file or in its package."
+    )
+    if _INTERFACES.match(text):
+        help_ = (
+            "Compare the name. If it is right, this package is not installed where your node was "
+            "graded: take std_msgs, std_srvs or geometry_msgs instead, or ask whoever runs the "
+            "grader to install it."
+        )
+    return Diagnosis("not_importable", f"{cause}{line(raised.place)}.", help_, place=raised.place)
+
+
+def _hides_package(raised: Raised) -> Diagnosis | None:
+    """A file of its own has the name of the package that it asks for."""
+    found = _NO_PACKAGE.search(raised.text) or _FROM.search(raised.text)
+    if found is None or raised.place is None:
+        return None
+    name, file = found[1], raised.place.file.rpartition("/")[2]
+    is_named_so = file == f"{name}.py"
+    if not is_named_so and (found.re is _FROM or name in sys.stdlib_module_names):
+        return None
+    which = "Your file is itself called" if is_named_so else "A file of your own is called"
+    return Diagnosis(
+        "not_importable",
+        f"{which} {name}.py, and so hides the package {name} from which you import"
+        f"{line(raised.place)}.",
+        f"Give {name}.py another name.",
+        place=raised.place,
+    )
+
+
+def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
+    """What it asks for is in its own package."""
+    slip = next((each for each in case.conduct.slips if each.kind == "beside"), None)
+    if slip is None or f"'{slip.name}'" not in raised.text:
+        return None
+    name, near = told(slip.name), told(slip.near)
+    package = near.rpartition(".")[0]
+    written = told(slip.place.text)
+    instead = f"from {package} import {name}"
+    if written.startswith(f"from {name} import "):
+        instead = written.replace(f"from {name} ", f"from {near} ", 1)
+    return Diagnosis(
+        "not_importable",
+        f"Your program cannot import {name}: it lies beside, in the package {package}, and in a "
+        f"package its name is {near}{line(raised.place)}.",
+        f"Write `{instead}` there.",
+        place=raised.place,
+    )

@@ -1,0 +1,174 @@
+"""What a look at the source has shown, where it explains what went wrong.
+
+A slip is nothing wrong by itself (`Slip` says what each is): an exception explains it, or a check
+that lost points stands beside it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from grader.diagnosis.case import Case, function, line, told
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.standstill import never_spins
+from grader.diagnosis.usual import Said
+from grader.recording.conduct import Place, Raised, Slip, SlipKind
+
+#: So much of an exception's text is looked at [characters].
+_LONGEST = 1000
+_GIVEN = re.compile(r"(\w{1,60})\(\) takes (\d{1,3}) positional arguments? but (\d{1,3}) w")
+_VARIABLE = re.compile(r"variable '(\w{1,60})'")
+_OF_A_SERVICE = re.compile(r"(\w{1,60})(?:\.__init__)?\(\) (?:got an unexpected k|takes no arg)")
+_NO_INSTANCE = "Service classes can not be instantiated"
+
+
+def explains(case: Case, raised: Raised) -> Said | None:
+    """What an exception comes from, where the source or the scene tells more than its text."""
+    return next((said for rule in _RULES if (said := rule(case, raised)) is not None), None)
+
+
+def _of_kind(case: Case, *kinds: SlipKind) -> Iterator[Slip]:
+    return (slip for slip in case.conduct.slips if slip.kind in kinds)
+
+
+def _not_global(case: Case, raised: Raised) -> Said | None:
+    found = _VARIABLE.search(raised.text[:_LONGEST])
+    if raised.type != "UnboundLocalError" or found is None:
+        return None
+    for slip in _of_kind(case, "global"):
+        if slip.name == found[1]:
+            word = told(slip.near)
+            where = "at the top of the file" if word.startswith("global") else "outside"
+            here = function(raised.place) or "this function"
+            return Said(
+                f"Write `{word}` as the first line of {here}: without it that is another variable, "
+                "which has no value yet.",
+                f"`{told(slip.name)}` is assigned {where} (line {slip.place.line}) and in {here}: "
+                f"add `{word}`",
+            )
+    return None
+
+
+def _without_self(case: Case, raised: Raised) -> Said | None:
+    found = _GIVEN.search(raised.text[:_LONGEST])
+    if raised.type != "TypeError" or found is None or int(found[3]) != int(found[2]) + 1:
+        return None
+    for slip in _of_kind(case, "without_self"):
+        if slip.name == found[1]:
+            written = told(slip.place.text)
+            rest = written.partition("(")[2].lstrip()
+            comma = "" if rest.startswith(")") else ", "
+            return Said(
+                f"A method takes self before all else: write `{written.partition('(')[0]}(self"
+                f"{comma}{rest}`.",
+                place=slip.place,
+            )
+    return None
+
+
+def _hidden_method(case: Case, raised: Raised) -> Said | None:
+    if "object is not callable" not in raised.text[:_LONGEST] or raised.place is None:
+        return None
+    for slip in _of_kind(case, "method"):
+        name = told(slip.name)
+        if f"self.{name}(" in raised.place.text:
+            return Said(
+                f"self.{name} is set to something else{line(slip.place)}, and that hides the "
+                f"method {name}(): give one of them another name."
+            )
+    return None
+
+
+def _class_given(case: Case, raised: Raised) -> Said | None:
+    place = raised.place
+    for slip in _of_kind(case, "class"):
+        if place is not None and ("spin" in place.text or place.line == slip.place.line):
+            call, name = told(slip.near), told(slip.name)
+            return Said(
+                f"The brackets are missing: node = {name}(), then {call}(node).",
+                f"{call.rpartition('.')[2]} was given a class, not a node that was made of it",
+                slip.place,
+            )
+    return None
+
+
+def _service_for_request(case: Case, raised: Raised) -> Said | None:
+    services = {each.type.rpartition("/")[2] for each in case.scene_has if each.kind == "service"}
+    services |= {end.type.rpartition("/")[2] for end in case.ends if end.kind == "client"}
+    text = raised.text[:_LONGEST]
+    found = _OF_A_SERVICE.search(text)
+    name = found[1] if found else ""
+    if _NO_INSTANCE in text and raised.place is not None:
+        calls = re.findall(r"(\w{1,60})\(", raised.place.text)
+        name = next((each for each in calls if each in services), "")
+    if name not in services:
+        return None
+    return Said(
+        f"Write {name}.Request(...) there: that is what a request is made of.",
+        f"{name} is the service, not a request to it",
+    )
+
+
+_RULES: tuple[Callable[[Case, Raised], Said | None], ...] = (
+    *(_not_global, _without_self, _hidden_method, _class_given, _service_for_request),
+)
+
+
+def called_at_once(case: Case) -> Diagnosis | None:
+    """What was to run in a thread runs in the main program, which gets no further."""
+    for slip in _of_kind(case, "called"):
+        if never_spins(case) is None and case.conduct.spun_s is not None:
+            continue
+        name = told(slip.name)
+        return Diagnosis(
+            "called_at_once",
+            f"{told(slip.near)}{name}()){line(slip.place)} calls {name}() at once, in the main "
+            "program, and what comes after waits until it returns.",
+            f"Hand it over by its name, without brackets: {told(slip.near)}{name}).",
+            place=slip.place,
+        )
+    return None
+
+
+def beside(found: Diagnosis, case: Case) -> Diagnosis:
+    """The finding of a check, behind a slip that may be its cause."""
+    for slip in _of_kind(case, "uncalled", "unread", "local"):
+        text, help_ = _told(slip)
+        cause = f"{text[0].upper()}{text[1:]}{line(slip.place)}. {found.cause}"
+        return replace(found, cause=cause, help=help_, place=slip.place)
+    return found
+
+
+def _told(slip: Slip) -> tuple[str, str]:
+    name, near = told(slip.name), told(slip.near)
+    if slip.kind == "unread":
+        return (
+            f"`self.{name}` is set and never read; what is read is `self.{near}`",
+            f"Write self.{near} there, if that is what you mean.",
+        )
+    if slip.kind == "local" and near.startswith("self."):
+        return (
+            f"`{name}` is a variable of this function and never read; what is read elsewhere is "
+            f"`{near}`",
+            f"Write {near} = ... there.",
+        )
+    if slip.kind == "local":
+        return (
+            f"`{name}` is set in this function only, and never read; outside there is another "
+            f"`{name}`",
+            f"Write `{near}` as the first line of the function.",
+        )
+    text = slip.place.text.lstrip()
+    if text.partition(";")[0].rstrip() == slip.name:
+        return f"`{name}` stands there without brackets, and does nothing", f"Write {name}()."
+    return (
+        f"`{name}` stands there without brackets: a function as such is always true",
+        f"Write {name}().",
+    )
+
+
+def unsent(case: Case) -> Place | None:
+    """Where a request is made that nobody ever sends."""
+    return next((slip.place for slip in _of_kind(case, "unsent")), None)
