@@ -20,7 +20,7 @@ try:  # somebody may think better of it at once
     import importlib
 
     from grader.cli import error_file
-    from grader.errors import CheckFailed, GraderError, GraderFailure, UsageError
+    from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
     from grader.text import for_terminal
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
@@ -80,7 +80,8 @@ def _main(words: Sequence[str]) -> int:
         _say(f"The {who} failed; this is not the submission's fault:", error.message)
         return _ended(error, args)
     except GraderError as error:
-        _say(f"grader {args.verb}:", error.message)
+        is_to_mend = isinstance(error, SubmissionError)  # the first line says so, as of a result
+        _say("First to mend:" if is_to_mend else f"grader {args.verb}:", error.message)
         return _ended(error, args)
     except Exception as error:
         _say("The grader failed; this is not the submission's fault. Please report:")

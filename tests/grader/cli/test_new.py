@@ -29,7 +29,7 @@ def test_the_sheet_names_what_is_there(tmp_path):
     assert text.startswith("# A spiral in four colours\n")
     assert (tmp_path / "mine" / "turtlesim_challenge" / "turtle_controller.py").is_file()
     for command in (
-        "python3 turtlesim_challenge/turtle_controller.py",
+        "python3 -m turtlesim_challenge.turtle_controller",
         "ros2 run turtlesim_challenge turtle_controller",
         "grader run mine",
     ):
