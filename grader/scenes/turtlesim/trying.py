@@ -8,7 +8,7 @@ _RUN = """\
 In one terminal the simulator, in another your node:
 
     turtlesim_node
-    python3 {program}
+    {command}
 """
 _WITH_ROS2 = """\
 The same with `ros2`, in a workspace that has this folder in its `src`:
@@ -32,5 +32,10 @@ To see the turtle:
 
 def how_to_try(program: str, package: str) -> str:
     """See `grader.scenes.scene.Scene`."""
-    with_ros2 = _WITH_ROS2.format(package=package, name=PurePath(program).stem) if package else ""
-    return "\n".join(part for part in (_RUN.format(program=program), with_ros2, _SEE) if part)
+    path = PurePath(program)
+    in_package = bool(package) and len(path.parts) > 1
+    module = ".".join(path.with_suffix("").parts)
+    # as it is graded: a package's own modules are found by the package's name
+    command = f"python3 -m {module}" if in_package else f"python3 {program}"
+    with_ros2 = _WITH_ROS2.format(package=package, name=path.stem) if package else ""
+    return "\n".join(part for part in (_RUN.format(command=command), with_ros2, _SEE) if part)

@@ -1,7 +1,7 @@
 """Draw a spiral in four colours and stop near the edge.
 
 As it stands, the node starts, listens and does nothing. Fill in the three TODOs.
-Try it:      python3 turtlesim_challenge/turtle_controller.py     (with a turtlesim running)
+Try it:      python3 -m turtlesim_challenge.turtle_controller     (with a turtlesim running)
 Judge it:    grader run .
 """
 
@@ -31,8 +31,8 @@ class TurtleController(Node):
     def watch(self, pose: Pose):
         """Called with every pose of the turtle: pose.x and pose.y go from 0 to 11.09 metres."""
         # TODO 3: near an edge (half a metre from it, say), stop: publish an empty Twist.
-        #         On entering another quarter of the window, call set_pen once with its colour:
-        #         white top right, red top left, green bottom left, blue bottom right.
+        #         On entering another quarter of the window, call set_pen once with its colour.
+        #         Any four will do that an eye tells apart: white, red, green and blue, say.
 
 
 def main(args=None):
