@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.sentences import error_first, how_it_ended
+from grader.exercise.sentences import counted, error_first, how_it_ended
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.calls import judge_calls
+from grader.exercises.turtlesim_challenge.commands import too_fast
 from grader.exercises.turtlesim_challenge.edge import judge_edge
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.penning import judge_pens
@@ -40,25 +42,46 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
     path = Path(recording)
     commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
     seconds = f"{recording.run.simulated_s:.1f} s"
+    # of a program that ended, its end tells when
+    within = "" if recording.run.outcome in ("crashed", "exited", "killed") else f" in {seconds}"
     ending = how_it_ended(recording)
     if not commands:
-        rationale = f"Your node published no velocity command on /turtle1/cmd_vel in {seconds}."
+        rationale = f"Your node published no velocity command on /turtle1/cmd_vel{within}."
         help_ = _where_it_published(recording)
         if recording.run.outcome == "crashed":
             help_ = "Mend that error first; all that the node printed is in output.txt."
         return Finding(0, rationale + ending, help_)
     foreign = _foreign(path)
     if not (path.moving & (path.linear > 0)).any():
-        return Finding(
-            0,
-            f"Your node published velocity commands ({len(commands)} in {seconds}), "
-            f"but they never moved turtle1.{foreign}{ending}",
-            "Is linear.x of the Twist different from zero?",
-            (path.at(commands[0].tick, "the first command"),),
-        )
+        return _unmoved(path, commands, f"{foreign}{ending}")
     start = path.at(int(path.ticks[path.first]), "here it starts to move")
     return Finding(
         1, f"{len(commands)} velocity commands moved turtle1.{foreign}", evidence=(start,)
+    )
+
+
+def _unmoved(path: Path, commands: Sequence[CmdVel], more: str) -> Finding:
+    """Commands came, and none has moved it."""
+    seconds = f"{path.recording.run.simulated_s:.1f} s"
+    first = (path.at(commands[0].tick, "the first command"),)
+    fast = too_fast(path, int(path.ticks[-1])) if len(path) else None
+    if fast is not None:
+        return Finding(0, f"{fast.text}{more}", fast.help)
+    if not any(value for call in commands for value in (*call.linear, *call.angular)):
+        return Finding(
+            0,
+            f"Your node published {counted(len(commands), 'velocity command')} in {seconds}, and "
+            f"never moved turtle1: all were zeros.{more}",
+            "Is linear.x of the Twist ever set? Look at the condition that is to be true first: is "
+            "it ever?",
+            first,
+        )
+    return Finding(
+        0,
+        f"Your node published velocity commands ({len(commands)} in {seconds}), but they never "
+        f"moved turtle1.{more}",
+        "Is linear.x of the Twist different from zero?",
+        first,
     )
 
 

@@ -21,6 +21,8 @@ DEGREES = 4 * math.pi
 ONE_MOMENT_TICKS = 2
 #: From this part of all commands on, those of linear.x 0 between others are no accident.
 TAKE_TURNS = 0.25
+#: Who asks for more has not divided a time in nanoseconds [m/s].
+NANOSECONDS = 1e5
 
 
 def stands_still(command: CmdVel) -> bool:
@@ -54,7 +56,74 @@ def why_no_wider(path: Path) -> Cause | None:
     commands = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
     if len(commands) < 3:
         return None
-    return _paused(commands) or _degrees(commands) or _takes_turns(commands) or _same(commands)
+    return (
+        too_fast(path, path.stop_tick)
+        or _paused(commands)
+        or _degrees(commands)
+        or _takes_turns(commands)
+        or _straight(commands)
+        or _same(commands)
+        or _shrinks(commands)
+    )
+
+
+def why_so_few_turns(path: Path) -> Cause | None:
+    """Why the turtle makes no two turns before it stops, where the commands tell."""
+    commands = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
+    speeds = np.abs([call.linear[0] for call in commands if call.linear[0]])
+    found = too_fast(path, path.stop_tick) or (why_no_wider(path) if len(commands) > 2 else None)
+    if found is not None or len(speeds) < 3 or not np.isfinite(speeds).all():
+        return found
+    step = float(np.median(np.diff(speeds)))
+    if step <= 0:
+        return None
+    return Cause(
+        f"linear.x grew by {step:.3g} with each command, from {speeds[0]:.3g} to "
+        f"{speeds[-1]:.3g} m/s.",
+        "Let linear.x grow more slowly, or begin smaller: what a command adds decides how far one "
+        "turn lies from the next.",
+    )
+
+
+def too_fast(path: Path, until: int) -> Cause | None:
+    """A command that carries the turtle across the window before the next pose comes."""
+    for call in path.calls(CmdVel):
+        if call.tick > until + 1:
+            break
+        speed = abs(call.linear[0])
+        if math.isfinite(speed) and speed * TICK_S > path.size_m:
+            units = " Nanoseconds are not seconds: divide by 1e9." if speed > NANOSECONDS else ""
+            return Cause(
+                f"linear.x was {call.linear[0]:,.0f} m/s at {call.tick * TICK_S:.2f} s: that "
+                "crosses the window before the next pose comes.".replace(",", " "),
+                f"linear.x is in metres a second: 1.0 is a good speed.{units}",
+            )
+    return None
+
+
+def _straight(commands: Sequence[CmdVel]) -> Cause | None:
+    """The turtle never turns: by mistake another part of the Twist was set."""
+    if any(call.angular[2] for call in commands):
+        return None
+    others = [name for at, name in ((0, "x"), (1, "y")) if any(c.angular[at] for c in commands)]
+    instead = f", angular.{others[0]} was set" if others else ""
+    return Cause(
+        f"angular.z was 0 in every command{instead}.",
+        "The turtle turns by angular.z alone: set that, to 1.0 for example.",
+    )
+
+
+def _shrinks(commands: Sequence[CmdVel]) -> Cause | None:
+    """linear.x becomes smaller all the time."""
+    speeds = np.abs([call.linear[0] for call in commands if call.linear[0]])
+    if len(speeds) < 3 or not np.isfinite(speeds).all():
+        return None
+    if not (np.diff(speeds) <= 0).all() or speeds[-1] > 0.999 * speeds[0]:
+        return None
+    return Cause(
+        f"linear.x began at {speeds[0]:.3g} and became smaller, down to {speeds[-1]:.3g}.",
+        "Begin small, and let linear.x grow a little with each command.",
+    )
 
 
 def _paused(commands: Sequence[CmdVel]) -> Cause | None:

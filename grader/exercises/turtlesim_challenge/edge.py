@@ -112,8 +112,11 @@ def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
         lead = f"{before.removesuffix(', but ')}. " if stops[0].kind == "stopped" else before
         return replace(worst.finding, rationale=lead + told)
     here = stops[0]
-    if here.kind == "stopped" and is_told_to_stop_at(
-        worst.path, here.path.stop_tick, SAME_MOMENT_TICKS
+    takes_long = here.path.stop_tick > 10 * SAME_MOMENT_TICKS  # else all moments are the same
+    if (
+        here.kind == "stopped"
+        and takes_long
+        and is_told_to_stop_at(worst.path, here.path.stop_tick, SAME_MOMENT_TICKS)
     ):
         return Finding(
             0,
@@ -153,7 +156,8 @@ def _one_wall_only(stops: list[Stop]) -> Finding | None:
         0,
         f"It stopped at the {walls} wall{'s' if len(at) > 1 else ''}, but not at the {worst.wall} "
         f"one. In {where}: {worst.finding.rationale}",
-        f"Is the {worst.wall} wall watched? There are four: x and y each have a smallest and a "
+        f"Is the {worst.wall} wall watched, or is its limit too near (x and y never go below 0 or "
+        f"above {worst.path.size_m:.2f})? There are four: x and y each have a smallest and a "
         "largest value.",
         worst.finding.evidence,
     )

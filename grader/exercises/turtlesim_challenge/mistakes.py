@@ -23,6 +23,9 @@ OFF_THE_LINES_M = 0.3
 ON_ONE_LINE_M = 0.12
 #: So many calls are needed to see a line, and this part of them, or of a pattern, has to fit.
 LEAST_CALLS, MOST = 3, 0.8
+#: Who takes the middle to be a little elsewhere is not so early [ticks]; this part of the changes
+#: is no accident.
+EARLY_TICKS, EARLY = 6, 0.15
 #: Delays that differ by more are no fixed delay: something looks now and then [s].
 NOW_AND_THEN_S = 0.35
 
@@ -32,7 +35,8 @@ WHERE = {
     3: "x < middle and y < middle",
     4: "x > middle and y < middle",
 }
-MIDDLE = f"the middle of the window is at {int(100 * CENTRE_M) / 100:g}"
+MIDDLE_M = int(100 * CENTRE_M) / 100
+MIDDLE = f"the middle of the window is at {MIDDLE_M:g}"
 
 
 SPIRAL_FIRST = "Look at the spiral first: colours are judged in the quadrants that it goes through."
@@ -40,9 +44,17 @@ SPIRAL_FIRST = "Look at the spiral first: colours are judged in the quadrants th
 
 def causes(path: Path, found: Coloring, tolerances: Tolerances) -> Iterator[Cause]:
     """What explains the wrong entries, the likeliest first."""
+    once = _once(path, found)
+    if once is not None:
+        yield once
+        return
     if None in found.own.values():
         yield _lifted(found)
-    elsewhere = found.bad and (_other_line(path) or _quadrant_before(path, found, tolerances))
+    elsewhere = found.bad and (
+        _other_line(path)
+        or _quadrant_before(path, found, tolerances)
+        or _before_the_line(path, found, tolerances)
+    )
     if elsewhere:  # it explains late colours and quadrants of one colour, too
         yield elsewhere
         return
@@ -81,6 +93,44 @@ def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Caus
 def listed(words: list[str]) -> str:
     """Words as a sentence names them: 'I, II and IV'."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _once(path: Path, found: Coloring) -> Cause | None:
+    """set_pen was called a single time, whatever quadrants the turtle came to."""
+    calls, entered = len(path.calls(SetPen)), len(path.entries(0.0))
+    if calls != 1 or entered < LEAST_CALLS or len(found.own) < 2:
+        return None
+    return Cause(
+        f"set_pen was called once in the whole run; {entered} quadrants were entered.",
+        "Does your node ever see another quadrant? Its conditions have to compare x and y with "
+        f"{MIDDLE_M:g}, the middle. And if it does: what keeps it from calling once more?",
+    )
+
+
+def _before_the_line(path: Path, found: Coloring, tolerances: Tolerances) -> Cause | None:
+    """The next quadrant's colour comes before the turtle does: nothing of x and y says so."""
+    near, early = tolerances["color_distance"], []
+    for entry, after in pairwise(path.entries(0.0)):
+        if not {entry.quadrant, after.quadrant} <= found.own.keys():
+            continue
+        here, there = found.own[entry.quadrant], found.own[after.quadrant]
+        is_early = [
+            colours.alike(found.colors[tick], there, near)
+            for tick in entry.ticks
+            if not colours.alike(here, there, near)
+        ]
+        # so many ticks at the end of the stay, but not the whole stay
+        last = next((n for n, early in enumerate(reversed(is_early)) if not early), 0)
+        early.append(last if last > EARLY_TICKS else 0)
+    seen = [ticks for ticks in early if ticks]
+    if len(seen) < LEAST_CALLS or len(seen) < EARLY * len(early):
+        return None
+    return Cause(
+        f"The colour changes elsewhere than at x = {MIDDLE_M:g} or y = {MIDDLE_M:g}: about "
+        f"{float(np.median(seen)) * TICK_S:.2f} s before the turtle is there.",
+        "Is it theta, or the time, by which your node tells the quadrants? Compare x and y of the "
+        f"pose with {MIDDLE_M:g}.",
+    )
 
 
 def _lifted(found: Coloring) -> Cause:
@@ -164,6 +214,7 @@ def _late(found: Coloring, tolerances: Tolerances) -> Cause | None:
         return Cause(
             text, "Call set_pen in the pose callback, at once: what does your node wait for?"
         )
+    high = max(float(high), typical)  # what came too late is told in any case
     return Cause(
         f"The colour comes now and then only, {low:.2f} to {high:.2f} s after the turtle; "
         f"{allowed:.2f} s are allowed.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
-from grader.exercises.turtlesim_challenge.commands import why_no_wider
+from grader.exercises.turtlesim_challenge.commands import why_no_wider, why_so_few_turns
 from grader.exercises.turtlesim_challenge.path import Path
 
 
@@ -23,7 +23,10 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
         growth = shape.growth(path)
         sizes = f"{growth.min():.2f} to {growth.max():.2f} m"
         return Finding(1, f"{turns:.1f} turns from the centre, each wider by {sizes}.")
-    cause = why_no_wider(path) if parts["growth"][1] else None
+    cause = None
+    if parts["growth"][1]:
+        few = shape.turns(path)[0] < tolerances["turns"]
+        cause = why_so_few_turns(path) if few else why_no_wider(path)
     if cause is not None:
         missed.insert(0, cause.text)
     good = {name: share for name, (share, text, _) in parts.items() if not text}

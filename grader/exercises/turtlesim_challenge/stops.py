@@ -9,13 +9,15 @@ import numpy as np
 
 from grader.exercise.check import Tolerances
 from grader.exercise.sentences import how_it_ended
-from grader.exercise.verdict import Finding
+from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import (
     drove_on,
     overruled_stop,
     stands_still,
+    too_fast,
     why_no_wider,
+    why_so_few_turns,
 )
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.scenes.turtlesim.driving import REST_TICKS
@@ -26,6 +28,8 @@ from turtlesim_py.world.turtle import TICK_S
 #: came any more, or while the turtle turns on and on.
 HALF = 0.5
 HALF_OF_IT = " That is half of the points."
+#: Who is told to stop so soon after a wall was touched has waited for that.
+AT_THE_WALL_TICKS = 32
 WALLS = ("left", "bottom", "right", "top")
 
 #: How a run ended. `late`: the time was up while a spiral still grew, and had not
@@ -115,16 +119,33 @@ def _to_walls(path: Path) -> np.ndarray:
 def _touched(path: Path, wall: str, tolerances: Tolerances) -> Finding:
     touched = path.at(int(path.ticks[path.wall or 0]), "it touches the wall here")
     text = f"The turtle ran into the {wall} wall at {touched.time_s:.1f} s"
+    fast = too_fast(path, touched.tick)
+    if fast is None and shape.turns(path)[0] < 1:
+        fast = why_so_few_turns(path)
+    if fast is not None:
+        return Finding(0, f"{fast.text} {text}.", fast.help, (touched,))
     pair = drove_on(path, touched.tick, tolerances["edge_m"])
     if pair is None and not any(stands_still(call) for call in path.calls(CmdVel)):
         text += ", and no Twist of zeros was ever sent"
         return Finding(0, f"{text}.", _IS_IT_EVER_TRUE, (touched,))
     if pair is None:
-        help_ = "Watch the pose, and stop before a wall is reached."
-        return Finding(0, f"{text}.", help_, (touched,))
+        return _too_late(path, text, touched)
     stop, further = pair
     told = path.at(stop.tick, "told to stop here")
     return Finding(0, f"{text}: {_stop_and_go(stop, further)}.", _ONE_SAYS_STOP, (told, touched))
+
+
+def _too_late(path: Path, text: str, touched: Evidence) -> Finding:
+    """It was told to stop, at some time, but not before it was at the wall."""
+    told = next(c for c in path.calls(CmdVel) if stands_still(c))
+    help_ = "Watch the pose, and stop before a wall is reached."
+    if 0 <= told.tick - touched.tick <= AT_THE_WALL_TICKS:
+        text = f"{text}, and was told to stop only then"
+        help_ = (
+            "The limits are too near the walls: x and y never go below 0 or above "
+            f"{path.size_m:.2f}. Stop where one of them comes below 1, say, or above 10."
+        )
+    return Finding(0, f"{text}.", help_, (touched,))
 
 
 _IS_IT_EVER_TRUE = (

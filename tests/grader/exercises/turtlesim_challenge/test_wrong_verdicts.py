@@ -95,7 +95,8 @@ def test_who_stops_by_turning_and_then_stands_has_stopped_by_a_command():
     ],
 )
 def test_a_stop_that_is_not_quite_one_is_worth_half_as_in_the_square(controller, told):
-    found = verdicts(controller, varied=controller is not TurnsForEver)["edge_stop"]
+    # from where others start, a turtle that nobody stops may roll on into the wall
+    found = verdicts(controller, varied=controller is not TurnsForEver, seed=1946)["edge_stop"]
     assert found.score == 12.5
     assert told in found.rationale
     assert "half of the points" in found.rationale
@@ -228,6 +229,16 @@ class WatchesRightAndTopOnly(Spiral):
         return max(pose.x, pose.y) > SIZE_M - 1.5
 
 
+class WatchesXOnly(Spiral):
+    def near_edge(self, tick, pose):
+        return not 1 < pose.x < 10
+
+
+class WatchesYOnly(Spiral):
+    def near_edge(self, tick, pose):
+        return not 1 < pose.y < 10
+
+
 class WatchesLeftAndBottomOnly(Spiral):
     def near_edge(self, tick, pose):
         return min(pose.x, pose.y) < 1.5
@@ -241,7 +252,8 @@ class WatchesLeftAndBottomOnly(Spiral):
         WatchesTheLeftWallOnly,
         WatchesTheBottomWallOnly,
         WatchesRightAndTopOnly,
-        WatchesLeftAndBottomOnly,
+        WatchesXOnly,
+        WatchesYOnly,
     ],
 )
 def test_who_watches_one_wall_only_is_told_which_one_is_not_watched(controller):
@@ -249,6 +261,12 @@ def test_who_watches_one_wall_only_is_told_which_one_is_not_watched(controller):
     assert found.score == 0
     assert "It stopped at the" in found.rationale
     assert found.help.endswith("There are four: x and y each have a smallest and a largest value.")
+
+
+def test_who_forgets_the_upper_bounds_is_found_from_starts_on_the_other_side():
+    found = verdicts(WatchesLeftAndBottomOnly, seed=1946)["edge_stop"]
+    assert found.score == 0
+    assert "It stopped at the" in found.rationale
 
 
 class CountsItsSteps(Spiral):
@@ -701,3 +719,75 @@ def test_who_starts_elsewhere_is_told_what_would_be_fine():
     found = verdicts(controller, varied=False)["spiral"]
     assert "starts 1.00 m from the centre; 0.5 m is fine" in found.rationale
     assert "Of the points it earned 30 % for the turns and 50 % for the growth." in found.rationale
+
+
+class NanosecondsForSeconds(Spiral):
+    def drive(self, tick, arena):
+        twist(arena, 1e7)
+
+
+class BeginsFastAndSlowsDown(Spiral):
+    def drive(self, tick, arena):
+        self.speed = (self.speed or 3.0) - 0.02
+        twist(arena, self.speed)
+
+
+class GrowsTooFast(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 1.0
+        twist(arena, self.speed)
+
+
+class NeverTurns(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.01
+        twist(arena, self.speed, 0.0)
+
+
+class SendsZeros(Spiral):
+    def drive(self, tick, arena):
+        twist(arena, 0.0, 0.0)
+
+
+class StopsAtTheWall(Spiral):
+    def near_edge(self, tick, pose):
+        return min(pose.x, pose.y) <= 0 or max(pose.x, pose.y) >= 11.08
+
+
+class CallsOnce(Spiral):
+    called = False
+
+    def entered(self, quadrant, arena):
+        if not self.called:
+            self.called = True
+            super().entered(quadrant, arena)
+
+
+class GoesByTheta(Spiral):
+    def quadrant_of(self, pose):
+        return 1 + (pose.theta > 0) + 2 * (abs(pose.theta) > math.pi / 2)
+
+
+@pytest.mark.parametrize(
+    ("controller", "check", "told", "help_"),
+    [
+        (NanosecondsForSeconds, "moves", "linear.x was 10 000 000 m/s at", "divide by 1e9"),
+        (BeginsFastAndSlowsDown, "spiral", "linear.x began at ", "Begin small"),
+        (GrowsTooFast, "spiral", "linear.x grew by 1 with each command", "more slowly"),
+        (NeverTurns, "spiral", "angular.z was 0 in every command", "angular.z alone"),
+        (SendsZeros, "moves", "all were zeros", "ever set"),
+        (StopsAtTheWall, "edge_stop", "was told to stop only then", "too near the walls"),
+        (CallsOnce, "pen_per_quadrant", "set_pen was called once in the whole run", "with 5.54"),
+    ],
+)
+def test_the_commands_tell_the_cause(controller, check, told, help_):
+    found = verdicts(controller, varied=False)[check]
+    assert told in found.rationale
+    assert help_ in found.help
+
+
+def test_colours_by_the_heading_are_told_from_late_ones():
+    found = verdicts(GoesByTheta)["pen_per_quadrant"]
+    assert found.score < 20
+    assert "The colour changes elsewhere than at x = 5.54 or y = 5.54" in found.rationale
+    assert found.help.startswith("Is it theta, or the time")
