@@ -14,7 +14,6 @@ from grader.text import clip
 
 #: What generated messages say of a value that they refuse.
 _FIELD = re.compile(r"The '(?P<field>\w{1,60})' field must be (?P<what>[^\n]{1,200})")
-#: A package of messages, as its name goes, that is not there.
 _RANGE = re.compile(r"integer in \[(-?\d{1,20}), (-?\d{1,20})\]")
 _ENCODING = ("Non-UTF-8 code", "(unicode error)", "codec can't decode")
 #: What Python adds to some texts, and what is said in other words here.

@@ -108,8 +108,12 @@ class Witness:
     def used(self, entity: Any, *, is_sent: bool = False) -> None:
         """A message was sent or received, or a request sent."""
         end: End | None = getattr(entity, "_witnessed", None)
-        if end is not None:
-            self._count(end)
+        if end is None:
+            return
+        if is_sent and end.used == 0:
+            place = self._teller.place(sys._getframe())
+            self._teller.tell("used_at", [end.number, place])
+        self._count(end)
 
     def heard(self, topic: str) -> None:
         """A message has come to the last subscription to a topic, which is no more."""
@@ -119,9 +123,6 @@ class Witness:
 
     def _count(self, end: End) -> None:
         end.used += 1
-        if is_sent and end.used == 1:
-            place = self._teller.place(sys._getframe())
-            self._teller.tell("used_at", [end.number, place])
         if end.used >= STEP * end.told[0]:
             self._tell_of(end)
 
