@@ -80,6 +80,14 @@ def data_files() -> list[tuple[str, list[str]]]:
             ("share/turtlesim/launch", ROS_PACKAGES["turtlesim_py"]),
             ("lib/turtlesim", programs["turtlesim_py"]),
         ]
+        # likewise the nodes of robots, each in the package of its name
+        for path in programs["robot_py"]:
+            package = Path(path).name
+            marker = f"ros2run/index/{package}"
+            files += [
+                ("share/ament_index/resource_index/packages", [marker]),
+                (f"lib/{package}", [path]),
+            ]
     for package, launch_files in ROS_PACKAGES.items():
         manifest = "package.xml" if package == PROJECT["name"] else f"{package}/package.xml"
         files += [

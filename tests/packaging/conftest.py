@@ -30,9 +30,11 @@ SOURCES = (
     "turtlesim_py",
 )
 
+STARTED = "Starting turtlesim with node name /turtlesim"
+
 Environment = dict[str, str]
 FindProgram = Callable[[str, str, Environment], Path]
-RunNode = Callable[[Path, Environment], str]
+RunNode = Callable[..., str]
 
 
 @pytest.fixture
@@ -74,9 +76,12 @@ def ros2_run(monkeypatch: pytest.MonkeyPatch) -> FindProgram:
 
 @pytest.fixture
 def run_until_started() -> RunNode:
-    """Start the simulator, stop it as Ctrl-C does once it is there, and return what it said."""
+    """Start the simulator, stop it as Ctrl-C does once it is there, and return what it said.
 
-    def run(program: Path, env: Environment) -> str:
+    Another node is there when it has said its `sign`.
+    """
+
+    def run(program: Path, env: Environment, sign: str = STARTED) -> str:
         process = subprocess.Popen(
             [program], env=env, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         )
@@ -85,7 +90,7 @@ def run_until_started() -> RunNode:
         try:
             for line in process.stderr:
                 said += line
-                if "Starting turtlesim with node name /turtlesim" in line:
+                if sign in line:
                     process.send_signal(signal.SIGINT)
             assert process.wait() == 0, said
         finally:

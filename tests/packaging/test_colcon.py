@@ -74,6 +74,7 @@ def test_programs_run_from_the_workspace(
     for package, program in (
         ("turtlesim_challenge", "turtle_controller"),
         ("grader", "grader"),
+        ("robot_py", "robot_state_publisher"),
         ("turtlesim_py", "turtlesim_node"),
     ):
         assert ros2_run(package, program, env).is_relative_to(workspace.install)

@@ -16,6 +16,8 @@ PROGRAMS = [
     ("turtlesim_py", "turtlesim_node"),
     ("turtlesim_challenge", "turtle_controller"),
     ("grader", "grader"),
+    ("robot_py", "robot_state_publisher"),
+    ("robot_py", "joint_state_publisher"),
 ]
 #: The tutorials' `ros2 run turtlesim ...`. A sourced ROS has the original's.
 TUTORIALS = ["turtlesim_node", "turtle_teleop_key", "draw_square", "mimic"]
@@ -52,6 +54,16 @@ def test_ros2_run_turtlesim_finds_the_programs_of_the_tutorials(
     assert "Starting turtlesim" in run_until_started(found["turtlesim_node"], shell)
 
 
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own")
+def test_ros2_run_finds_the_nodes_of_robots_by_the_names_of_ros_s_packages(
+    ros2_run: FindProgram, run_until_started: RunNode, shell: Environment
+) -> None:
+    for name in ("robot_state_publisher", "joint_state_publisher"):
+        assert ros2_run(name, name, shell).is_relative_to(sys.prefix)
+    node = ros2_run("joint_state_publisher", "joint_state_publisher", shell)
+    run_until_started(node, shell, sign="Waiting for robot_description")
+
+
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own turtlesim")
 def test_ros2_launch_turtlesim_finds_multisim() -> None:
     """PyPI has no launch; what the file would start is tested in test_multisim."""
@@ -69,7 +81,7 @@ def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment)
     assert "submission" in help_.stdout
 
 
-@pytest.mark.parametrize("package", ["turtlesim_py", "turtlesim_challenge", "grader"])
+@pytest.mark.parametrize("package", ["turtlesim_py", "turtlesim_challenge", "grader", "robot_py"])
 def test_each_package_has_a_manifest_with_its_name_and_version(package: str) -> None:
     manifest = Path(sys.prefix, "share", package, "package.xml").read_text()
     assert f"<name>{package}</name>" in manifest

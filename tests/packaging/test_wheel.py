@@ -89,7 +89,7 @@ def test_with_ros_sourced_nothing_of_it_comes_from_pypi(
 def test_every_file_of_the_packages_is_in_the_wheel(
     checkout: Path, ros_sourced: Environment
 ) -> None:
-    packages = ("turtlesim_py", "turtlesim_challenge", "grader")
+    packages = ("turtlesim_py", "turtlesim_challenge", "robot_py", "grader")
     files = {
         path.relative_to(checkout).as_posix()
         for package in packages
@@ -104,6 +104,9 @@ def test_every_file_of_the_packages_is_in_the_wheel(
     assert [name for name in names if "/data/lib/turtlesim/" in name] == []
     assert [name for name in names if "/data/share/turtlesim/" in name] == []
     assert [name for name in names if "tf2" in name] == []
+    for node in ("robot_state_publisher", "joint_state_publisher"):
+        assert [name for name in names if f"/data/lib/{node}/" in name] == []
+        assert [name for name in names if name.endswith(f"/packages/{node}")] == []
 
 
 @pytest.mark.parametrize(
@@ -140,7 +143,12 @@ def test_every_program_can_be_found_by_ros2_run(checkout: Path) -> None:
 def test_all_packages_have_one_version() -> None:
     versions = {
         path: ElementTree.parse(ROOT / path).findtext("version")
-        for path in ("package.xml", "grader/package.xml", "turtlesim_challenge/package.xml")
+        for path in (
+            "package.xml",
+            "grader/package.xml",
+            "turtlesim_challenge/package.xml",
+            "robot_py/package.xml",
+        )
     }
     ours = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert versions == dict.fromkeys(versions, ours)
