@@ -9,8 +9,11 @@ from robot_py.findings import Malformed
 from robot_py.model import Pose, Vector
 from robot_py.urdf.tinyxml import Element
 
-#: A C++ stream skips blanks before a number; nothing may stand behind it.
-NUMBER = re.compile(r"[ \t\n\v\f\r]*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)")
+#: A C++ stream skips blanks before a number; nothing may stand behind it. Nothing is tried twice
+#: (`++`): a million digits and a letter would else take hours.
+NUMBER = re.compile(
+    r"[ \t\n\v\f\r]*+([+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?)"
+)
 
 
 def number(text: str) -> float:

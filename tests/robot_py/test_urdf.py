@@ -137,6 +137,25 @@ def test_an_entity_is_never_expanded():
     assert model.name == "&b;"
 
 
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize(
+    "text",
+    [
+        cases.shape(f'<sphere radius="{"1" * 1_000_000}x"/>'),
+        cases.shape(f'<box size="{"1 " * 1_000_000}"/>'),
+        cases.shape(f'<sphere radius="{" " * 1_000_000}x"/>'),
+        cases.link("&#" + "1" * 1_000_000),
+        f'<robot name="{"&#1" * 1_000_000}"/>',
+        "<a>" * 1_000_000,
+        f"<a {' ' * 1_000_000}",
+        "<!--" * 1_000_000,
+    ],
+    ids=["digits", "vector", "blanks", "text", "references", "depth", "tag", "comments"],
+)
+def test_a_long_text_is_read_in_one_go(text):
+    parse(text)
+
+
 @given(st.text(alphabet="<>/=!?-[]\"' \nab&;#x1", max_size=60))
 def test_there_is_an_answer_to_every_text(text):
     assert parse(text).findings
