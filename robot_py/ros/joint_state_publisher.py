@@ -48,6 +48,15 @@ PARAMETERS: tuple[tuple[str, Any, int], ...] = (
 )
 
 
+#: What a parameter that is no number looks like on the command line.
+IN_WORDS: dict[type, str] = {bool: "true or false", list: "a list of topics"}
+
+
+def is_number(value: object) -> bool:
+    """Whether it is a number, and not just true or false."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 class Refused(Exception):
     """The node cannot start so."""
 
@@ -63,9 +72,12 @@ class JointStatePublisher(Node):
     """
 
     def __init__(self, arguments: Sequence[str] = ()) -> None:
-        super().__init__(
-            "joint_state_publisher", automatically_declare_parameters_from_overrides=True
-        )
+        try:
+            super().__init__(
+                "joint_state_publisher", automatically_declare_parameters_from_overrides=True
+            )
+        except ValueError as error:  # rclpy's, of an empty list, which has no type
+            raise Refused(f"a parameter cannot be used: {error}") from None
         for name, default, kind in PARAMETERS:
             # what it was started with is declared already, whatever its type: so is the original's
             if not self.has_parameter(name):
@@ -85,12 +97,26 @@ class JointStatePublisher(Node):
         self.create_timer(1.0 / rate, self._on_timer)
 
     def _value(self, name: str) -> Any:
-        return self.get_parameter(name).value
+        """A parameter's value, which may be a whole number or another, as in the original.
+
+        Raises:
+            Refused: it is something else, which the original does not survive or takes for true.
+        """
+        value = self.get_parameter(name).value
+        default = next(default for known, default, _ in PARAMETERS if known == name)
+        fits = is_number(value) if is_number(default) else type(value) is type(default)
+        if not fits:
+            expected = "a number" if is_number(default) else IN_WORDS[type(default)]
+            raise Refused(f"parameter {name} is {value!r}, expected {expected}")
+        return value
 
     def _options(self) -> Options:
         below = self.get_parameters_by_prefix
         zeros = {name: parameter.value for name, parameter in below("zeros").items()}
         rules = {name: parameter.value for name, parameter in below("dependent_joints").items()}
+        for name, value in zeros.items():
+            if not is_number(value):
+                raise Refused(f"parameter zeros.{name} is {value!r}, expected a number")
         try:
             dependent = joint_states.dependences(rules)
         except ValueError as error:

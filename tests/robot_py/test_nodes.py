@@ -295,7 +295,7 @@ def test_joints_are_published_as_soon_as_a_description_is_latched(graph, walker)
 
 
 def test_joints_come_from_a_file_and_a_source_moves_them(graph):
-    more = ["-p", "source_list:=[moved]", "-p", "rate:=50", "-p", "zeros.lift:=0.25"]
+    more = ["-p", "source_list:=[moved]", "-p", "rate:=50.0", "-p", "zeros.lift:=0.25"]
     with joint_publisher(str(ROBOTS / "rover.urdf"), "--ros-args", *more) as program:
         states = graph.listen(JointState, "/joint_states")
         graph.until(lambda: states, "joint states")
@@ -320,6 +320,10 @@ def test_a_description_that_joints_cannot_be_read_from_is_warned_of(graph):
     [
         (["/no/such.urdf"], 2, "joint_state_publisher: /no/such.urdf: [Errno 2]"),
         (["--ros-args", "-p", "rate:=0"], 2, "parameter rate is 0, expected a number above 0"),
+        (["--ros-args", "-p", "rate:=fast"], 2, "parameter rate is 'fast', expected a number"),
+        (["--ros-args", "-p", "use_mimic_tags:=1"], 2, "is 1, expected true or false"),
+        (["--ros-args", "-p", "source_list:=[]"], 2, "a parameter cannot be used:"),
+        (["--ros-args", "-p", "zeros.a:=up"], 2, "parameter zeros.a is 'up', expected a number"),
         (
             ["--ros-args", "-p", "dependent_joints.a.factor:=2.0"],
             2,
