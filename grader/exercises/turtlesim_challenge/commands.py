@@ -21,6 +21,8 @@ DEGREES = 4 * math.pi
 ONE_MOMENT_TICKS = 2
 #: From this part of all commands on, those of linear.x 0 between others are no accident.
 TAKE_TURNS = 0.25
+#: With so much from one turn to the next there is no room for two in the window [m].
+TOO_WIDE_M = 2.5
 #: Who asks for more has not divided a time in nanoseconds [m/s].
 NANOSECONDS = 1e5
 
@@ -75,7 +77,13 @@ def why_so_few_turns(path: Path) -> Cause | None:
     if found is not None or len(speeds) < 3 or not np.isfinite(speeds).all():
         return found
     step = float(np.median(np.diff(speeds)))
-    if step <= 0:
+    turns = [call.angular[2] for call in commands if call.linear[0]]
+    if step <= 0 or not np.isfinite(turns).all() or not (min(turns) > 0 or max(turns) < 0):
+        return None
+    gap_s = float(np.median(np.diff([call.tick for call in commands]))) * TICK_S
+    turn = float(np.median(np.abs(turns)))
+    wider_m = step / max(gap_s, TICK_S) * 2 * math.pi / turn**2
+    if wider_m < TOO_WIDE_M:
         return None
     return Cause(
         f"linear.x grew by {step:.3g} with each command, from {speeds[0]:.3g} to "
@@ -94,8 +102,9 @@ def too_fast(path: Path, until: int) -> Cause | None:
         if math.isfinite(speed) and speed * TICK_S > path.size_m:
             units = " Nanoseconds are not seconds: divide by 1e9." if speed > NANOSECONDS else ""
             return Cause(
-                f"linear.x was {call.linear[0]:,.0f} m/s at {call.tick * TICK_S:.2f} s: that "
-                "crosses the window before the next pose comes.".replace(",", " "),
+                f"linear.x was {call.linear[0]:,.0f} m/s".replace(",", " ")
+                + f" in the command at {call.tick * TICK_S:.2f} s: that crosses the window before "
+                "the next pose comes.",
                 f"linear.x is in metres a second: 1.0 is a good speed.{units}",
             )
     return None

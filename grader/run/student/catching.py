@@ -59,7 +59,8 @@ class Catching:
             left_by: the exception that has left it.
         """
         if tracing is not None:
-            sys.settrace(None)
+            if sys.gettrace() == tracing.enters:  # else the program traces by itself now
+                sys.settrace(None)
             for error, trace, by in tracing.caught.values():
                 self._add(error, trace, by)
         if isinstance(left_by, Exception):

@@ -771,7 +771,7 @@ class GoesByTheta(Spiral):
 @pytest.mark.parametrize(
     ("controller", "check", "told", "help_"),
     [
-        (NanosecondsForSeconds, "moves", "linear.x was 10 000 000 m/s at", "divide by 1e9"),
+        (NanosecondsForSeconds, "moves", "linear.x was 10 000 000 m/s in the", "divide by 1e9"),
         (BeginsFastAndSlowsDown, "spiral", "linear.x began at ", "Begin small"),
         (GrowsTooFast, "spiral", "linear.x grew by 1 with each command", "more slowly"),
         (NeverTurns, "spiral", "angular.z was 0 in every command", "angular.z alone"),
@@ -791,3 +791,14 @@ def test_colours_by_the_heading_are_told_from_late_ones():
     assert found.score < 20
     assert "The colour changes elsewhere than at x = 5.54 or y = 5.54" in found.rationale
     assert found.help.startswith("Is it theta, or the time")
+
+
+class TurnsToAndFro(Spiral):
+    def drive(self, tick, arena):
+        self.speed += 0.01
+        twist(arena, self.speed, 1.0 if tick % 310 < 155 else -1.0)
+
+
+def test_who_turns_to_and_fro_is_not_told_of_a_speed_that_grows():
+    found = verdicts(TurnsToAndFro, varied=False)["spiral"]
+    assert "linear.x grew" not in found.rationale
