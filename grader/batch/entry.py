@@ -90,10 +90,13 @@ class Entry:
 
     @classmethod
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
-        if data.get("schema") != SCHEMA:
+        if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             raise ValueError(f"is no entry of a class: expected the schema {SCHEMA}")
-        own = {name: data[name] for name in OWN}
-        return cls(hand_in=HandIn.from_json(data["hand_in"]), **own)
+        try:
+            own = {name: data[name] for name in OWN}
+            return cls(hand_in=HandIn.from_json(data["hand_in"]), **own)
+        except (KeyError, TypeError, AttributeError) as error:
+            raise ValueError(f"is damaged: {error}") from None
 
 
 def entries(out: Path) -> list[Entry]:

@@ -50,6 +50,12 @@ def _common(found: dict[Path, ClassFile]) -> ClassFile:
         (part, replace(file, shard="", hand_ins=sum(hand_ins.values())))
         for part, file in found.items()
     )
+    cuts = {shard.partition("/")[2] for shard in hand_ins}
+    if len(cuts) > 1:
+        told = ", ".join(sorted(shard or "a whole class" for shard in hand_ins))
+        raise UsageError(
+            f"these are not parts of one class, cut in one way: {told}. Nothing was changed."
+        )
     for part, other in others:
         if differences := whole.differences(other):
             told = "; ".join(differences.values())

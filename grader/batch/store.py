@@ -3,6 +3,7 @@
     store/KEY/          what one run has left: recording/, source/, similar.json, thumb.json, which
                         everybody who has handed it in has too; or error.json
     submissions/ID/     what came of it for one hand-in; see `grader.batch.entry`
+    aside/ID/           what is no longer among the submissions
     .unfinished/        what is being made; whatever an interrupted call has left there goes
 
 A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
@@ -13,7 +14,7 @@ from __future__ import annotations
 import os
 import shutil
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from grader.batch.similar.sources import SOURCE
 from grader.errors import UsageError
 from grader.removal import remove
 
-STORE, UNFINISHED = "store", ".unfinished"
+STORE, UNFINISHED, ASIDE = "store", ".unfinished", "aside"
 #: What a worker leaves: one run, and a folder for each hand-in.
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
@@ -61,6 +62,10 @@ class Store:
                 yield cls(out)
             finally:
                 remove(out / UNFINISHED)
+                if not (out / CLASS).is_file():  # refused: nothing is left of it
+                    for name in (STORE, SUBMISSIONS, ""):
+                        with suppress(OSError):
+                            (out / name).rmdir()
 
     def run(self, key: str) -> Path:
         """Where a run is, or will be."""
@@ -73,6 +78,23 @@ class Store:
     def student(self, hand_in: str) -> Path:
         """Where the folder of a hand-in is, or will be."""
         return self.out / SUBMISSIONS / hand_in
+
+    def set_aside(self, hand_ins: Iterable[str]) -> list[str]:
+        """Move all folders of hand-ins but these out of the class; which they were.
+
+        Raises:
+            UsageError: one cannot be moved.
+        """
+        ids = set(hand_ins)
+        others = [path for path in (self.out / SUBMISSIONS).glob("*/") if path.name not in ids]
+        try:
+            for path in others:
+                remove(self.out / ASIDE / path.name)
+                files.make_folder(self.out / ASIDE)
+                path.rename(self.out / ASIDE / path.name)
+        except OSError as error:
+            raise UsageError(f"cannot write into {self.out}: {error}") from None
+        return sorted(path.name for path in others)
 
     def new_place(self) -> Path:
         """An empty folder for a worker.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,10 +15,11 @@ from rich.text import Text
 from grader.cli.run import CLOCKS, LEVELS
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.text import for_terminal
+from grader.text import count, for_terminal
 
 if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
+    from grader.batch.find import Found
     from grader.batch.store import Store
     from grader.exercise.loading import Exercise
     from grader.result.visible import View
@@ -123,30 +125,56 @@ def main(args: argparse.Namespace) -> int:
     path = args.exercise if args.exercise == exercise.name else str(Path(args.exercise).absolute())
     order = Order(exercise, path, args.time, args.seed, args.again, args.shard)
     messages = Console(stderr=True, highlight=False)
-    with Store.opened(args.out) as store:
-        if args.merge:
+    with ExitStack() as held:
+        found = None if args.merge else held.enter_context(_found(args, messages))
+        store = held.enter_context(Store.opened(args.out))
+        if found is None:
             _merge(args, exercise, store, messages)
         else:
             check_same_class(store, order.class_file, order.again)
-            _grade(args, order, store, messages)
+            _grade(args, order, found, store, messages)
         graded = entries(args.out)
         _tell(messages, outputs.write(args.out, graded, exercise, view, args.assignment))
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
 
 
-def _grade(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> None:
-    from grader.batch import batch
+@contextmanager
+def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
+    """Who has handed in what."""
+    from grader.batch.class_file import CLASS
     from grader.batch.find import find
-    from grader.cli import class_progress
 
-    work = _on_a_cluster(args, messages) if args.scheduler else _on_this_machine(args)
+    if (args.submissions / CLASS).is_file() or _are_same(args.submissions, args.out):
+        raise UsageError(
+            f"{args.submissions} is the folder of a class, which `grader batch` writes into; name "
+            "the submissions themselves. Nothing was changed."
+        )
     with find(args.submissions, args.pattern, args.roster) as found:
         _tell(messages, found.notes)
-        planned = batch.plan(found.hand_ins, order, store)
-        with class_progress.shown(messages, planned, store) as show:
-            for hand_in in batch.carry_out(planned, order, store, work):
-                show(hand_in)
+        yield found
+
+
+def _are_same(one: Path, other: Path) -> bool:
+    return one.resolve() == other.resolve()
+
+
+def _grade(
+    args: argparse.Namespace, order: Order, found: Found, store: Store, messages: Console
+) -> None:
+    from grader.batch import batch
+    from grader.batch.store import ASIDE
+    from grader.cli import class_progress
+    from grader.submission.folder import listed
+
+    work = _on_a_cluster(args, messages) if args.scheduler else _on_this_machine(args)
+    planned = batch.plan(found.hand_ins, order, store)
+    if aside := store.set_aside(hand_in.id for hand_in in found.hand_ins):
+        told = f"{count(len(aside), 'hand-in')} in {args.out} not among these submissions"
+        _tell(messages, [f"{told}, and set aside in {store.out / ASIDE}: {listed(aside)}"])
+    with class_progress.shown(messages, planned, store) as show:
+        for hand_in in batch.carry_out(planned, order, store, work):
+            show(hand_in)
 
 
 def _check_words(args: argparse.Namespace) -> None:

@@ -191,3 +191,37 @@ def test_parts_that_were_graded_apart_are_the_class(
     code, messages = batch("--merge", *parts, "--out", tmp_path / "whole")
     assert code == 0, messages
     assert made_together(tmp_path / "whole") == made_together(graded)
+
+
+def test_who_is_no_longer_among_the_submissions_is_set_aside_and_comes_back_without_a_run(
+    handed_in: Path, graded: Path, tmp_path: Path
+) -> None:
+    fewer = write(tmp_path / "fewer", {"alice/node.py": RIGHT})
+    code, messages = batch(fewer, "--out", graded)
+    assert (code, "4 hand-ins in" in messages, "bob, carol, dave, erin" in messages) == (0, 1, 1)
+    assert scores(graded).keys() == {"alice"}
+    assert (graded / "aside" / "dave" / "result.json").exists()
+    code, messages = batch(handed_in, "--out", graded)
+    assert (code, len(scores(graded))) == (0, 5), messages
+
+
+def test_the_folder_of_a_class_is_no_submissions(handed_in: Path, graded: Path) -> None:
+    before = made_together(graded)
+    for words in ((graded, "--out", graded), (graded, "--out", graded.parent / "other")):
+        code, messages = batch(*words)
+        assert (code, "is the folder of a class" in messages) == (2, True), messages
+    assert made_together(graded) == before
+    assert not (graded.parent / "other").exists()
+
+
+def test_a_refused_call_leaves_no_class_behind(tmp_path: Path) -> None:
+    code, messages = batch(tmp_path / "nowhere", "--out", tmp_path / "class")
+    assert (code, (tmp_path / "class").exists()) == (2, False), messages
+
+
+def test_parts_of_different_cuts_are_no_class(graded, handed_in: Path, tmp_path: Path) -> None:
+    for part in ("1/2", "3/3"):
+        assert batch(handed_in, "--out", tmp_path / part[0], "--shard", part)[0] == 0
+    code, messages = batch("--merge", tmp_path / "1", tmp_path / "3", "--out", tmp_path / "whole")
+    assert (code, "not parts of one class" in messages) == (2, True), messages
+    assert not (tmp_path / "whole").exists()

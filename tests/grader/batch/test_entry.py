@@ -31,3 +31,11 @@ def test_a_folder_that_was_not_finished_is_left_out(tmp_path: Path) -> None:
 
 def test_nobody_pays_for_a_failure_of_the_grader(tmp_path: Path) -> None:
     assert Entry(ZOE, "failed", 100.0).score is None
+
+
+def test_an_entry_that_is_no_entry_is_left_out(tmp_path: Path) -> None:
+    for name, text in (("a", "[]"), ("b", "{"), ("c", '{"schema": "turtlesim-grader/entry/v1"}')):
+        folder = tmp_path / SUBMISSIONS / name
+        folder.mkdir(parents=True)
+        (folder / "entry.json").write_text(text)
+    assert entries(tmp_path) == []
