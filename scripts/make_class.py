@@ -46,6 +46,12 @@ def right() -> list[str]:
     return texts[:1] * (len(texts) // 2) + texts  # not all make a mistake
 
 
+def beginners() -> tuple[str, ...]:
+    """The mistakes of beginners, but for those that burn a minute of a processor each."""
+    names = (path.stem for path in sorted((SUBMISSIONS / "first_lines").glob("*.py")))
+    return tuple(name for name in names if not name.startswith(("loops", "floods")))
+
+
 def sources(folder: Path, names: tuple[str, ...] = ()) -> list[str]:
     """The programs in a folder."""
     paths = [folder / f"{name}.py" for name in names] or sorted(folder.glob("*.py"))
@@ -64,7 +70,7 @@ def make(folder: Path, count: int, seed: int) -> None:
     kinds: dict[str, Callable[[], str]] = {}
     for kind, texts in (
         ("right", right()),
-        ("beginner", sources(SUBMISSIONS / "first_lines")),
+        ("beginner", sources(SUBMISSIONS / "first_lines", beginners())),
         ("hostile", sources(ATTACKS, HOSTILE)),
     ):
         kinds[kind] = lambda texts=texts: chance.choice(texts)  # type: ignore[misc]
