@@ -22,6 +22,7 @@ class Item:
     """What lies directly in the folder of a class.
 
     Attributes:
+        is_folder: itself, and no link to one.
         name: as it stands there, composed (NFC): macOS takes letters and their accents apart.
     """
 
@@ -99,7 +100,7 @@ def items_of(folder: Path) -> list[Item]:
     """
     with os.scandir(folder) as entries:
         found = [
-            Item(Path(entry.path), entry.is_dir(), composed(entry.name))
+            Item(Path(entry.path), entry.is_dir(follow_symlinks=False), composed(entry.name))
             for entry in entries
             if not is_junk(entry.name)
         ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import stat
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -32,6 +33,11 @@ LAYOUTS: Final[tuple[Layout, ...]] = (gradescope, moodle, canvas, clones)
 _MAX_WRAPPERS: Final = 3  # folders in a folder that an archive was packed from
 _EMPTY: Final = "What was handed in is an empty folder."
 _NOWHERE: Final = "What was handed in is a link that leads nowhere."
+_ELSEWHERE: Final = "What was handed in is a link to a folder. Hand in the folder itself."
+_NO_FILE: Final = (
+    "What was handed in is neither a file nor a folder, but a pipe, a socket or a device. "
+    "It was not opened."
+)
 
 
 @dataclass(frozen=True)
@@ -127,7 +133,7 @@ def _top(
     for _ in range(_MAX_WRAPPERS + 1):
         items = []
         for item in items_of(folder):
-            if not item.is_folder and item.name.lower() in (ROSTER, SCORES):
+            if item.name.lower() in (ROSTER, SCORES) and item.path.is_file():
                 lying[item.name.lower()] = item
             elif not _is_ours(item):
                 items.append(item)
@@ -223,8 +229,8 @@ def _id(attempt: Attempt) -> str:
 def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
     piece: Piece | None = None
     problem = attempt.problem
-    if not problem and not all(piece.path.exists() for piece in attempt.pieces):
-        problem = _NOWHERE
+    for each in attempt.pieces:
+        problem = problem or _no_submission(each.path)
     if not problem:
         piece = staged(attempt, place)
         problem = _EMPTY if piece is None else ""
@@ -237,3 +243,18 @@ def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
         at=attempt.at,
         problem=problem,
     )
+
+
+def _no_submission(path: Path) -> str:
+    """Why nothing at a path may be opened; '' if it is a file or a folder.
+
+    What lies behind a link to a folder is not the student's. Whoever grades a link to a file
+    refuses it, unless it leads to a file of the same submission.
+    """
+    try:
+        mode = path.stat().st_mode
+    except OSError:  # it leads nowhere, or to itself
+        return _NOWHERE
+    if stat.S_ISDIR(mode):
+        return _ELSEWHERE if path.is_symlink() else ""
+    return "" if stat.S_ISREG(mode) else _NO_FILE

@@ -32,7 +32,7 @@ _MAX_TEXT: Final = 1_000  # characters; what is longer is no name
 
 def looks_like(items: Sequence[Item]) -> bool:
     """Whether a folder is one."""
-    if any(item.name == METADATA and not item.is_folder for item in items):
+    if any(item.name == METADATA and item.path.is_file() for item in items):
         return True
     return mostly(items, lambda item: item.is_folder and _FOLDER.fullmatch(item.name))
 
@@ -88,7 +88,7 @@ def _text(said: object) -> str:
 def _metadata(item: Item | None, notes: list[str]) -> dict[str, dict[str, Any]]:
     """What is said of each submission, by the name of its folder."""
     why = f"there is no {METADATA}"
-    if item is not None:
+    if item is not None and item.path.is_file():
         try:
             found = _Texts(item.path).read()
             return {name: said for name, said in found.items() if isinstance(said, dict)}

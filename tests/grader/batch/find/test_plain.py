@@ -149,3 +149,32 @@ def test_a_link_that_leads_nowhere_is_told(tmp_path: Path, finder: Finder) -> No
     folder = lay(tmp_path / "c", {"alice.py": NODE})
     (folder / "bob.py").symlink_to("nowhere")
     assert finder.by_id(folder)["bob"].problem == "What was handed in is a link that leads nowhere."
+
+
+def test_a_link_to_a_folder_is_refused_and_nobody_else_is(tmp_path: Path, finder: Finder) -> None:
+    lay(tmp_path / "secret", {"node.py": NODE})
+    folder = lay(tmp_path / "c", {"ok.py": NODE})
+    (folder / "eve").symlink_to(tmp_path / "secret")
+    (folder / "loop").symlink_to("..")
+    (folder / "self").symlink_to("self")
+    found = finder(folder)
+    elsewhere = "What was handed in is a link to a folder. Hand in the folder itself."
+    assert [(each.id, each.problem) for each in found.hand_ins] == [
+        ("eve", elsewhere),
+        ("loop", elsewhere),
+        ("ok", ""),
+        ("self", "What was handed in is a link that leads nowhere."),
+    ]
+    assert not any(each.path for each in found.hand_ins if each.id != "ok")
+
+
+def test_what_is_no_file_is_never_opened(tmp_path: Path, finder: Finder) -> None:
+    folder = lay(tmp_path / "c", {"ok.py": NODE})
+    for name in ("bob.py", "carol.zip", "roster.csv"):
+        os.mkfifo(folder / name)
+    (folder / "dan.py").symlink_to("/dev/zero")
+    found = finder(folder)
+    told = {each.id: each.problem for each in found.hand_ins}
+    assert told.pop("ok") == ""
+    assert sorted(told) == ["bob", "carol", "dan"]
+    assert all("neither a file nor a folder" in problem for problem in told.values())
