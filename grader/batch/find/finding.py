@@ -14,7 +14,7 @@ from typing import Final
 from grader.batch.find import canvas, class_archive, clones, gradescope, moodle, plain
 from grader.batch.find.attempt import Attempt, Item, Layout, Piece, Reading, items_of
 from grader.batch.find.ids import MAX_ID, safe_ids
-from grader.batch.find.joining import NOTHING, joined
+from grader.batch.find.joining import NOTHING, UNCLEAR, joined
 from grader.batch.find.pattern import Pattern
 from grader.batch.find.roster import Roster, is_of_classroom50, read_roster
 from grader.batch.find.staging import staged
@@ -94,7 +94,7 @@ def _found(submissions: Path, names: Pattern | None, roster: Path | None, scratc
     hand_ins, older = _hand_ins(attempts, scratch / "hand_ins")
     if not hand_ins:
         raise UsageError(f"{shown(submissions)} holds no submissions. Check the path.")
-    missing = sum(hand_in.problem == NOTHING for hand_in in hand_ins)
+    missing = sum(hand_in.problem in (NOTHING, UNCLEAR) for hand_in in hand_ins)
     there = count(len(hand_ins) - missing, "hand-in")
     first = f"Read as {reading.layout}: {there}{f', {missing} missing' if missing else ''}."
     if reading.layout == plain.LAYOUT:

@@ -13,6 +13,8 @@ from grader.batch.hand_in import Person
 from grader.submission.folder import listed, shown
 
 NOTHING = "Nothing was handed in."
+#: Of somebody who may be one of those whose hand-ins are nobody's: to be without a grade.
+UNCLEAR = "It is not clear which hand-in, if any, is this person's."
 
 
 def joined(attempts: Sequence[Attempt], roster: Roster) -> tuple[list[Attempt], list[str]]:
@@ -26,30 +28,60 @@ def joined(attempts: Sequence[Attempt], roster: Roster) -> tuple[list[Attempt], 
     """
     index = _Index(roster.members)
     matched = _matched(attempts, index)
-    found, unknown, seen = [], [], set[str]()
+    found, unknown, seen = [], list[Person](), set[str]()
     for attempt, members in zip(attempts, matched, strict=True):
         known = [member for member in members if member]
         people = tuple(member.person for member in known)
         if not index.group(attempt):
             people = tuple(map(_person, attempt.people, members))
             pairs = zip(attempt.people, members, strict=True)
-            unknown += [person.name or person.id for person, member in pairs if member is None]
+            unknown += [person for person, member in pairs if member is None]
         if not known:
             found.append(attempt)
             continue
         seen.update(member.person.id for member in known)
-        whose = "+".join(sorted(each.id for each in people))
+        whose = _OF_ROSTER + "+".join(sorted(each.id for each in people))
         at = max((member.at for member in known if member.at), default=attempt.at)
         found.append(replace(attempt, whose=whose, people=people, at=at))
-    found += [
-        Attempt(member.person.id, (member.person,), problem=NOTHING)
-        for member in roster.members
-        if member.person.id not in seen
-    ]
-    notes = list(roster.notes)
+    missing = [member for member in roster.members if member.person.id not in seen]
+    notes = [*roster.notes]
     if unknown:
-        notes.append(f"Not in {shown(roster.name)}, and yet there: {listed(unknown)}.")
+        told = listed(person.name or person.id for person in unknown)
+        notes.append(f"Not in {shown(roster.name)}, and yet there: {told}.")
+    unclear = _unclear(unknown, missing, index, notes)
+    found += [_missing(member, member.person.id in unclear) for member in missing]
     return found, notes
+
+
+#: Before whose an attempt is, if the roster says so: an id of the roster's and the name of a file
+#: that nobody knows may be the same text, and do not mean the same person.
+_OF_ROSTER = "roster\0"
+
+
+def _missing(member: Member, is_unclear: bool) -> Attempt:
+    problem = UNCLEAR if is_unclear else NOTHING
+    return Attempt(_OF_ROSTER + member.person.id, (member.person,), problem=problem)
+
+
+def _unclear(
+    unknown: Sequence[Person], missing: Sequence[Member], index: _Index, notes: list[str]
+) -> set[str]:
+    """The ids of those missing who may be one of the unknown; it is told whom they may be."""
+    found, told = set[str](), list[str]()
+    for person in unknown:
+        might = index.candidates(person)
+        if may_be := [member.person for member in missing if member.person.id in might]:
+            found.update(each.id for each in may_be)
+            names = " or ".join(
+                f"{each.name} ({each.id})" if each.name else each.id for each in may_be[:3]
+            )
+            told.append(f"{person.name or person.id} may be {names}")
+    if told:
+        notes.append(
+            f"Ambiguous, and so nobody's: {listed(told)}. They have no grade in any import; "
+            "make clear in the roster, or in the names of the files, who is who."
+        )
+    return found
 
 
 #: Columns of an export that say who somebody is.
@@ -97,9 +129,12 @@ class _Index:
     """Members by what they may be known by; what two of them have is no key."""
 
     def __init__(self, members: Sequence[Member]) -> None:
-        self._by_key = _unique((key, member) for member in members for key in member.keys)
-        named = ((name, member) for member in members for name in _orders(member.person.name))
-        self._by_name = _unique(named)
+        keyed = [(folded(key), member) for member in members for key in member.keys]
+        named = [(name, member) for member in members for name in _orders(member.person.name)]
+        self._by_key, self._by_name = _unique(keyed), _unique(named)
+        self._may_be: dict[str, set[str]] = defaultdict(set)
+        for text, member in (*keyed, *named):
+            self._may_be[text].add(member.person.id)
         self._groups: dict[str, list[Member]] = defaultdict(list)
         for member in members:
             for group in member.groups:
@@ -121,6 +156,13 @@ class _Index:
             if member := self._by_name.get(name):
                 return member
         return None
+
+    def candidates(self, person: Person) -> set[str]:
+        """The ids of all who have anything in common with somebody that could be a key."""
+        columns = (person.columns[title] for title in _KEYS if title in person.columns)
+        keys = [] if "Identifier" in person.columns else [person.id, *columns]
+        texts = {*map(folded, keys), _letters(person.name), _letters(person.id)} - {""}
+        return {id for text in texts for id in self._may_be.get(text, ())}
 
     def group(self, attempt: Attempt) -> Sequence[Member]:
         """Who is in the group that an attempt is of, if it is one's."""
@@ -152,8 +194,7 @@ def _person(found: Person, member: Member | None) -> Person:
 def _unique(pairs: Iterable[tuple[str, Member]]) -> dict[str, Member]:
     found: dict[str, Member | None] = {}
     for key, member in pairs:
-        same = folded(key)
-        found[same] = member if found.get(same, member) is member else None
+        found[key] = member if found.get(key, member) is member else None
     return {key: member for key, member in found.items() if key and member is not None}
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from grader.batch.entry import Entry
+from grader.batch.find.joining import UNCLEAR
 from grader.batch.hand_in import Person
 from grader.text import points
 
@@ -21,7 +22,8 @@ class Grade:
         person: whose.
         entry: what he, or his group, has handed in.
         final: what a course system gets [points]; None where it must not get anything: the grader
-            failed, or nothing was handed in and that is not to count as 0.
+            failed, nothing was handed in and that is not to count as 0, or somebody's hand-in may
+            be his.
     """
 
     person: Person
@@ -59,6 +61,7 @@ def grades(entries: Iterable[Entry], nothing_is_zero: bool = True) -> list[Grade
     found = []
     for entry in entries:
         has_none = entry.state == "nothing" and not nothing_is_zero
+        has_none = has_none or entry.hand_in.problem == UNCLEAR
         final = None if has_none else entry.score
         found += [Grade(person, entry, final) for person in entry.hand_in.people]
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from grader import text
+from grader.batch.find.joining import UNCLEAR
 from grader.batch.gradebook import canvas, known, moodle
 from grader.batch.gradebook.grade import Grade
 
@@ -38,6 +39,11 @@ def _of_grades(grades: Sequence[Grade]) -> Iterator[str]:
         yield (
             f"{_people(failed)} without a grade: the grader failed. They are in no import, so that "
             "what a course system has of them stays. Grade them again: --again failed"
+        )
+    if unclear := [grade for grade in grades if grade.entry.hand_in.problem == UNCLEAR]:
+        yield (
+            f"{_people(unclear)} without a grade, and in no import: a hand-in that is nobody's may "
+            "be theirs. Make clear in the roster, or in the names of the files, who is who."
         )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.batch.find.joining import UNCLEAR
 from grader.batch.find.roster import Roster, read_roster
 from grader.errors import UsageError
 from tests.grader.batch.find.exports import NODE, Finder, lay, noted
@@ -151,3 +152,32 @@ def test_the_users_of_repositories_begin_at_the_same_place(tmp_path: Path, finde
 def test_another_table_of_scores_is_no_roster(tmp_path: Path, finder: Finder) -> None:
     found = finder(lay(tmp_path / "c", {**FILES, "scores.csv": "colour\nred\n"}))
     assert [each.id for each in found.hand_ins] == ["alice", "bob"]
+
+
+def test_an_absence_never_beats_a_hand_in(tmp_path: Path, finder: Finder) -> None:
+    table = "student number,username,name\nbob,x,Bee\n99,bob,Cee\n"
+    found = finder(lay(tmp_path / "c", {"bob.py": NODE, "roster.csv": table}))
+    by_id = {each.id: each for each in found.hand_ins}
+    assert len(by_id) == 3
+    assert (by_id["bob"].filename, by_id["bob"].attempt) == ("bob.py", 1)
+    assert {each.name for each in found.hand_ins if each.problem == UNCLEAR} == {"Bee", "Cee"}
+    assert noted(found, "Ambiguous", "bob may be Bee (bob) or Cee (99)")
+    assert not noted(found, "Several attempts")
+
+
+def test_an_id_of_the_roster_is_not_the_same_name_of_a_file(tmp_path: Path, finder: Finder) -> None:
+    table = "student number,username,name\n7,zoe,Zed\nbob,7,Bee\n99,bob,Cee\n"
+    files = {f"{name}.py": NODE for name in ("7", "bob", "zoe")}
+    found = finder(lay(tmp_path / "c", {**files, "roster.csv": table}))
+    graded = {each.filename: each.name for each in found.hand_ins if each.path}
+    assert graded == {"7.py": "7", "bob.py": "bob", "zoe.py": "Zed"}
+    assert noted(found, "Ambiguous", "7 may be Bee (bob)", "bob may be Bee (bob) or Cee (99)")
+
+
+def test_two_of_one_name_are_told_to_be_ambiguous(tmp_path: Path, finder: Finder) -> None:
+    files = {f"Max Muster_{number}_assignsubmission_file/node.py": NODE for number in (1, 2)}
+    table = "First name,Last name,ID number\nMax,Muster,900\nMax,Muster,901\nMia,Other,1\n"
+    found = finder(lay(tmp_path / "c", {**files, "roster.csv": table}))
+    problems = {each.id: each.problem for each in found.hand_ins if not each.path}
+    assert sorted(problems.items())[1:] == [("900", UNCLEAR), ("901", UNCLEAR)]
+    assert noted(found, "Ambiguous", "Max Muster (900) or Max Muster (901)")

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import io
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from grader.batch.find.joining import UNCLEAR
 from grader.batch.gradebook import moodle
 from grader.batch.gradebook.feedback import Feedback
 from grader.batch.gradebook.grade import grades
+from grader.batch.gradebook.notes import notes
 from grader.batch.gradebook.write import MOODLE_FEEDBACK, Options, write
 from grader.batch.hand_in import Person
 from tests.grader.batch.gradebook import moodle_reads
@@ -135,3 +138,15 @@ def test_no_name_in_the_zip_leads_anywhere_else(tmp_path: Path) -> None:
     assert not [name for name in names if set('/\\:*?"<>|\n') & set(name) or name[0] in ".~"]
     assert "Zoë Müller-Łukasiewicz_1000_assignsubmission_file_feedback.html" in names
     assert "Participant_1011_assignsubmission_file_feedback.html" not in names  # he has an id
+
+
+def test_whose_hand_in_is_not_clear_gets_no_grade() -> None:
+    missing = without_result("nothing", Person("900", "Max", {"ID number": "900"}))
+    unclear = without_result("nothing", Person("901", "Mia", {"ID number": "901"}))
+    unclear = replace(unclear, hand_in=replace(unclear.hand_in, problem=UNCLEAR))
+    everybody = grades([missing, unclear])
+    assert [grade.final for grade in everybody] == [0.0, None]
+    table = moodle.grade_import(everybody, "Spiral", Feedback())
+    assert "900" in table
+    assert "901" not in table
+    assert "Mia without a grade, and in no import" in notes(everybody, "Spiral")[0]
