@@ -89,7 +89,7 @@ def _found(submissions: Path, names: Pattern | None, roster: Path | None, scratc
     reading = _read(submissions, items, names)
     attempts, about = list(reading.attempts), list(reading.notes)
     if known := _roster(roster, lying):
-        attempts, unknown = joined(attempts, known)
+        attempts, unknown = joined(attempts, known, reading.layout == plain.LAYOUT)
         about += unknown
     hand_ins, older = _hand_ins(attempts, scratch / "hand_ins")
     if not hand_ins:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
@@ -17,17 +17,24 @@ NOTHING = "Nothing was handed in."
 UNCLEAR = "It is not clear which hand-in, if any, is this person's."
 
 
-def joined(attempts: Sequence[Attempt], roster: Roster) -> tuple[list[Attempt], list[str]]:
+def joined(
+    attempts: Sequence[Attempt], roster: Roster, is_one_each: bool = False
+) -> tuple[list[Attempt], list[str]]:
     """The attempts with what the roster says of whose they are, and an empty one of all others.
 
     A group is known by its name; somebody by an id, an email address, a user name, the number of a
     Moodle participant, the end of a repository's name; else by a name, if nobody else has it.
+
+    Args:
+        is_one_each: whether nothing tells which of two is newer, so that both are nobody's.
 
     Returns:
         Them, and what to say.
     """
     index = _Index(roster.members)
     matched = _matched(attempts, index)
+    if is_one_each:
+        matched = _without_several(matched)
     found, unknown, seen = [], list[Person](), set[str]()
     for attempt, members in zip(attempts, matched, strict=True):
         known = [member for member in members if member]
@@ -51,6 +58,15 @@ def joined(attempts: Sequence[Attempt], roster: Roster) -> tuple[list[Attempt], 
     unclear = _unclear(unknown, missing, index, notes)
     found += [_missing(member, member.person.id in unclear) for member in missing]
     return found, notes
+
+
+def _without_several(matched: Sequence[Sequence[Member | None]]) -> list[Sequence[Member | None]]:
+    """The same without those of the class to whom several are matched."""
+    times = Counter(member.person.id for members in matched for member in members if member)
+    return [
+        [each if each and times[each.person.id] == 1 else None for each in members]
+        for members in matched
+    ]
 
 
 #: Before whose an attempt is, if the roster says so: an id of the roster's and the name of a file

@@ -107,12 +107,17 @@ def test_names_join_in_whatever_order(tmp_path: Path, finder: Finder) -> None:
     assert noted(found, "Not in roster.csv", "leebo")
 
 
-def test_two_files_of_one_student_are_attempts(tmp_path: Path, finder: Finder) -> None:
+@pytest.mark.parametrize("names", [("s1.py", "alice@x.org.zip"), ("S1.py", "s1/node.py")])
+def test_two_of_one_student_are_kept_apart_where_nothing_tells_which_is_newer(
+    tmp_path: Path, finder: Finder, names: tuple[str, str]
+) -> None:
     table = "id,name,email\ns1,Alice,alice@x.org\n"
-    files = {"s1.py": NODE, "alice@x.org.zip": b"", "roster.csv": table}
+    files = {**dict.fromkeys(names, NODE), "roster.csv": table}
     found = finder(lay(tmp_path / "c", files))
-    assert [each.id for each in found.hand_ins] == ["s1"]
-    assert noted(found, "Several attempts", "Alice")
+    assert [each.problem for each in found.hand_ins if each.path] == ["", ""]
+    assert [each.name for each in found.hand_ins if each.problem == UNCLEAR] == ["Alice"]
+    assert not noted(found, "Several attempts")
+    assert noted(found, "Ambiguous", "may be Alice (s1)")
 
 
 def test_nobody_gets_anothers_place_by_his_name(tmp_path: Path, finder: Finder) -> None:
