@@ -14,11 +14,11 @@ from typing import Final
 from grader.batch.find import canvas, class_archive, clones, gradescope, moodle, plain
 from grader.batch.find.attempt import Attempt, Item, Layout, Piece, Reading, items_of
 from grader.batch.find.ids import MAX_ID, safe_ids
-from grader.batch.find.joining import NOTHING, UNCLEAR, joined
+from grader.batch.find.joining import NOTHING, UNCLEAR, is_of_roster, joined
 from grader.batch.find.pattern import Pattern
 from grader.batch.find.roster import Roster, is_of_classroom50, read_roster
 from grader.batch.find.staging import staged
-from grader.batch.hand_in import HandIn
+from grader.batch.hand_in import HandIn, Person
 from grader.errors import UsageError
 from grader.scratch import make_folder
 from grader.submission.folder import listed, shown
@@ -196,9 +196,13 @@ def _hand_ins(attempts: Iterable[Attempt], place: Path) -> tuple[list[HandIn], l
         by_whom[attempt.whose].append(attempt)
     newest = [_newest(own) for own in by_whom.values()]
     several = [own[0].people[0] for own in by_whom.values() if len(own) > 1]
+    newest, moved = _one_each(newest)
     ids = safe_ids([_id(attempt) for attempt in newest])
     made = [_hand_in(attempt, id, place / id) for attempt, id in zip(newest, ids, strict=True)]
     notes = []
+    if moved:
+        told = "Handed in again, alone or in another group; for them the newest counts"
+        notes.append(f"{told}: {listed(person.name or person.id for person in moved)}.")
     if several:
         names = listed(person.name or person.id for person in several)
         notes.append(f"Several attempts, of which the newest counts: {names}.")
@@ -217,6 +221,32 @@ def _newest(attempts: list[Attempt]) -> Attempt:
     )
     chosen = ordered[-1]
     return chosen if chosen.number else replace(chosen, number=len(attempts))
+
+
+def _one_each(attempts: Sequence[Attempt]) -> tuple[list[Attempt], list[Person]]:
+    """Each member of a group in his newest attempt alone, and who has more than one.
+
+    Whoever the roster knows and whoever it does not are never the same, whatever their ids.
+    """
+    own: dict[tuple[bool, str], list[int]] = defaultdict(list)
+    for number, attempt in enumerate(attempts):
+        for person in attempt.people:
+            own[is_of_roster(attempt), person.id].append(number)
+    stays = list(map(list[Person], (attempt.people for attempt in attempts)))
+    moved = []
+    for (_, id), numbers in own.items():
+        if len(numbers) == 1 or all(len(attempts[number].people) == 1 for number in numbers):
+            continue
+        last = max(numbers, key=lambda number: _moment(attempts[number]))
+        moved += [person for person in attempts[last].people if person.id == id]
+        for number in set(numbers) - {last}:
+            stays[number] = [person for person in stays[number] if person.id != id]
+    pairs = zip(attempts, stays, strict=True)
+    return [replace(each, people=tuple(people)) for each, people in pairs if people], moved
+
+
+def _moment(attempt: Attempt) -> float:
+    return attempt.at.timestamp() if attempt.at else float("-inf")
 
 
 def _id(attempt: Attempt) -> str:

@@ -74,6 +74,11 @@ def _without_several(matched: Sequence[Sequence[Member | None]]) -> list[Sequenc
 _OF_ROSTER = "roster\0"
 
 
+def is_of_roster(attempt: Attempt) -> bool:
+    """Whether the roster says whose an attempt is."""
+    return attempt.whose.startswith(_OF_ROSTER)
+
+
 def _missing(member: Member, is_unclear: bool) -> Attempt:
     problem = UNCLEAR if is_unclear else NOTHING
     return Attempt(_OF_ROSTER + member.person.id, (member.person,), problem=problem)

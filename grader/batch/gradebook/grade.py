@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 from grader.batch.entry import Entry
 from grader.batch.find.joining import UNCLEAR
+from grader.batch.gradebook import known
 from grader.batch.hand_in import Person
 from grader.text import points
 
@@ -24,11 +26,13 @@ class Grade:
         final: what a course system gets [points]; None where it must not get anything: the grader
             failed, nothing was handed in and that is not to count as 0, or somebody's hand-in may
             be his.
+        is_double: another hand-in of the same person counts, or it is not known which does.
     """
 
     person: Person
     entry: Entry
     final: float | None
+    is_double: bool = False
 
     @property
     def score(self) -> float | None:
@@ -64,7 +68,39 @@ def grades(entries: Iterable[Entry], nothing_is_zero: bool = True) -> list[Grade
         has_none = has_none or entry.hand_in.problem == UNCLEAR
         final = None if has_none else entry.score
         found += [Grade(person, entry, final) for person in entry.hand_in.people]
-    return found
+    return _one_each(found)
+
+
+def _one_each(grades: list[Grade]) -> list[Grade]:
+    """The same, where of one whom a course system knows once no second has points.
+
+    What was handed in goes before what was not, then the newer before the older. Where that is not
+    known none counts.
+    """
+    by_key: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for number, grade in enumerate(grades):
+        for key in known.keys(grade.person):
+            by_key[key].append(number)
+    doubles = set[int]()
+    for numbers in by_key.values():
+        if len(numbers) > 1:
+            doubles |= set(numbers) - {_counting(grades, numbers)}
+    return [
+        replace(grade, final=None, is_double=True) if number in doubles else grade
+        for number, grade in enumerate(grades)
+    ]
+
+
+def _counting(grades: Sequence[Grade], numbers: Sequence[int]) -> int | None:
+    """Which of one person's counts; None where nothing tells."""
+    there = [number for number in numbers if grades[number].entry.state != "nothing"]
+    if len(there) < 2:
+        return next(iter(there or numbers))
+    times = {number: grades[number].entry.hand_in.at for number in there}
+    known_times = [at for at in times.values() if at is not None]
+    if len(known_times) < len(there) or known_times.count(max(known_times)) > 1:
+        return None
+    return next(number for number, at in times.items() if at == max(known_times))
 
 
 def decimal(value: float | None) -> str:

@@ -46,6 +46,16 @@ def safe_column(person: Person, names: Iterable[str]) -> str:
     return value if is_safe_id(value) else ""
 
 
+def keys(person: Person) -> set[tuple[str, str]]:
+    """All by which a course system's import may find a person: what it is, and its value."""
+    sis = (SIS_USER_ID, SIS_LOGIN_ID)
+    found = {(names[0], column(person, names).casefold()) for names in (*MOODLE_KEYS, *sis)}
+    found.add(("ID", canvas_id(person)))
+    if is_of_worksheet(person):
+        found.add((IDENTIFIER[0], participant(person)))
+    return {(kind, value) for kind, value in found if value}
+
+
 def participant(person: Person) -> str:
     """Moodle's number of a person in one assignment; '' where it is not known."""
     found = _PARTICIPANT.search(column(person, IDENTIFIER))

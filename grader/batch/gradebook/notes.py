@@ -40,6 +40,11 @@ def _of_grades(grades: Sequence[Grade]) -> Iterator[str]:
             f"{_people(failed)} without a grade: the grader failed. They are in no import, so that "
             "what a course system has of them stays. Grade them again: --again failed"
         )
+    if doubles := [grade for grade in grades if grade.is_double]:
+        yield (
+            f"{_people(doubles)} with more than one hand-in: in the imports is the newest, or none "
+            "where nothing tells which that is. Look at them yourself."
+        )
     if unclear := [grade for grade in grades if grade.entry.hand_in.problem == UNCLEAR]:
         yield (
             f"{_people(unclear)} without a grade, and in no import: a hand-in that is nobody's may "

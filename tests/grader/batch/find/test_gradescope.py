@@ -100,3 +100,22 @@ def test_no_tag_of_a_stranger_is_followed(tmp_path: Path, finder: Finder) -> Non
     by_id = finder.by_id(export(tmp_path / "g", metadata))
     assert not ran.exists()
     assert by_id["a@b.c"].path
+
+
+def test_a_member_of_a_group_is_in_his_newest_hand_in_alone(tmp_path: Path, finder: Finder) -> None:
+    ann, bob = "  - :name: Ann\n    :sid: s1\n", "  - :name: Bob\n    :sid: s2\n"
+
+    def told(number: int, people: str, day: int) -> str:
+        at = f"2026-11-0{day} 12:30:00 Z"
+        return f"submission_{number}:\n  :submitters:\n{people}  :created_at: {at}\n"
+
+    for last, table in ((told(3, bob, 1), ""), (told(3, bob, 4), "id,name\ns1,Ann\ns2,Bob\n")):
+        folder = tmp_path / f"g{bool(table)}"
+        files = {f"submission_{number}/node.py": NODE for number in (1, 2, 3)}
+        files["submission_metadata.yml"] = told(1, ann + bob, 2) + told(2, ann, 3) + last
+        found = finder(lay(folder, files | ({"roster.csv": table} if table else {})))
+        assert [(each.id, each.name, each.at.day) for each in found.hand_ins if each.at] == [
+            ("s1", "Ann", 3),
+            ("s2", "Bob", 4 if table else 2),
+        ]
+        assert noted(found, "the newest counts", "Ann")

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import io
 import zipfile
+from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
 from grader.batch.gradebook import canvas
 from grader.batch.gradebook.grade import grades
+from grader.batch.gradebook.notes import notes
 from grader.batch.gradebook.write import CANVAS_FEEDBACK, Options, write
 from grader.batch.hand_in import Person
 from tests.grader.batch.gradebook import canvas_reads
@@ -97,3 +100,13 @@ def test_a_group_has_one_file_and_a_row_for_each(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "export" / CANVAS_FEEDBACK) as archive:
         assert archive.namelist() == ["obrien_LATE_7001_90001_my_1_node.zip"]
     assert list(imported([entry]).grades) == [7001, 7002]
+
+
+def test_nobody_is_in_an_import_twice(tmp_path: Path) -> None:
+    older, newer = (judged(tmp_path / str(n), in_canvas(1)) for n in (1, 2))
+    hand_in = replace(newer.hand_in, at=datetime(2026, 12, 1, tzinfo=UTC))
+    newer = replace(newer, hand_in=hand_in)
+    found = grades([newer, older, without_result("nothing", in_canvas(1))])
+    assert [grade.final for grade in found] == [18.33, None, None]
+    assert "with more than one hand-in" in notes(found, "Spiral")[0]
+    assert [grade.final for grade in grades([older, older])] == [None, None]  # nothing tells
