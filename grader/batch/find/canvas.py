@@ -67,6 +67,8 @@ def read(items: Sequence[Item]) -> Reading:
         name, user = match["name"] or "", match["user"] or ""
         whose = (user or match["code"], name)
         columns = {"ID": user} if user else {}
+        if match["typed"] and user:  # by which Canvas's id is known where there is no file
+            columns["Exported as"] = item.name
         people[whose] = person(whose[0], name, columns | ({"Late": "yes"} if is_late else {}))
         own = files[whose]
         if match["file"] and not is_junk(match["filename"]):

@@ -19,8 +19,11 @@ MOODLE_KEYS = (
 IDENTIFIER = ("Identifier", "Participant number")
 _WORKSHEET = "Last modified (grade)"
 SIS_USER_ID, SIS_LOGIN_ID = ("SIS User ID",), ("SIS Login ID",)
-#: A column `ID` is Canvas's where one of these is beside it; else it may be anybody's.
-_CANVAS = ("Student", "Section", *SIS_USER_ID, *SIS_LOGIN_ID)
+#: A column `ID` is Canvas's where `Student` and one of these are beside it, as Canvas writes them;
+#: else it may be anybody's.
+_CANVAS = ("Section", *SIS_USER_ID, *SIS_LOGIN_ID)
+#: Ends the names of files that Canvas makes of what was typed in; they have no number of a file.
+_TYPED = ("_text.html", "_link.html")
 #: What a file or folder was called in the export, from which the ids in it can be read.
 EXPORTED = ("Exported as",)
 
@@ -85,13 +88,14 @@ def canvas_file(hand_in: HandIn) -> str:
 
 def canvas_id(person: Person) -> str:
     """Canvas's number of a person; '' where it is not known."""
-    numbers = _canvas_numbers(column(person, EXPORTED))
-    others = map(str.casefold, person.columns)
-    is_of_canvas = bool(numbers) or not {n.casefold() for n in _CANVAS}.isdisjoint(others)
-    value = column(person, ("ID",))
-    if is_of_canvas and _NUMBER.fullmatch(value):
-        return value
-    return numbers[0] if len(numbers) == 2 else ""
+    if "Student" in person.columns and any(name in person.columns for name in _CANVAS):
+        value = person.columns.get("ID", "")
+        if _NUMBER.fullmatch(value):
+            return value
+    name = column(person, EXPORTED)
+    numbers = _canvas_numbers(name)
+    is_whole = len(numbers) == 2 or name.endswith(_TYPED)
+    return numbers[0] if numbers and is_whole else ""
 
 
 def _canvas_numbers(name: str) -> list[str]:

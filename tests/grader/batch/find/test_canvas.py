@@ -81,3 +81,15 @@ def test_the_gradebook_is_a_roster(tmp_path: Path, finder: Finder) -> None:
     ]
     assert found.hand_ins[0].people[0].columns["SIS Login ID"] == "zoe"
     assert noted(found, "Not in gradebook.csv", "leebob")
+
+
+def test_a_text_or_a_link_alone_tells_canvass_id(tmp_path: Path, finder: Finder) -> None:
+    files = {
+        "ann_1_text.html": "",
+        "bob_2_link.html": "",
+        "cy_3_4_x.py": NODE,
+        "cy_3_text.html": "",
+    }
+    by_id = finder.by_id(lay(tmp_path / "c", files))
+    told = {id: each.people[0].columns["Exported as"] for id, each in by_id.items()}
+    assert told == {"1": "ann_1_text.html", "2": "bob_2_link.html", "3": "cy_3_4_x.py"}

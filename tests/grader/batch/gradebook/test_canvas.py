@@ -110,3 +110,18 @@ def test_nobody_is_in_an_import_twice(tmp_path: Path) -> None:
     assert [grade.final for grade in found] == [18.33, None, None]
     assert "with more than one hand-in" in notes(found, "Spiral")[0]
     assert [grade.final for grade in grades([older, older])] == [None, None]  # nothing tells
+
+
+def test_an_id_in_a_table_of_ones_own_is_not_canvass(tmp_path: Path) -> None:
+    columns = {"id": "7001", "name": "Ada", "email": "ada@example.org", "section": "A"}
+    own = Person("7001", "Ada", columns)
+    assert canvas.gradebook(grades([judged(tmp_path, own)]), "Spiral") == ""
+    both = Person("17", "Bob", {"ID": "7002", "Exported as": "bob_7002_1_x.py", "id": "17"})
+    assert list(imported([judged(tmp_path, both)]).grades) == [7002]
+
+
+def test_who_typed_something_in_is_known_by_the_name_of_that() -> None:
+    named = {"ID": "7001", "Exported as": "ada_LATE_7001_text.html"}
+    entry = without_result("nothing", Person("7001", "ada", named))
+    assert imported([entry]).grades == {7001: "0.00"}
+    assert canvas.feedback_files(grades([entry])) == {}
