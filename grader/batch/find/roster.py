@@ -37,7 +37,14 @@ _LAST: Final = ("lastname", "surname", "familyname", "nachname", "nomdefamille",
 _GROUPS: Final = ("group", "groups", "team", "groupname", "teamname", "gruppe", "groupe")
 #: A column of Classroom 50's `scores.csv`.
 _TAGS: Final = "submissiontag"
-_TIMES: Final = ("at", "handedinat", "submittedat", "submissiontime", _TAGS)
+_TIMES: Final = (
+    "at",
+    "handedinat",
+    "submittedat",
+    "submissiontime",
+    _TAGS,
+    "lastmodifiedsubmission",
+)
 #: "Participant 17", in whatever language: Moodle's number of a participant in one assignment.
 _PARTICIPANT: Final = re.compile(r"[^\d@]{5,} (\d+)")
 #: `submit/2026-06-01T14-32-05Z`, as Classroom 50 calls a hand-in.
@@ -121,6 +128,10 @@ def read_roster(path: Path) -> Roster:
             members[same] = max(members[same], member, key=_moment)
         else:
             twice.append(member.person.id)
+    if unread := [row for row in keyed if (said := _time(row, columns)) and not _moment_of(said)]:
+        whose = [next((row[at] for at in ids if row[at]), names.of(row)) for row in unread]
+        times = [_time(row, columns) for row in unread]
+        notes.append(_unread(path, [f"{who}: {at}" for who, at in zip(whose, times, strict=True)]))
     if twice:
         what = "has several rows of the same id, of which the first counts"
         notes.append(f"{shown(path.name)} {what}: {listed(twice)}.")
@@ -163,14 +174,29 @@ def _member(
         if title in columns
         for part in re.split("[,;]", row[columns[title]])
     }
-    times = [row[columns[title]] for title in _TIMES if title in columns and row[columns[title]]]
-    at = None
-    if times:
-        tag = _TAG.fullmatch(times[0])
-        at = read_time(tag[1] if tag else times[0])
+    at = _moment_of(_time(row, columns))
     columns_of = {title: value for title, value in zip(titles, row, strict=True) if title}
     keys = tuple(dict.fromkeys(filter(None, (id, *known, *numbers))))
     return Member(person(id, name, columns_of), keys, tuple(sorted(groups - {""})), at)
+
+
+def _time(row: Sequence[str], columns: Mapping[str, int]) -> str:
+    """What a row says of when it was handed in; '' for nothing, which Moodle writes as a dash."""
+    said = (row[columns[title]] for title in _TIMES if title in columns)
+    return next((each for each in said if each not in ("", "-")), "")
+
+
+def _moment_of(said: str) -> datetime | None:
+    tag = _TAG.fullmatch(said)
+    return read_time(tag[1] if tag else said)
+
+
+def _unread(path: Path, times: Sequence[str]) -> str:
+    return (
+        f"These times in {shown(path.name)} cannot be read, and count as unknown: {listed(times)}. "
+        "Expected one such as 2026-11-01T12:30:00+01:00, or Moodle's in English; without a zone it "
+        "is this machine's local time."
+    )
 
 
 def _moment(member: Member) -> float:

@@ -14,6 +14,15 @@ _TIME: Final = re.compile(
     r"(?:[:.-]?(?P<second>\d\d)(?:[.,](?P<fraction>\d{1,9}))?)?)?"
     r" ?(?:(?P<utc>Z|UTC)|(?P<sign>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d))?"
 )
+#: As Moodle writes it in English: Tuesday, 1 December 2026, 6:00 PM.
+_MONTHS: Final = (
+    *("january", "february", "march", "april", "may", "june", "july", "august", "september"),
+    *("october", "november", "december"),
+)
+_MOODLE: Final = re.compile(
+    r"(?:[A-Za-z]+, )?(?P<day>\d{1,2}) (?P<month>[A-Za-z]+) (?P<year>\d{4}), "
+    r"(?P<hour>\d{1,2}):(?P<minute>\d\d)(?:\s(?P<half>[AP]M))?"
+)
 _EPOCH: Final = re.compile(r"\d{10}|\d{13}")  # seconds, milliseconds since 1970
 
 
@@ -27,7 +36,7 @@ def read_time(text: str) -> datetime | None:
         return datetime.fromtimestamp(int(text[:10]), UTC)
     match = _TIME.fullmatch(text)
     if match is None:
-        return None
+        return _of_moodle(text)
     year, month, day, hour, minute, second = (int(part or 0) for part in match.groups()[:6])
     microsecond = int((match["fraction"] or "").ljust(6, "0")[:6])
     try:
@@ -38,6 +47,22 @@ def read_time(text: str) -> datetime | None:
             return at.replace(tzinfo=zone(match["sign"], match["hours"], match["minutes"]))
         return at.astimezone()
     except (ValueError, OverflowError, OSError):  # there is no such day, or zone
+        return None
+
+
+def _of_moodle(text: str) -> datetime | None:
+    match = _MOODLE.fullmatch(text)
+    if match is None or match["month"].casefold() not in _MONTHS:
+        return None
+    month, hour = _MONTHS.index(match["month"].casefold()) + 1, int(match["hour"])
+    if match["half"]:
+        if not 1 <= hour <= 12:
+            return None
+        hour = hour % 12 + (12 if match["half"] == "PM" else 0)
+    try:
+        at = datetime(int(match["year"]), month, int(match["day"]), hour, int(match["minute"]))
+        return at.astimezone()
+    except (ValueError, OverflowError, OSError):
         return None
 
 

@@ -186,3 +186,20 @@ def test_two_of_one_name_are_told_to_be_ambiguous(tmp_path: Path, finder: Finder
     problems = {each.id: each.problem for each in found.hand_ins if not each.path}
     assert sorted(problems.items())[1:] == [("900", UNCLEAR), ("901", UNCLEAR)]
     assert noted(found, "Ambiguous", "Max Muster (900) or Max Muster (901)")
+
+
+def test_times_that_cannot_be_read_are_told(tmp_path: Path) -> None:
+    found = roster(tmp_path, "id,at\nzoe,2026-11-30T23:00:00\nbob,yesterday\n7,2026-13-45\nx,\n")
+    (note,) = found.notes
+    assert "bob: yesterday, 7: 2026-13-45" in note
+    assert "Expected one such as 2026-11-01T12:30:00+01:00" in note
+    assert "local time" in note
+
+
+def test_moodles_worksheet_says_when_it_was_handed_in(tmp_path: Path) -> None:
+    title, said = "Last modified (submission)", '"Tuesday, 1 December 2026, 6:00 PM"'
+    table = f"Identifier,Full name,{title}\nParticipant 7,Ann,{said}\nParticipant 8,Bob,-\n"
+    found = roster(tmp_path, table)
+    times = [member.at for member in found.members]
+    assert times == [datetime(2026, 12, 1, 18).astimezone(), None]
+    assert not found.notes

@@ -38,3 +38,20 @@ def test_without_a_zone_it_is_local_time() -> None:
 )
 def test_what_is_no_moment_is_none(text: str) -> None:
     assert read_time(text) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "hour"),
+    [
+        ("Tuesday, 1 December 2026, 6:00 PM", 18),
+        ("Tuesday, 1 December 2026, 12:00 AM", 0),
+        ("1 December 2026, 18:00", 18),
+    ],
+)
+def test_moodles_english_times_are_local(text: str, hour: int) -> None:
+    assert read_time(text) == datetime(2026, 12, 1, hour).astimezone()
+
+
+@pytest.mark.parametrize("text", ["Tuesday, 1 Foo 2026, 6:00 PM", "31 June 2026, 13:00 PM"])
+def test_no_time_of_moodles_is_none(text: str) -> None:
+    assert read_time(text) is None
