@@ -14,6 +14,7 @@ from pathlib import Path
 
 from grader import files, grading, scratch
 from grader.batch.entry import Entry
+from grader.batch.find.joining import NOTHING, UNCLEAR
 from grader.batch.hand_in import HandIn
 from grader.batch.page.thumb import THUMB, thumb
 from grader.batch.similar import signature, sources
@@ -63,7 +64,7 @@ def _exercise(name_or_path: str) -> Exercise:
 def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
     """Fill the folder of somebody who has handed in nothing that can be graded."""
     files.make_folder(folder)
-    state = "nothing" if hand_in.path is None and not hand_in.filename else "unusable"
+    state = "nothing" if hand_in.problem in (NOTHING, UNCLEAR) else "unusable"
     _entry(hand_in, exercise, folder, state, message=hand_in.problem).put()
 
 
