@@ -7,6 +7,7 @@ of the run: the same result gives the same bytes.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -20,6 +21,8 @@ from grader.result.error import ErrorResult
 from grader.result.result import RunSummary
 from grader.result.visible import View
 
+#: How ROS's log writes the time of a line; and an address in memory, as Python writes it.
+_LOGGED_AT, _ADDRESS = re.compile(r"\[\d{9,11}\.\d{9}\]"), re.compile(r"\b0x[0-9a-f]{8,16}\b")
 #: What a comment begins with, so that it is known as ours when it comes back.
 MARK = "Graded automatically:"
 
@@ -79,6 +82,11 @@ class _WithoutRecordings(Beside):
     def recordings(self) -> Mapping[int, Recording | str]:
         """None."""
         return {}
+
+    @property
+    def output(self) -> str:
+        """Without what is another one each time: when a line was logged, where an object lay."""
+        return _ADDRESS.sub("0x...", _LOGGED_AT.sub("[...]", super().output))
 
 
 def has_feedback(entry: Entry) -> bool:

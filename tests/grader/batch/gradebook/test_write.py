@@ -105,6 +105,19 @@ def test_what_a_node_printed_is_text_in_a_page(tmp_path: Path) -> None:
     assert b"<script>alert(1)" not in page
 
 
+def test_a_page_does_not_tell_when_a_line_was_logged_or_where_an_object_lay(
+    tmp_path: Path,
+) -> None:
+    pages = []
+    for at, place in (("1795326736.957123456", "0x7f01aa"), ("1795326999.000000001", "0x7f02bb")):
+        entry = judged(tmp_path / place, person(0))
+        line = f"[INFO] [{at}] [node]: <Pose object at {place}33445566>\n"
+        (entry.folder / "output.txt").write_text(line)
+        pages.append(Feedback().page(entry))
+    assert pages[0] == pages[1]
+    assert b"[INFO] [...] [node]: &lt;Pose object at 0x...&gt;" in pages[0]
+
+
 def test_zips_have_no_dates_and_are_whole(tmp_path: Path) -> None:
     write(tmp_path, [judged(tmp_path, in_worksheet(n)) for n in (3, 1, 2)], OPTIONS)
     with zipfile.ZipFile(tmp_path / "export/moodle-feedback.zip") as archive:
