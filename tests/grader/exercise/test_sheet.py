@@ -35,7 +35,7 @@ def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_be
     for words in ("/turtle1/cmd_vel", "/turtle1/pose", "floats"):
         assert words in exercise.task
     for words in (
-        "    turtlesim_node\n    python3 pkg/node.py\n",
+        "    turtlesim_node\n    python3 -m pkg.node\n",
         "    ros2 run pkg node\n",
         "save_canvas",
         "report.html",
