@@ -12,9 +12,9 @@ from grader.scenes.scene import Limits
 from grader.submission.opening import EntryPoint, Submission, open_submission
 from turtlesim_py.world.events import CmdVel, SetPen
 
-PLAN = Plan(Limits(first_motion_s=3, rest_s=0.3, total_s=20))
+PLAN = Plan(Limits(first_motion_s=3, rest_s=0.3, total_s=60))
 #: For whom waits four seconds for a name that is nobody's.
-LONGER = Plan(Limits(first_motion_s=12, rest_s=0.3, total_s=20))
+LONGER = Plan(Limits(first_motion_s=12, rest_s=0.3, total_s=60))
 HEAD = """
 import time
 import rclpy
