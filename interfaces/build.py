@@ -14,13 +14,16 @@ from setuptools.command.build_ext import build_ext
 from interfaces.generate import generate, ros_prefix
 
 HERE = Path(__file__).resolve().parent
-# The same definitions under the two names that they have: from ROS 2 Kilted on it is the second.
-PACKAGES = ("turtlesim", "turtlesim_msgs")
-DEFINITIONS = HERE / "packages" / "turtlesim"
+# Package -> the folder with its definitions. Those of turtlesim have two names: from ROS 2 Kilted
+# on it is the second.
+PACKAGES = {"turtlesim": "turtlesim", "turtlesim_msgs": "turtlesim", "tf2_msgs": "tf2_msgs"}
 
-# Packages whose types ours use. An action uses all but the first by itself: goal ids, the status
-# topic, and the events of its services.
-DEPENDENCIES = ("builtin_interfaces", "action_msgs", "service_msgs", "unique_identifier_msgs")
+# Packages whose types ours use. An action uses goal ids and the status topic by itself, a service
+# its events.
+DEPENDENCIES = (
+    *("builtin_interfaces", "action_msgs", "service_msgs", "unique_identifier_msgs"),
+    *("std_msgs", "geometry_msgs"),  # tf2_msgs'
+)
 
 # ament_index finds packages below AMENT_PREFIX_PATH only, which nothing sets in a plain venv.
 # Python runs this line at every start. Last in the list: a sourced workspace goes first.
@@ -57,7 +60,8 @@ class BuildInterfaces(build_ext):
             # no leftovers of interfaces that were renamed or removed
             shutil.rmtree(generated, ignore_errors=True)
             shutil.rmtree(Path(self.build_lib) / package, ignore_errors=True)
-            generate(package, HERE / "packages" / package / "package.xml", DEFINITIONS, generated)
+            definitions = HERE / "packages" / PACKAGES[package]
+            generate(package, HERE / "packages" / package / "package.xml", definitions, generated)
             _configure(ext, package, generated)
             super().build_extension(ext)
             built_with.write_text(_ros_version())

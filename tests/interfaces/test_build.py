@@ -39,11 +39,11 @@ def make() -> None:
 def test_what_is_built_is_not_built_again(built):
     make()
     make()
-    assert built == ["turtlesim", "turtlesim_msgs"]
+    assert built == [*build.PACKAGES]
 
 
 def test_what_was_built_with_another_ros_is_built_again(built, monkeypatch):
     make()
     monkeypatch.setattr(build, "_ros_version", lambda: "0.24.2")
     make()
-    assert built == ["turtlesim", "turtlesim_msgs"] * 2
+    assert built == [*build.PACKAGES] * 2
