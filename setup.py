@@ -1,7 +1,8 @@
-"""Installs the three packages and, where ROS 2 is not sourced, builds their interface package.
+"""Installs the three packages and, where ROS 2 is not sourced, builds interfaces and adds a tf2.
 
-A sourced ROS (`ROS_DISTRO` is set) has rclpy and the interfaces of turtlesim already: then nothing
-of ROS is required and nothing compiled. What is required stands in pyproject.toml.
+A sourced ROS (`ROS_DISTRO` is set) has rclpy, tf2 and the interfaces of turtlesim already: then
+nothing of ROS is required, nothing compiled, and nothing of ours hides what is there. What is
+required stands in pyproject.toml.
 """
 
 import os
@@ -37,6 +38,11 @@ ROS_PACKAGES: dict[str, list[str]] = {
 }
 
 
+# Where ROS is not sourced, these too, by the names of ROS's own packages. They lie in a folder of
+# their own, so that a checkout on the path of Python hides none of ROS's.
+TF2_PACKAGES = ["tf2_py", "tf2_ros"]
+
+
 class BuildPy(build_py):
     """`build_py` that starts empty, and gives the reference controller the messages there are.
 
@@ -45,7 +51,7 @@ class BuildPy(build_py):
 
     def run(self) -> None:
         """Remove what an earlier build left, then build."""
-        for package in ROS_PACKAGES:
+        for package in (*ROS_PACKAGES, *TF2_PACKAGES):
             shutil.rmtree(Path(self.build_lib) / package, ignore_errors=True)
         super().run()
         reference = Path(self.build_lib) / "turtlesim_challenge" / "turtle_controller.py"
@@ -54,6 +60,11 @@ class BuildPy(build_py):
             text = reference.read_text(encoding="utf-8")
             text = text.replace("from turtlesim.", "from turtlesim_msgs.")
             reference.write_text(text, encoding="utf-8")
+
+
+OWN_PACKAGES = find_packages(
+    str(ROOT), include=[name for package in ROS_PACKAGES for name in (package, f"{package}.*")]
+)
 
 
 def data_files() -> list[tuple[str, list[str]]]:
@@ -82,7 +93,11 @@ def data_files() -> list[tuple[str, list[str]]]:
 def ros_dependent() -> dict[str, Any]:
     """The arguments of setup() that differ where ROS is sourced."""
     if ROS_IS_SOURCED:
-        return {"install_requires": REQUIREMENTS["dependencies"], "cmdclass": {"build_py": BuildPy}}
+        return {
+            "install_requires": REQUIREMENTS["dependencies"],
+            "cmdclass": {"build_py": BuildPy},
+            "packages": OWN_PACKAGES,
+        }
     sys.path.insert(0, str(ROOT))
     from interfaces.build import BuildInterfaces, extensions
     from interfaces.compiler import complaint
@@ -93,6 +108,8 @@ def ros_dependent() -> dict[str, Any]:
         "install_requires": REQUIREMENTS["dependencies"] + ROS["run"],
         "setup_requires": ROS["build"],
         "ext_modules": extensions(),
+        "packages": [*OWN_PACKAGES, *TF2_PACKAGES],
+        "package_dir": {name: f"tf2/{name}" for name in TF2_PACKAGES},
         "cmdclass": {"build_py": BuildPy, "build_ext": BuildInterfaces},
         # what is compiled for one release of ROS is not for another
         "options": {"build": {"build_base": f"build/{RELEASE}"}},
@@ -104,9 +121,6 @@ setup(
     version=PROJECT["version"],
     license="BSD-3-Clause",
     python_requires=">=3.11",
-    packages=find_packages(
-        str(ROOT), include=[name for package in ROS_PACKAGES for name in (package, f"{package}.*")]
-    ),
     # Everything in the three packages. Not by MANIFEST.in (include_package_data): setuptools then
     # warns about the starter, a package that is not to be imported
     package_data={package: ["**/*", "**/.*"] for package in ROS_PACKAGES},

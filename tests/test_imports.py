@@ -15,7 +15,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("turtlesim_py", "turtlesim_challenge", "grader")
+#: Package -> the folder in which it lies.
+PACKAGES = {
+    **dict.fromkeys(("turtlesim_py", "turtlesim_challenge", "grader"), ROOT),
+    **dict.fromkeys(("tf2_py", "tf2_ros"), ROOT / "tf2"),
+}
 STARTER = "turtlesim_challenge.starter"  # a student's own package
 
 
@@ -45,6 +49,9 @@ STATIONS = below(
 #: What may import what of ours, besides itself. A name stands for all that is below it; of two
 #: names that fit a module the longer is its rule. The lowest come first.
 MAY_IMPORT: dict[str, set[str]] = {
+    # where ROS is not sourced, these stand for its own; nothing of ours but programs needs them
+    "tf2_py": set(),
+    "tf2_ros": {"tf2_py"},
     "turtlesim_challenge": set(),
     "turtlesim_py.__init__": set(),
     "turtlesim_py.world": set(),
@@ -105,8 +112,11 @@ class Import(NamedTuple):
 @cache
 def modules() -> dict[str, ast.Module]:
     """Every module by its name, parsed; a package's own file is NAME.__init__."""
-    paths = [path for package in PACKAGES for path in (ROOT / package).rglob("*.py")]
-    names = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in paths}
+    names = {
+        ".".join(path.relative_to(folder).with_suffix("").parts): path
+        for package, folder in PACKAGES.items()
+        for path in (folder / package).rglob("*.py")
+    }
     return {
         name: ast.parse(path.read_bytes())
         for name, path in sorted(names.items())

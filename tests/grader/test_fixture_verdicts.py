@@ -33,6 +33,7 @@ RIGHT = {
             "multi_threaded",
             "call_in_callback",
             "rate_with_spin_thread",
+            "broadcasts_tf",
         )
     },
 }

@@ -24,6 +24,7 @@ SOURCES = (
     "pyproject.toml",
     "ros2run",
     "setup.py",
+    "tf2",
     "turtlesim_challenge",
     "turtlesim_py",
 )

@@ -108,6 +108,17 @@ def test_python_imports_from_the_workspace(workspace: Workspace) -> None:
     assert not interfaces.is_relative_to(workspace.install.parent)
 
 
+def test_the_tf2_of_ros_is_not_hidden(workspace: Workspace) -> None:
+    """Neither by what is installed, nor by a checkout that stands on Python's path."""
+    assert [path for path in workspace.installed if "tf2" in path.as_posix()] == []
+    code = "import tf2_py, tf2_ros, tf2_msgs; print(tf2_py, tf2_ros, tf2_msgs)"
+    found = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, env=workspace.env, capture_output=True, text=True
+    )
+    assert found.stdout.count("<module") == 3, found.stderr
+    assert f"{ROOT}/tf2/" not in found.stdout
+
+
 def test_launch_file_is_where_ros2_launch_looks(workspace: Workspace) -> None:
     names = [path.name for path in workspace.installed if path.parent.name == "launch"]
     assert sorted(names) == ["multisim.launch.py", "turtlesim_challenge.launch.py"]

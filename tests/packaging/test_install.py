@@ -1,14 +1,16 @@
 """What stands in the environment that `make install` or `pip install .` has made."""
 
+import importlib.util
 import os
 import subprocess
 import sys
+import sysconfig
 from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
-from .conftest import Environment, FindProgram, RunNode
+from .conftest import ROOT, Environment, FindProgram, RunNode
 
 PROGRAMS = [
     ("turtlesim_py", "turtlesim_node"),
@@ -72,6 +74,16 @@ def test_each_package_has_a_manifest_with_its_name_and_version(package: str) -> 
     manifest = Path(sys.prefix, "share", package, "package.xml").read_text()
     assert f"<name>{package}</name>" in manifest
     assert f"<version>{version('turtlesim_py')}</version>" in manifest
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS has its own tf2")
+def test_a_tf2_is_installed_module_by_module() -> None:
+    for package in ("tf2_py", "tf2_ros"):
+        ours = {path.name for path in (ROOT / "tf2" / package).glob("*.py")}
+        installed = Path(sysconfig.get_path("purelib"), package)
+        assert {path.name for path in installed.glob("*.py")} == ours
+        spec = importlib.util.find_spec(package)
+        assert spec and spec.origin == str(installed / "__init__.py")
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="ROS sets AMENT_PREFIX_PATH itself")

@@ -103,6 +103,7 @@ def test_every_file_of_the_packages_is_in_the_wheel(
     # nor the programs of an ament package turtlesim, which that ROS has itself
     assert [name for name in names if "/data/lib/turtlesim/" in name] == []
     assert [name for name in names if "/data/share/turtlesim/" in name] == []
+    assert [name for name in names if "tf2" in name] == []
 
 
 @pytest.mark.parametrize(

@@ -42,8 +42,18 @@ def test_every_style_of_waiting_gives_the_same_run_twice(recorded: Recorded, sty
 
 
 def test_styles_that_mean_the_same_draw_the_same(recorded: Recorded) -> None:
-    names = ("timer", "events_executor", "call_in_callback")
+    names = ("timer", "events_executor", "call_in_callback", "broadcasts_tf")
     assert len({recorded(f"styles/{name}").run.trace_sha256 for name in names}) == 1
+
+
+@pytest.mark.records("styles/broadcasts_tf", times=2)
+def test_transforms_are_sent_heard_and_looked_up_in_virtual_time(recorded: Recorded) -> None:
+    first, second = recorded("styles/broadcasts_tf"), recorded("styles/broadcasts_tf", 2)
+    assert first.output == second.output
+    lines = first.output.splitlines()
+    assert lines[0].startswith("carrot at ")
+    assert "ExtrapolationException: Lookup would require extrapolation into the future." in lines[1]
+    assert len(lines) > 6
 
 
 @pytest.mark.parametrize(

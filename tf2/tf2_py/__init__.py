@@ -1,0 +1,24 @@
+"""A tf2_py for a Python without ROS: the buffer of transforms, and what it raises.
+
+ROS's own is made of C++. Installed only where no ROS is sourced.
+"""
+
+from .buffer_core import BufferCore
+from .exceptions import (
+    ConnectivityException,
+    ExtrapolationException,
+    InvalidArgumentException,
+    LookupException,
+    TimeoutException,
+    TransformException,
+)
+
+__all__ = [
+    "BufferCore",
+    "ConnectivityException",
+    "ExtrapolationException",
+    "InvalidArgumentException",
+    "LookupException",
+    "TimeoutException",
+    "TransformException",
+]

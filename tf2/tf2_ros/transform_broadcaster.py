@@ -1,0 +1,37 @@
+"""`TransformBroadcaster`: transforms on /tf."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from geometry_msgs.msg import TransformStamped
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from tf2_msgs.msg import TFMessage
+
+
+class TransformBroadcaster:
+    """Sends where frames are that move.
+
+    Args:
+        node: what sends them.
+        qos: a quality of service, or the depth of one.
+    """
+
+    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
+        self.pub_tf = node.create_publisher(
+            TFMessage, "/tf", QoSProfile(depth=100) if qos is None else qos
+        )
+
+    def sendTransform(  # noqa: N802
+        self, transform: TransformStamped | Iterable[TransformStamped]
+    ) -> None:
+        """Send one transform or several, in one message."""
+        self.pub_tf.publish(TFMessage(transforms=as_list(transform)))
+
+
+def as_list(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
+    """One transform or several, as a list."""
+    if isinstance(transform, list):
+        return transform
+    return list(transform) if isinstance(transform, Iterable) else [transform]

@@ -1,0 +1,90 @@
+"""`TransformListener`: what comes on /tf and /tf_static goes into a buffer."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from threading import Thread
+from typing import Any
+
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from tf2_msgs.msg import TFMessage
+
+DEFAULT_TF_TOPIC = "/tf"
+DEFAULT_STATIC_TF_TOPIC = "/tf_static"
+#: Who has sent a message is not known to its receiver.
+AUTHORITY = "default_authority"
+
+
+class TransformListener:
+    """Listens for transforms while its node spins.
+
+    Args:
+        buffer: gets what is heard.
+        node: what listens.
+        spin_thread: spin the node in a thread of its own.
+        qos, static_qos: a quality of service, or the depth of one.
+        tf_topic, tf_static_topic: where to listen.
+    """
+
+    def __init__(
+        self, buffer: Any, node: Node, *, spin_thread: bool = False,
+        qos: QoSProfile | int | None = None, static_qos: QoSProfile | int | None = None,
+        tf_topic: str = DEFAULT_TF_TOPIC, tf_static_topic: str = DEFAULT_STATIC_TF_TOPIC,
+    ) -> None:  # fmt: skip
+        self.buffer = buffer
+        self.node = node
+        # so that transforms come in while a callback of the node waits for one
+        self.group = ReentrantCallbackGroup()
+        self.tf_sub = node.create_subscription(
+            TFMessage,
+            tf_topic,
+            self.callback,
+            _last_100(DurabilityPolicy.VOLATILE) if qos is None else qos,
+            callback_group=self.group,
+        )
+        self.tf_static_sub = node.create_subscription(
+            TFMessage,
+            tf_static_topic,
+            self.static_callback,
+            _last_100(DurabilityPolicy.TRANSIENT_LOCAL) if static_qos is None else static_qos,
+            callback_group=self.group,
+        )
+        if spin_thread:
+            self.executor = SingleThreadedExecutor()
+            self.dedicated_listener_thread = Thread(target=self._spin)
+            self.dedicated_listener_thread.start()
+
+    def _spin(self) -> None:
+        self.executor.add_node(self.node)
+        with suppress(ExternalShutdownException):
+            self.executor.spin()
+        self.executor.remove_node(self.node)
+
+    def __del__(self) -> None:
+        if hasattr(self, "dedicated_listener_thread"):
+            self.executor.shutdown()
+            self.dedicated_listener_thread.join()
+        self.unregister()
+
+    def unregister(self) -> None:
+        """Stop listening."""
+        for subscription in ("tf_sub", "tf_static_sub"):
+            if hasattr(self, subscription):
+                self.node.destroy_subscription(getattr(self, subscription))
+
+    def callback(self, data: TFMessage) -> None:
+        """Hear of frames that move."""
+        for transform in data.transforms:
+            self.buffer.set_transform(transform, AUTHORITY)
+
+    def static_callback(self, data: TFMessage) -> None:
+        """Hear of frames that never move."""
+        for transform in data.transforms:
+            self.buffer.set_transform_static(transform, AUTHORITY)
+
+
+def _last_100(durability: DurabilityPolicy) -> QoSProfile:
+    return QoSProfile(depth=100, durability=durability, history=HistoryPolicy.KEEP_LAST)
