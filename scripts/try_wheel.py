@@ -4,7 +4,7 @@
     scripts/try_wheel.py PYTHON WHEEL
 
 In an empty environment made with PYTHON, without a compiler: the wheel and what it requires from
-the package index, then turtlesim_node until it is up, then the reference controller, graded.
+the package index, then turtlesim_node until it is up, tf2, then the reference controller, graded.
 """
 
 import os
@@ -78,6 +78,8 @@ def main() -> None:
             call(*pip, Path(wheel).resolve(), env=env, cwd=folder)
         with step("turtlesim_node, up and down again"):
             start_and_stop(programs / "turtlesim_node", env, folder)
+        with step("tf2_ros, imported"):
+            call(programs / "python", "-c", "import tf2_ros", env=env, cwd=folder)
         with step("grader run, the reference"):
             reference = call(programs / "python", "-c", REFERENCE, env=env, cwd=folder).strip()
             run = [programs / "grader", "run", reference, "--out", folder / "graded"]

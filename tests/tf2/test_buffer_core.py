@@ -72,6 +72,12 @@ def test_what_is_older_than_that_is_refused_with_a_warning(buffer, capfd):
         x(buffer, "odom", "base", at(10.4))
 
 
+def test_what_is_exactly_as_old_as_may_be_is_taken(buffer, capfd):
+    give(buffer, transform("odom", "base", 20.5), transform("odom", "base", 10.5, (1, 0, 0)))
+    assert x(buffer, "odom", "base", at(10.5)) == 1
+    assert capfd.readouterr().err == ""
+
+
 def test_what_comes_late_is_put_in_its_place(buffer):
     give(buffer, *(transform("odom", "base", t, (t, 0, 0)) for t in (1, 3, 2)))
     assert x(buffer, "odom", "base", at(2)) == 2
@@ -266,6 +272,13 @@ def test_time_zero_is_the_latest_time_that_the_whole_way_has(robot):
     assert stamp_s(robot.lookup_transform_core("base", "laser", LATEST)) == 0
     assert robot.get_latest_common_time("map", "laser") == at(3)
     assert robot.get_latest_common_time("laser", "base") == Time()
+
+
+def test_what_is_above_the_way_does_not_make_it_older(buffer):
+    give(buffer, transform("map", "odom", 1))
+    give(buffer, transform("odom", "base", 5), transform("odom", "arm", 4))
+    assert buffer.get_latest_common_time("base", "arm") == at(4)
+    assert buffer.get_latest_common_time("arm", "base") == at(4)
 
 
 def test_a_frame_is_in_itself_at_any_time_even_if_nobody_knows_it(robot):
