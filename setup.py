@@ -1,4 +1,4 @@
-"""Installs the three packages and, where ROS 2 is not sourced, builds interfaces and adds a tf2.
+"""Installs the four packages and, where ROS 2 is not sourced, builds interfaces and adds a tf2.
 
 A sourced ROS (`ROS_DISTRO` is set) has rclpy, tf2 and the interfaces of turtlesim already: then
 nothing of ROS is required, nothing compiled, and nothing of ours hides what is there. What is
@@ -33,6 +33,7 @@ COMPILING = {"egg_info", "dist_info", "bdist_wheel", "editable_wheel", "install"
 # of several destinations of one file, colcon sees the last.
 ROS_PACKAGES: dict[str, list[str]] = {
     "grader": [],
+    "robot_py": [],
     "turtlesim_challenge": ["launch/turtlesim_challenge.launch.py"],
     "turtlesim_py": ["launch/multisim.launch.py"],
 }
@@ -121,7 +122,7 @@ setup(
     version=PROJECT["version"],
     license="BSD-3-Clause",
     python_requires=">=3.11",
-    # Everything in the three packages. Not by MANIFEST.in (include_package_data): setuptools then
+    # Everything in the four packages. Not by MANIFEST.in (include_package_data): setuptools then
     # warns about the starter, a package that is not to be imported
     package_data={package: ["**/*", "**/.*"] for package in ROS_PACKAGES},
     exclude_package_data={package: ["*.py[cod]"] for package in ROS_PACKAGES},

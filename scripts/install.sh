@@ -80,7 +80,7 @@ if ! stamped installed-requirements "$requirements"; then
 fi
 
 # content, not dates: git changes dates, and a deleted file has none
-sources=$(find turtlesim_py turtlesim_challenge grader interfaces tf2 launch ros2run LICENSE MANIFEST.in \
+sources=$(find turtlesim_py turtlesim_challenge robot_py grader interfaces tf2 launch ros2run LICENSE MANIFEST.in \
     README.md package.xml pyproject.toml setup.py -type f ! -name '*.pyc' -print0 |
     LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
 if ! stamped installed-sources "$sources"; then

@@ -17,7 +17,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 #: Package -> the folder in which it lies.
 PACKAGES = {
-    **dict.fromkeys(("turtlesim_py", "turtlesim_challenge", "grader"), ROOT),
+    **dict.fromkeys(("turtlesim_py", "turtlesim_challenge", "robot_py", "grader"), ROOT),
     **dict.fromkeys(("tf2_py", "tf2_ros"), ROOT / "tf2"),
 }
 STARTER = "turtlesim_challenge.starter"  # a student's own package
@@ -53,6 +53,12 @@ MAY_IMPORT: dict[str, set[str]] = {
     "tf2_py": set(),
     "tf2_ros": {"tf2_py"},
     "turtlesim_challenge": set(),
+    # robots: data and arithmetic, of which only the nodes know that there is ROS
+    "robot_py.__init__": set(),
+    "robot_py.model": set(),
+    "robot_py.findings": set(),
+    "robot_py.urdf": below("robot_py", "model", "findings"),
+    "robot_py.kinematics": {"robot_py.model"},
     "turtlesim_py.__init__": set(),
     "turtlesim_py.world": set(),
     "turtlesim_py.png": {"turtlesim_py.world"},

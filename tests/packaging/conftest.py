@@ -22,6 +22,7 @@ SOURCES = (
     "launch",
     "package.xml",
     "pyproject.toml",
+    "robot_py",
     "ros2run",
     "setup.py",
     "tf2",
