@@ -19,6 +19,7 @@ from grader.submission.start import (
     Program,
     Script,
     Submission,
+    Whole,
 )
 from grader.text import clip
 
@@ -56,12 +57,14 @@ def found(submission: Submission) -> bytes:
     )
 
 
-def _told(start: EntryPoint | Script | Launch) -> dict[str, object]:
+def _told(start: EntryPoint | Script | Launch | Whole) -> dict[str, object]:
     match start:
         case EntryPoint(module, function):
             return {"module": module, "function": function}
         case Script(path, function):
             return {"path": str(path), "function": function}
+        case Whole(package):
+            return {"package": package}
     return {
         "programs": [
             {"name": each.name, "entry": _told(each.entry), "arguments": list(each.arguments)}
@@ -134,7 +137,7 @@ def decoded(said: dict[str, Any]) -> Submission:
     raise _nonsense()
 
 
-def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch:
+def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch | Whole:
     match said:
         case {"programs": list(programs)} if programs:
             return Launch(tuple(map(_program, programs)))
@@ -142,6 +145,8 @@ def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch:
             return EntryPoint(module, function)
         case {"path": str(path), "function": str() | None as function}:
             return Script(Path(path), function)
+        case {"package": str(package)}:
+            return Whole(package)
     raise _nonsense()
 
 
