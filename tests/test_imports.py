@@ -20,7 +20,14 @@ PACKAGES = {
     **dict.fromkeys(("turtlesim_py", "turtlesim_challenge", "robot_py", "grader"), ROOT),
     **dict.fromkeys(("tf2_py", "tf2_ros"), ROOT / "tf2"),
 }
-STARTER = "turtlesim_challenge.starter"  # a student's own package
+#: Students' own packages.
+STARTERS = (
+    "turtlesim_challenge.starter",
+    "grader.exercises.description_package.starter",
+    "grader.exercises.description_package.reference",
+)
+#: Doubles of ROS's packages, by whose names they import each other.
+DOUBLES = "grader.scenes.package.examining.doubles"
 
 
 def below(package: str, *names: str) -> set[str]:
@@ -70,6 +77,13 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.submission": GROUND,
     "grader.scenes": GROUND,
     "grader.scenes.turtlesim": GROUND | {"grader.scenes", "turtlesim_py"},
+    # a package is looked at in the submission's process, which sees little of ours
+    "grader.scenes.package": GROUND | {"grader.scenes"},
+    "grader.scenes.package.strict": set(),
+    "grader.scenes.package.trace": {"grader.scenes.package.strict"},
+    "grader.scenes.package.examining": below("grader", "limited")
+    | below("grader.scenes.package", "strict", "trace", "__init__"),
+    "grader.scenes.package.examining.doubles": {"grader.scenes.package.examining"},
     "grader.recording": GROUND | {"grader.scenes"},
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
     "grader.run.processes": GROUND,
@@ -90,7 +104,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"turtlesim_py.world.trajectory"},
     "grader.exercises": GROUND
     | below("grader", "recording", "scenes", "exercise")
-    | {"turtlesim_py"},
+    | {"turtlesim_py", "robot_py"},
     "grader.diagnosis": GROUND | below("grader", "recording", "scenes", "exercise.verdict"),
     "grader.result": GROUND
     | below("grader", "recording", "scenes", "exercise", "diagnosis.diagnosis"),
@@ -126,7 +140,7 @@ def modules() -> dict[str, ast.Module]:
     return {
         name: ast.parse(path.read_bytes())
         for name, path in sorted(names.items())
-        if not name.startswith(STARTER)
+        if not name.startswith(STARTERS)
     }
 
 

@@ -12,9 +12,11 @@
         leaves: nothing
 
 A path is one beside the file, or PACKAGE/FILE of an installed package. `replace` names passages of
-the first right solution, each standing there exactly once when its turn comes. `leaves` says what
-is left of some checks' points, a share below 1 or `some`, and that all others stay whole; without
-it, it is enough that some check fails.
+the first right solution, each standing there exactly once when its turn comes; where that is a
+folder, `in` says in which file, and `files` may hold whole files, or null for one that goes.
+Another right solution may be made in the same way. `leaves` says what is left of some checks'
+points, a share below 1 or `some`, and that all others stay whole; without it, it is enough that
+some check fails.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.loading import Exercise
 from grader.exercise.yaml_file import Keys, Mistake, read_yaml
+from grader.testing.changes import Change, changed, lay_out, read
 
 FILE_NAME = "mutants.yaml"
 
@@ -43,40 +46,28 @@ class Solution:
         name: its own.
         path: what is handed in, or what is changed before.
         is_right: whether it must get every point; else it is a mutant.
-        changes: passages of `path` and what stands there instead.
+        changes: what makes it of `path`.
         leaves: check -> what is left of its points, where that is less than all; None: not said.
     """
 
     name: str
     path: Path
     is_right: bool
-    changes: tuple[tuple[str, str], ...] = ()
+    changes: tuple[Change, ...] = ()
     leaves: Mapping[str, Left] | None = None
 
     def text(self) -> str:
-        """The source, with its changes.
+        """The source of one that is a file, with its changes.
 
         Raises:
             ExerciseError: a passage does not stand there exactly once.
         """
-        text = self.path.read_text(encoding="utf-8")
-        for old, new in self.changes:
-            if text.count(old) != 1:
-                raise ExerciseError(
-                    f"mutants: {self.name}: {old!r} stands {text.count(old)} times in "
-                    f"{self.path.name}; expected once"
-                )
-            text = text.replace(old, new)
-        return text
+        text = changed(self.name, self.path, self.changes).get("")
+        return self.path.read_text(encoding="utf-8") if text is None else text
 
     def lay_out(self, folder: Path) -> Path:
-        """What is handed in: the file itself, or a changed copy in a new folder."""
-        if not self.changes:
-            return self.path
-        copy = folder / self.name / self.path.name
-        copy.parent.mkdir(parents=True)
-        copy.write_text(self.text(), encoding="utf-8")
-        return copy
+        """What is handed in: the file or folder itself, or a changed copy in a new folder."""
+        return lay_out(self.name, self.path, self.changes, folder) if self.changes else self.path
 
 
 def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solution]:
@@ -96,8 +87,7 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
         except Mistake as mistake:
             raise ExerciseError(file.told(mistake)) from None
         for solution in found:
-            if solution.changes:
-                solution.text()
+            changed(solution.name, solution.path, solution.changes)
     except OSError as error:
         raise ExerciseError(
             f"cannot read the solutions of {exercise.name!r}, {path}: {error.strerror}. "
@@ -114,10 +104,9 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
     unknown = [key for key in data if key not in ("right", "mutants")]
     if unknown:
         raise Mistake((str(unknown[0]),), "unknown; there are right, mutants")
-    right = [
-        Solution(str(name), places.locate(folder, str(where)), is_right=True)
-        for name, where in data["right"].items()
-    ]
+    right: list[Solution] = []
+    for name, where in data["right"].items():
+        right.append(_right(str(name), where, right, folder))
     mutants = data.get("mutants") or {}
     if not isinstance(mutants, dict):
         raise Mistake(("mutants",), "expected names with what is changed")
@@ -130,23 +119,42 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
     ]
 
 
+def _right(name: str, where: Any, right: list[Solution], folder: Path) -> Solution:
+    if not isinstance(where, dict):
+        return Solution(name, places.locate(folder, str(where)), is_right=True)
+    if not right:
+        raise Mistake(("right", name), "expected the path of the first right solution")
+    unknown = where.keys() - {"replace", "files"}
+    if unknown:
+        raise Mistake(("right", name), f"unknown {min(map(str, unknown))!r}")
+    of = right[0].path
+    return Solution(name, of, is_right=True, changes=_changes(where, of, ("right", name)))
+
+
+def _changes(words: Mapping[str, Any], of: Path, keys: Keys) -> tuple[Change, ...]:
+    try:
+        changes = read(words)
+    except (TypeError, KeyError, AttributeError):
+        raise Mistake((*keys, "replace"), "expected a list of old and new") from None
+    is_folder = of.is_dir()
+    if not changes or any(bool(each.file) != is_folder for each in changes):
+        raise Mistake(keys, f"there is nothing to replace in {of}")
+    return changes
+
+
 def _mutant(name: str, words: Any, of: Solution, folder: Path, exercise: Exercise) -> Solution:
     keys: Keys = ("mutants", name)
-    if not isinstance(words, dict) or ("file" in words) == ("replace" in words):
+    is_changed = isinstance(words, dict) and not {"replace", "files"}.isdisjoint(words)
+    if not isinstance(words, dict) or ("file" in words) == is_changed:
         raise Mistake(keys, "expected either `replace` or `file`")
-    unknown = words.keys() - {"file", "replace", "leaves"}
+    unknown = words.keys() - {"file", "replace", "files", "leaves"}
     if unknown:
         raise Mistake(keys, f"unknown {min(map(str, unknown))!r}")
     leaves = _leaves(name, words.get("leaves"), exercise)
     if "file" in words:
         path = places.locate(folder, str(words["file"]))
         return Solution(name, path, is_right=False, leaves=leaves)
-    try:
-        changes = tuple((str(each["old"]), str(each["new"])) for each in words["replace"])
-    except (TypeError, KeyError):
-        raise Mistake((*keys, "replace"), "expected a list of old and new") from None
-    if not changes or not of.path.is_file():
-        raise Mistake(keys, f"there is nothing to replace in {of.path}")
+    changes = _changes(words, of.path, keys)
     return Solution(name, of.path, is_right=False, changes=changes, leaves=leaves)
 
 
