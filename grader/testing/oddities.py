@@ -11,6 +11,7 @@ from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.driving import Controller, pen, twist
 from grader.scenes.turtlesim.trace import FIRST_TURTLE
 from grader.testing.driving import drive
+from grader.testing.odd_packages import odd_packages
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import Pose
 
@@ -127,6 +128,8 @@ ODDITIES: Final[Mapping[str, Controller]] = {
 
 def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
     """Recordings of every oddity, from every start; none for a scene that has none."""
+    if exercise.scene == "package":
+        return odd_packages()
     if exercise.scene != "turtlesim":
         return {}
     return {

@@ -31,6 +31,7 @@ from grader.reports.page.tracks import Film, film
 from grader.reports.report import Report
 from grader.result.result import RunSummary
 from grader.scenes import load_scene
+from grader.scenes.scene import Scene
 from grader.scenes.view import Floats
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -100,7 +101,7 @@ def render(report: Report) -> str:
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
             places={verdict.check: index for index, verdict in enumerate(report.verdicts)},
-            outcomes=_outcomes(report.scene.thing),
+            outcomes=_outcomes(report.scene),
             box={"width": WIDTH, "height": HEIGHT, "size": plane.size_px, "meter": plane.metre_px},
             to_px=plane.to_px,
             thing=report.scene.thing,
@@ -132,7 +133,15 @@ def _faulty_runs(report: Report) -> set[int]:
     }
 
 
-def _outcomes(thing: str) -> dict[str, str]:
+def _outcomes(scene: Scene) -> dict[str, str]:
+    thing = scene.thing
+    if scene.examiner:
+        return {
+            "finished": f"the {thing} was looked at",
+            "time limit": f"looking at the {thing} did not come to an end",
+            "crashed": f"the {thing} ended the process that looked at it",
+            "killed": f"the {thing} ended the process that looked at it",
+        }
     return {
         "finished": f"the {thing} came to rest",
         "exited": "the node ended by itself, without an error",
