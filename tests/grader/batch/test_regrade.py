@@ -18,6 +18,7 @@ from grader.batch import grade, pool
 from grader.batch import store as store_module
 from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
+from grader.batch.find.joining import NOTHING
 from grader.batch.hand_in import HandIn, Person
 from grader.batch.regrade import applying, html, judging, shown, table
 from grader.batch.regrade.changes import Regrade, compared, is_of_words
@@ -96,7 +97,7 @@ def whole(runs, tmp_path_factory) -> Path:
             grade.make(task)
             store.put(key, place)
         place = store.new_place()
-        grade.nothing(hand_in("nobody", "Nothing."), exercise, place / STUDENTS / "nobody")
+        grade.nothing(hand_in("nobody", NOTHING), exercise, place / STUDENTS / "nobody")
         grade.failed(hand_in("unlucky"), exercise, place / STUDENTS / "unlucky", "A disk was full.")
         store.put("", place)
     (out / "gradebook.csv").write_text("as it was\n")
@@ -344,7 +345,7 @@ def test_applied_everybody_has_the_new_result_and_the_old_one_is_beside(
 def test_who_has_no_result_stays_so(out, changed, in_process):
     applied(out, changed)
     states = {entry.id: (entry.state, entry.score, entry.message) for entry in entries(out)}
-    assert states["nobody"] == ("nothing", 0.0, "Nothing.")
+    assert states["nobody"] == ("nothing", 0.0, NOTHING)
     assert states["unlucky"] == ("failed", None, "A disk was full.")
 
 
