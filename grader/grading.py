@@ -176,6 +176,7 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         scene=exercise.scene,
         seed=used if starts else None,
         interfaces=scene.interfaces_for(imports.surely, imports.perhaps),
+        setting=exercise.setting,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
     missing = not_handed_in(submission.name, submission.copy, (*imports.surely, *imports.perhaps))

@@ -75,6 +75,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.submission": GROUND,
     "grader.scenes": GROUND,
     "grader.scenes.turtlesim": GROUND | {"grader.scenes", "turtlesim_py"},
+    # the same clock says "tick"
+    "grader.scenes.robot": GROUND | {"grader.scenes", "robot_py", "turtlesim_py.ros.pacer"},
     "grader.recording": GROUND | {"grader.scenes"},
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
     "grader.run.processes": GROUND,

@@ -33,6 +33,8 @@ def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -
         "rclpy": versions.rclpy(),
         "ros_distro": versions.ros_distro(),
     }
+    if exercise.setting:
+        depends_on["setting"] = content.of_bytes(exercise.setting.encode())
     return content.of_bytes(json.dumps(depends_on, sort_keys=True).encode())[:32]
 
 

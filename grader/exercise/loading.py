@@ -26,18 +26,19 @@ from grader.exercise.verdict import Visible
 from grader.exercise.yaml_file import Mistake, YamlFile, did_you_mean, is_amount, read_yaml
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
-from grader.scenes.scene import Limits, Start
+from grader.scenes.scene import Limits, Scene, Start
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
-    *("exercise", "title", "task", "scene", "limits", "varied_runs", "points", "visible", "late"),
-    *("tolerances", "starter"),
+    *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs"),
+    *("points", "visible", "late", "tolerances", "starter"),
 )
 LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
 MOST_RUNS = 100
 #: What of them is for people and judges nothing.
 WORDS = ("title", "task", "starter")
+SETTING = "setting"
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 PER_STUDENT = "per_student"
 _NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
@@ -76,10 +77,11 @@ class Exercise:
         visible: check name -> what students see of it; all of those that are not named.
         late: what it costs to hand in late; None where nothing is said of that.
         scene: the name of what runs beside the submission.
+        setting: the text of the file that it is set up with; '' for none.
         folder: where its files are.
         starter: the folder that `grader new` copies; None where there is none.
-        sha256: of all that it judges by: the values of exercise.yaml, as they are in force, and
-            the Python files beside it.
+        sha256: of all that it judges by: the values of exercise.yaml, as they are in force, the
+            setting, and the Python files beside it.
     """
 
     name: str
@@ -90,6 +92,7 @@ class Exercise:
     tolerances: Mapping[str, Any]
     checks: Checks
     scene: str = "turtlesim"
+    setting: str = ""
     folder: Path = Path()
     starter: Path | None = None
     sha256: str = ""
@@ -280,6 +283,7 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     scene = data.get("scene", "turtlesim")
     if scene not in SCENES:
         raise Mistake(("scene",), f"expected one of {', '.join(SCENES)}, found {scene!r}")
+    setting = _setting(data.get("setting"), load_scene(scene), place)
     limits = _numbers(data, "limits", dict.fromkeys(LIMITS, 1.0))
     missing = [key for key in LIMITS if key not in limits]
     if missing:
@@ -306,23 +310,41 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         tolerances=tolerances,
         checks=checks,
         scene=scene,
+        setting=setting,
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
-        sha256=_sha256(data, place.folder),
+        sha256=_sha256(data, setting, place.folder),
         task=_task(data.get("task", "")),
         visible=handing_in.visible(data.get("visible"), checks, points),
     )
     return replace(exercise, late=handing_in.late(data.get("late"), exercise.max_score))
 
 
-def _sha256(data: Mapping[str, Any], folder: Path) -> str:
+def _sha256(data: Mapping[str, Any], setting: str, folder: Path) -> str:
     """The hash of an exercise: comments do not count, and a copy without edits has the same."""
     judging = {key: value for key, value in data.items() if key not in WORDS}
     values = repr(judging).encode("utf-8", "surrogatepass")  # whatever YAML can hold; in its order
     packages = (folder, *(file.parent for file in folder.glob("*/__init__.py")))
     files = [path for package in packages for path in package.glob("*.py") if path.is_file()]
     code = {path.relative_to(folder).as_posix(): content.of_file(path) for path in files}
+    if setting:
+        code[SETTING] = content.of_bytes(setting.encode())
     return content.of_files({**code, DESCRIPTION: content.of_bytes(values)})
+
+
+def _setting(where: object, scene: Scene, place: Place) -> str:
+    """The text of the file that a scene is set up with."""
+    if where is not None and not isinstance(where, str):
+        raise Mistake((SETTING,), f"expected a file beside {DESCRIPTION}, found {where!r}")
+    setting = ""
+    if where is not None:
+        try:
+            setting = (place.folder / where).read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise Mistake((SETTING,), f"cannot read {where}: {error}") from None
+    if why := scene.wrong_setting(setting):
+        raise Mistake((SETTING,), why)
+    return setting
 
 
 def _task(task: object) -> str:

@@ -27,9 +27,9 @@ class Run:
 
     Attributes:
         time: which clock the submission lived by.
-        outcome: `finished` - its work came to rest; `exited`, `crashed` - the node ended by
-            itself, without or with an error; `stalled` - it stopped responding; `time_limit` - it
-            was still going; `killed` - somebody else killed it.
+        outcome: `finished` - its work came to rest, or was watched to the end; `exited`, `crashed`
+            - the node ended by itself, without or with an error; `stalled` - it stopped
+            responding; `time_limit` - it was still going; `killed` - somebody else killed it.
         exit_code: the node's, negative for a signal; None where it had to be stopped.
         ticks, simulated_s: how long the simulator recorded.
         wall_s: how long it took.

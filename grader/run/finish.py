@@ -11,6 +11,8 @@ from grader.run.processes.sandbox.limits import LIMITS, size
 from grader.scenes.scene import Reason, Trace
 
 NOTHING_TOLD = Conduct()
+#: How a scene says that there is nothing more to come.
+DONE: tuple[Reason, ...] = ("rest", "seen")
 #: How much of a process's output is looked at for why it ended [characters], [lines].
 LAST_WORDS, MOST_LAST_LINES = 8192, 20
 #: Exit codes that only a limit gives, SIGXCPU and SIGXFSZ, and what happened.
@@ -55,12 +57,12 @@ class Ending:
 def outcome(reason: Reason, exit_code: int | None) -> Outcome:
     """How a run ended: what the simulator saw, and how the submission's process ended."""
     if exit_code is None:
-        return "finished" if reason == "rest" else "time_limit"
+        return "finished" if reason in DONE else "time_limit"
     if exit_code < 0:
         return "killed"
     if exit_code > 0:
         return "crashed"
-    return "finished" if reason == "rest" else "exited"
+    return "finished" if reason in DONE else "exited"
 
 
 def limits_struck(exit_code: int | None, output: str, excess: str) -> tuple[str, ...]:

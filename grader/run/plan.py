@@ -21,6 +21,7 @@ class Plan:
         flags: remarks that are known before it begins.
         interfaces: those that the submission was written for, where the scene has several; '' for
             its usual ones.
+        setting: what the exercise sets the scene up with; '' for nothing.
     """
 
     limits: Limits
@@ -29,6 +30,7 @@ class Plan:
     seed: int | None = None
     flags: tuple[str, ...] = ()
     interfaces: str = ""
+    setting: str = ""
 
     def to_json(self) -> str:
         """As an argument of the simulator's process."""

@@ -9,9 +9,12 @@ if TYPE_CHECKING:
     from grader.scenes.scene import Scene
 
 #: The scenes that there are; each is a module of this package with an object `SCENE`.
-NAMES = ("turtlesim",)
+NAMES = ("turtlesim", "robot")
 #: Packages whose messages nearly every submission to one of them imports; some may not be there.
-MESSAGES = ("geometry_msgs", "std_msgs", "std_srvs", "turtlesim", "turtlesim_msgs")
+MESSAGES = (
+    *("geometry_msgs", "std_msgs", "std_srvs", "turtlesim", "turtlesim_msgs"),
+    *("sensor_msgs", "tf2_msgs"),
+)
 
 
 def load_scene(name: str) -> Scene:

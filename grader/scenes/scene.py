@@ -15,8 +15,9 @@ from typing import Any, Literal, NamedTuple, Protocol
 from grader.scenes.channel import Channel
 from grader.scenes.view import Floats, Pictures, Plane, View
 
-#: Why a run is over: it came to rest, nothing ever moved, the submission is gone, time is up.
-Reason = Literal["", "rest", "no_motion", "gone", "time_limit"]
+#: Why a run is over: it came to rest, all that there is to see was seen, nothing ever moved, the
+#: submission is gone, time is up.
+Reason = Literal["", "rest", "seen", "no_motion", "gone", "time_limit"]
 
 
 @dataclass(frozen=True)
@@ -224,12 +225,23 @@ class Scene(Protocol):
         """What a submission drives, in a word."""
 
     @property
+    def finished(self) -> str:
+        """What has happened in a run that is finished, as a clause: 'the robot came to rest'."""
+
+    @property
     def plane(self) -> Plane:
         """How places become pixels."""
 
     @property
     def farthest_start_m(self) -> float:
         """So far from the usual place something can start and still has room on every side."""
+
+    def wrong_setting(self, setting: str) -> str:
+        """Why a run cannot be set up with what an exercise gives; '' where it can.
+
+        Args:
+            setting: the text of a file of the exercise's, as a robot's description; '' for none.
+        """
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Where varied runs start, so far from the usual place; the same for the same seed."""
@@ -262,12 +274,13 @@ class Scene(Protocol):
         """Import and make what is the same in every simulation; nothing of ROS is up."""
 
     def simulate(
-        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str
+        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
     ) -> Simulation:
         """Make the nodes and everything else; ROS is up.
 
         Args:
             interfaces: from `interfaces_for`; '' for the usual ones.
+            setting: what the exercise sets it up with; see `wrong_setting`.
         """
 
     def untouched(self, start: Start | None) -> Trace:

@@ -112,15 +112,35 @@ class View:
 
 
 class Plane(NamedTuple):
-    """The picture of a scene: its edge [px], and pixels in a metre; metres have y up."""
+    """The picture of a scene; metres have y up.
+
+    Attributes:
+        size_px, size_m: its edge.
+        metre_px: pixels in a metre.
+        origin_m: x and y of its lower left corner.
+    """
 
     size_px: int
     metre_px: float
     size_m: float
+    origin_m: float = 0.0
+
+    @property
+    def end_m(self) -> float:
+        """Where its upper right corner is, x and y."""
+        return self.origin_m + self.size_m
 
     def to_px(self, x: float, y: float) -> tuple[float, float]:
         """A place in metres as pixels (y down)."""
-        return x * self.metre_px, (self.size_m - y) * self.metre_px
+        return (
+            (x - self.origin_m) * self.metre_px,
+            (self.end_m - y) * self.metre_px,
+        )
+
+    def holds(self, x: float, y: float, slack_m: float = 0.01) -> bool:
+        """Whether a place is in it."""
+        first, last = self.origin_m - slack_m, self.end_m + slack_m
+        return first <= x <= last and first <= y <= last
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -70,8 +69,7 @@ def _odd_about_evidence(
         yield f"evidence: tick {item.tick} is outside the recording"
     elif abs(item.time_s - item.tick * scene.tick_ns / 1e9) > 0.001:
         yield f"evidence: time_s is not that of the tick: {item.time_s} s at tick {item.tick}"
-    edge = scene.plane.size_m
-    if not all(math.isfinite(v) and -0.01 <= v <= edge + 0.01 for v in (item.x, item.y)):
+    if not scene.plane.holds(item.x, item.y):
         yield f"evidence: the place ({item.x}, {item.y}) is outside the picture"
     if not item.note:
         yield "evidence: has an empty note"

@@ -28,6 +28,7 @@ from grader.reports.page.tracks import Film, film
 from grader.reports.report import Report
 from grader.result.result import RunSummary
 from grader.scenes import load_scene
+from grader.scenes.scene import Scene
 from grader.scenes.view import Floats
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -97,8 +98,12 @@ def render(report: Report) -> str:
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
             places={verdict.check: index for index, verdict in enumerate(report.verdicts)},
-            outcomes=_outcomes(report.scene.thing),
-            box={"width": WIDTH, "height": HEIGHT, "size": plane.size_px, "meter": plane.metre_px},
+            outcomes=_outcomes(report.scene),
+            box={
+                **{"width": WIDTH, "height": HEIGHT},
+                **{"size": plane.size_px, "meter": plane.metre_px, "origin": plane.origin_m},
+                "metres": range(math.floor(plane.origin_m) + 1, math.ceil(plane.end_m)),
+            },
             to_px=plane.to_px,
             thing=report.scene.thing,
             radius=RADIUS_PX,
@@ -129,9 +134,10 @@ def _faulty_runs(report: Report) -> set[int]:
     }
 
 
-def _outcomes(thing: str) -> dict[str, str]:
+def _outcomes(scene: Scene) -> dict[str, str]:
+    thing = scene.thing
     return {
-        "finished": f"the {thing} came to rest",
+        "finished": scene.finished,
         "exited": "the node ended by itself, without an error",
         "crashed": "the node ended with an error",
         "stalled": "the node stopped responding",

@@ -45,7 +45,9 @@ class GradedSimulator:
         self._link = link
         self._file = file
         self._scene = load_scene(plan.scene)
-        self._simulation = self._scene.simulate(plan.limits, plan.start, Hooks(), plan.interfaces)
+        self._simulation = self._scene.simulate(
+            plan.limits, plan.start, Hooks(), plan.interfaces, plan.setting
+        )
         self._topics = PublishedTopics(self._simulation.node)
         self._limits = plan.limits
         self._flags: list[str] = []

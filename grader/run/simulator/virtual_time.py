@@ -73,7 +73,9 @@ class Lockstep:
         self._scene = load_scene(plan.scene)
         assert self._scene.tick_ns == TICK_NS
         hooks = Hooks(has_unread=self._registry.has_unread)
-        self._simulation = self._scene.simulate(plan.limits, plan.start, hooks, plan.interfaces)
+        self._simulation = self._scene.simulate(
+            plan.limits, plan.start, hooks, plan.interfaces, plan.setting
+        )
         self._simulation.record()
         self._foresight = Foresight(self._simulation, self._registry)
         self._tick = self._vain = 0

@@ -55,8 +55,13 @@ class Turtlesim:
         ),
     )
     thing: Final = "turtle"
+    finished: Final = "the turtle came to rest"
     plane: Final = view.PLANE
     farthest_start_m: Final = starts.FARTHEST_M
+
+    def wrong_setting(self, setting: str) -> str:
+        """An arena is always the same."""
+        return "turtlesim takes none" if setting else ""
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Places round the centre of the window."""
@@ -81,7 +86,7 @@ class Turtlesim:
         sprites.sprite(graded_node.SPRITE)
 
     def simulate(
-        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str
+        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
     ) -> Simulation:
         """Make the node and the recorder; ROS is up."""
         from grader.scenes.turtlesim.simulation import TurtlesimSimulation

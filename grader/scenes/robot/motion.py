@@ -1,0 +1,111 @@
+"""How a robot moved: its joints over time, and where the robot as a whole was, as columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from grader.scenes.robot.decoding import Transform
+from grader.scenes.robot.trace import TF, RobotTrace
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+#: The frame in which a robot moves.
+ODOM = "odom"
+
+
+class Joint(NamedTuple):
+    """What the submission said of one joint.
+
+    Attributes:
+        ticks: when, int64 (n,).
+        stamps_s: by the messages' own stamps [s], float64 (n,).
+        positions: [rad or m], float64 (n,); may be not a number.
+    """
+
+    name: str
+    ticks: Ints
+    stamps_s: Floats
+    positions: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """Where the child of one transform was in its parent.
+
+    Attributes:
+        ticks: when, int64 (n,).
+        stamps_s: by the messages' own stamps [s], float64 (n,).
+        places: x, y, z [m], float64 (n, 3).
+        quaternions: x, y, z, w, float64 (n, 4).
+    """
+
+    ticks: Ints
+    stamps_s: Floats
+    places: Floats
+    quaternions: Floats
+
+    @classmethod
+    def of(cls, transforms: list[Transform]) -> Self:
+        """Of transforms in their order."""
+        return cls(
+            np.array([each.tick for each in transforms], dtype=np.int64),
+            np.array([each.stamp_ns for each in transforms], dtype=np.float64) / 1e9,
+            np.array([each.translation for each in transforms], dtype=np.float64).reshape(-1, 3),
+            np.array([each.rotation for each in transforms], dtype=np.float64).reshape(-1, 4),
+        )
+
+    def __len__(self) -> int:
+        return len(self.ticks)
+
+    @property
+    def yaw(self) -> Floats:
+        """The heading [rad], of quaternions as they are, whatever their length."""
+        x, y, z, w = self.quaternions.T
+        with np.errstate(all="ignore"):
+            heading: Floats = np.arctan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+        return heading
+
+
+def joints(trace: RobotTrace) -> dict[str, Joint]:
+    """Every joint that the submission named in a message that can be taken, by name."""
+    found: dict[str, list[tuple[int, float, float]]] = {}
+    for state in trace.joint_states:
+        if not state.is_taken:
+            continue
+        named = dict(zip(reversed(state.names), reversed(state.positions), strict=True))
+        for name, position in named.items():  # of two of a name the first counts
+            found.setdefault(name, []).append((state.tick, state.stamp_ns / 1e9, position))
+    return {name: _joint(name, rows) for name, rows in sorted(found.items())}
+
+
+def _joint(name: str, rows: list[tuple[int, float, float]]) -> Joint:
+    ticks, stamps, positions = zip(*rows, strict=True)
+    return Joint(
+        name,
+        np.array(ticks, dtype=np.int64),
+        np.array(stamps, dtype=np.float64),
+        np.array(positions, dtype=np.float64),
+    )
+
+
+def odometry(trace: RobotTrace) -> Way:
+    """Where the robot's root was in `odom`, as the submission sent it on /tf."""
+    root = trace.robot.model.root if trace.robot else ""
+    return Way.of(
+        [
+            each
+            for each in trace.transforms
+            if (each.topic, each.publisher) == (TF, "submission")
+            and (bare(each.parent), bare(each.child)) == (ODOM, root)
+        ]
+    )
+
+
+def bare(frame: str) -> str:
+    """A frame's name as tf2 takes it: without the slash in front."""
+    return frame.removeprefix("/")
