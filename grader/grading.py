@@ -243,7 +243,13 @@ def start(
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
         over = ((numbers[future], future.result()) for future in as_completed(numbers))
         yield (
-            (n, recording if n else replace(recording, provenance=origin)) for n, recording in over
+            (
+                n,
+                recording
+                if n
+                else replace(recording, packaged=submission.packaged, provenance=origin),
+            )
+            for n, recording in over
         )
     finally:
         pool.shutdown(cancel_futures=True)

@@ -35,6 +35,7 @@ from typing import TYPE_CHECKING, Any
 from grader import limited, strict_json
 from grader.errors import RecordingError
 from grader.limited import Limits
+from grader.packaged import Packaged
 from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
@@ -62,6 +63,8 @@ FILES = (
 CIRCUMSTANCES = ("wall_s", "isolation")
 #: Stands beside them.
 PROVENANCE = "provenance"
+#: What of a submission's package stands in run.json.
+PACKAGED = "packaged"
 #: What is read back, and its most bytes. A minute's usual run is 0.2 MB.
 SIZES = {
     BAG: 2**28,
@@ -254,6 +257,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
         "topics": [asdict(topic) for topic in recording.topics],
         "run": run,
     }
+    if recording.packaged is not None:
+        facts[PACKAGED] = recording.packaged.to_json()
     if recording.scene != FIRST_SCENE:
         facts["scene"] = recording.scene
     _write_json(folder / RUN, facts)
@@ -412,7 +417,15 @@ def _recording(told: _Told, trace: Trace) -> Recording:
         scene=told.scene.name,
         provenance=Provenance.from_json(facts[PROVENANCE]) if facts[PROVENANCE] else None,
         conduct=_conduct(told.folder / CONDUCT),
+        packaged=_packaged(told.folder, facts),
     )
+
+
+def _packaged(folder: Path, facts: dict[str, Any]) -> Packaged | None:
+    try:
+        return Packaged.from_json(facts[PACKAGED]) if PACKAGED in facts else None
+    except ValueError as error:
+        raise RecordingError(f"{folder / RUN} is damaged: {PACKAGED}: {error}") from None
 
 
 def _conduct(path: Path) -> Conduct:

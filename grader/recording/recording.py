@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
+from grader.packaged import Packaged
 from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.scenes import load_scene
@@ -73,6 +74,8 @@ class Recording:
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
         conduct: what its process has told of itself; for words, not for points.
+        packaged: what the submission's package says of itself, in the nominal run's; None where it
+            is in none, or its recording is older than that.
         provenance: when and with what it was made; the nominal run's tells it of all.
     """
 
@@ -83,6 +86,7 @@ class Recording:
     start: Start | None = None
     scene: str = "turtlesim"
     conduct: Conduct = field(default_factory=Conduct)
+    packaged: Packaged | None = None
     provenance: Provenance | None = field(default=None, compare=False)
 
     @cached_property

@@ -140,8 +140,8 @@ def command(
     submission: Submission, introduction: Introduction, link_fd: int, evidence_fd: int
 ) -> list[str]:
     """How the submission's process is started."""
-    nodes = json.dumps(introduction.nodes)
-    words = [str(link_fd), str(evidence_fd), nodes, *stage.target(submission)]
+    known = json.dumps([introduction.nodes, introduction.compares_stamps])
+    words = [str(link_fd), str(evidence_fd), known, *stage.target(submission)]
     return [*zygotes.command(zygotes.STUDENT), *words]
 
 

@@ -69,11 +69,14 @@ class Introduction:
         topics, services: names that a submission drives the scene by, and that are there from the
             start. In real time its publishers and clients of these wait until they are connected;
             those of names that end like them, for a while.
+        compares_stamps: whether it matters that two stamps are one. In virtual time a callback
+            takes no time; a node's clock then tells those apart for which it was asked twice.
     """
 
     nodes: tuple[tuple[str, str], ...]
     topics: tuple[str, ...]
     services: tuple[str, ...]
+    compares_stamps: bool = False
 
 
 EndpointKind = Literal["publisher", "subscription", "service", "action"]

@@ -52,6 +52,7 @@ from grader.submission.python_source import Source, read_source
 from grader.submission.refusals import CPP, advice, missing, no_python, unreadable
 from grader.submission.setup_files import SETUP_FILES, Package
 from grader.submission.start import EntryPoint, Script, Submission
+from grader.submission.survey import survey
 from grader.submission.unpacking import Unpacking, is_archive
 
 _UNREADABLE: Final = (
@@ -163,9 +164,11 @@ def _from_script(
     start = EntryPoint(script.module, script.function)
     found = f"console script {shown(script.name)} in {handed_in.called(script.file)}"
     others = not_started("console script", packages.others(script))
-    notes = (*shortcomings(handed_in, package, script), *others)
+    short = tuple(shortcomings(handed_in, package, script))
+    packaged = survey(handed_in, package, script.name, short)
+    notes = (*short, *others)
     if not module.bare:
-        return Submission(handed_in.name, module.root, start, found, notes=notes)
+        return Submission(handed_in.name, module.root, start, found, notes=notes, packaged=packaged)
     # without its __init__.py, Python prefers any installed package of the same name
     mended = scratch / "with_init"
     copy(module.root, mended)
@@ -173,22 +176,20 @@ def _from_script(
         (mended / folder / "__init__.py").touch()
     missing = listed(str(folder / "__init__.py") for folder in module.bare)
     found += f", with the missing {missing} added"
-    return Submission(handed_in.name, mended, start, found, notes=notes)
+    return Submission(handed_in.name, mended, start, found, notes=notes, packaged=packaged)
 
 
 def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submission:
     """Start a file of a package that names no console script, as one would that named it."""
     source = read_source(file)
-    notes = (
-        *shortcomings(handed_in, package, None),
-        _no_script(handed_in, package, [file]),
-    )
+    short = (*shortcomings(handed_in, package, None), _no_script(handed_in, package, [file]))
+    packaged = survey(handed_in, package, "", short)
     inside = file.relative_to(package.folder).with_suffix("").parts
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
-        return replace(_from_file(handed_in, file), notes=notes)
+        return replace(_from_file(handed_in, file), notes=short, packaged=packaged)
     start = EntryPoint(".".join(inside), "main")
     found = f"function main of {handed_in.called(file)}"
-    return Submission(handed_in.name, package.folder, start, found, notes=notes)
+    return Submission(handed_in.name, package.folder, start, found, notes=short, packaged=packaged)
 
 
 def _unbuilt(handed_in: HandedIn, file: Path) -> list[str]:

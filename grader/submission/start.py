@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from grader.packaged import Packaged
 from grader.submission.private_copy import PrivateCopy
 
 
@@ -72,6 +73,8 @@ class Submission:
     imports: Imports = field(default_factory=Imports, compare=False)
     #: for the result: what is wrong with it that a run does not show, and what was not started
     notes: tuple[str, ...] = field(default=(), compare=False)
+    #: what its package says of itself; None where it is in none
+    packaged: Packaged | None = field(default=None, compare=False)
     #: where its runs find it; None where it lies in place
     copy: PrivateCopy | None = field(default=None, compare=False)
 

@@ -9,10 +9,20 @@ from typing import Any
 from grader.run.lockstep.times import BOOT_NS, EPOCH_NS
 
 
-def install(rclpy: Any, now_ns: Callable[[], int], charge: Callable[[], None]) -> RclpyClocks:
-    """Replace rclpy's clocks; whoever owns the time calls `RclpyClocks.set_now` when it moves."""
+def install(
+    rclpy: Any,
+    now_ns: Callable[[], int],
+    charge: Callable[[], None],
+    unpaid_ns: Callable[[], int] = lambda: 0,
+) -> RclpyClocks:
+    """Replace rclpy's clocks; whoever owns the time calls `RclpyClocks.set_now` when it moves.
+
+    Args:
+        charge: called when a clock is asked for the time.
+        unpaid_ns: how much later than `now_ns` a clock says it is when it is asked.
+    """
     clocks = RclpyClocks(now_ns)
-    rclpy.Clock = _clock_class(rclpy, clocks, charge)
+    rclpy.Clock = _clock_class(rclpy, clocks, charge, unpaid_ns)
     return clocks
 
 
@@ -38,7 +48,12 @@ class RclpyClocks:
                 clock.tell(now_ns)
 
 
-def _clock_class(rclpy: Any, clocks: RclpyClocks, charge: Callable[[], None]) -> type:
+def _clock_class(
+    rclpy: Any,
+    clocks: RclpyClocks,
+    charge: Callable[[], None],
+    unpaid_ns: Callable[[], int],
+) -> type:
     base = rclpy.Clock
     kinds, point = rclpy.ClockType, rclpy.rcl_time_point_t
 
@@ -64,7 +79,7 @@ def _clock_class(rclpy: Any, clocks: RclpyClocks, charge: Callable[[], None]) ->
 
         def get_now(self) -> Any:
             charge()
-            time_ns = self.offset_ns + clocks.now_ns()
+            time_ns = self.offset_ns + clocks.now_ns() + unpaid_ns()
             return point(self.override_ns if self.is_overridden else time_ns, int(self.kind))
 
         def get_ros_time_override_is_enabled(self) -> bool:

@@ -39,19 +39,22 @@ def install(
     nodes: Sequence[graph.Name],
     refuse: Callable[[str], None],
     teller: Teller,
+    tells_apart: bool = False,
 ) -> tuple[SimulatorLink, witness.Witness]:
     """Replace what tells or waits for time in rclpy, after `prepare`; who looks on comes last.
 
     Args:
         nodes: the simulator's.
         refuse: told what virtual time cannot follow; does not return.
+        tells_apart: whether a node's clock tells another time each time it is asked.
     """
     link = SimulatorLink(scheduler, refuse)
 
     def now_ns() -> int:
         return scheduler.now_ns
 
-    clocks = rclpy_clocks.install(_rclpy, now_ns, scheduler.charge)
+    unpaid_ns = (lambda: scheduler.unpaid_ns) if tells_apart else (lambda: 0)
+    clocks = rclpy_clocks.install(_rclpy, now_ns, scheduler.charge, unpaid_ns)
     scheduler.clocks.append(clocks.set_now)
     scheduler.time_source = _Guarded(link)
     _rclpy.ClockEvent = clock_event_class(scheduler)

@@ -165,6 +165,11 @@ class Scheduler:
             self._block(deadline_ns)
         self.on_waited((self.now_ns - started_ns) / 1e9)
 
+    @property
+    def unpaid_ns(self) -> int:
+        """What the running thread has done since time moved last, for which no time has passed."""
+        return self._units * UNIT_NS
+
     def set_now(self, now_ns: int) -> None:
         """Move time on, and wake those whose deadline has come."""
         self.now_ns = now_ns

@@ -1,13 +1,14 @@
 """The submission's process in virtual time: replace what tells time, run what was handed in.
 
-    python virtual_main.py FD EVIDENCE NODES ROOT module:function
-    python virtual_main.py FD EVIDENCE NODES ROOT path/to/script.py [function]
+    python virtual_main.py FD EVIDENCE SCENE ROOT module:function
+    python virtual_main.py FD EVIDENCE SCENE ROOT path/to/script.py [function]
     python virtual_main.py --zygote SOCKET GRADER_PID MESSAGES
 
-FD is the link to the simulator, EVIDENCE a pipe to the grader (`telling`), NODES a JSON list of the
-names and namespaces of the simulator's nodes. Started by path, like `grader.run.student.main`,
-whose rules for what a submission may import are the same. Everything of ours is imported before the
-submission is, and then forgotten by the import system.
+FD is the link to the simulator, EVIDENCE a pipe to the grader (`telling`), SCENE a JSON list of two:
+the names and namespaces of the simulator's nodes, and whether two stamps have to be told apart.
+Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
+the same. Everything of ours is imported before the submission is, and then forgotten by the import
+system.
 
 As a zygote it does the same up to where the link comes in, imports what nearly every submission
 needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with the
@@ -58,7 +59,7 @@ def main() -> None:
             sys.exit(fault)  # the run says so, when it has started from nothing
         words = become_one_of_many(scheduler, state, words[2:])
         student_main.die_with_parent()
-    _, fd, evidence, nodes, root, target, *more = words
+    _, fd, evidence, introduction, root, target, *more = words
     connection = socket.socket(fileno=int(fd))
     teller = telling.Teller(int(evidence), root, lambda: scheduler.now_ns / 1e9)
 
@@ -77,8 +78,9 @@ def main() -> None:
         signals.install(scheduler, refuse)
         from grader.run.student import install as inside_rclpy
 
-        known = [(name, namespace) for name, namespace in json.loads(nodes)]
-        link, witness = inside_rclpy.install(scheduler, known, refuse, teller)
+        nodes, tells_apart = json.loads(introduction)
+        known = [(name, namespace) for name, namespace in nodes]
+        link, witness = inside_rclpy.install(scheduler, known, refuse, teller, tells_apart)
         link.take_up(connection)
     except refusal.Unsupported as lack:
         give_up(Kind.FAILED, f"virtual time does not work here: {lack}")

@@ -38,6 +38,7 @@ class RobotScene:
         nodes=(("robot_state_publisher", "/"),),
         topics=(trace.JOINT_STATES, trace.TF, trace.TF_STATIC),
         services=(),
+        compares_stamps=True,
     )
     thing: Final = "robot"
     finished: Final = "the robot was watched to the end"

@@ -1,0 +1,181 @@
+"""Whether the robot goes in a circle: round, at one height, upright, looking where it goes."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from grader.exercise.check import Tolerances
+from grader.exercise.verdict import Evidence, Finding
+from grader.exercises.state_publisher.seen import Seen
+from grader.scenes.robot.motion import ODOM, Floats, Way, bare
+
+#: What each is worth: the circle, its height, the heading, the quaternion.
+CIRCLE, HEIGHT, HEADING, QUATERNION = 0.35, 0.15, 0.3, 0.2
+#: tf2 refuses a quaternion whose square is off 1 by this.
+DENORMALIZED = 0.01
+
+
+class Fault(NamedTuple):
+    """What is wrong, what it costs, and what to look at."""
+
+    text: str
+    costs: float
+    help: str
+
+
+def judge_odometry(seen: Seen, tolerances: Tolerances) -> Finding:
+    """All transforms from odom to the root."""
+    way = seen.way
+    if len(way) < tolerances["least_messages"]:
+        return _absent(seen)
+    if not (np.abs(way.places) < 1e6).all() or not np.isfinite(way.quaternions).all():
+        return Finding(
+            0,
+            f"A transform from {ODOM} to {seen.root} holds what is no number.",
+            "Which of your terms can become nan or inf?",
+            (seen.moment(int(way.ticks[0]), "no number"),),
+        )
+    faults = [*_circle(way, tolerances), *_height(way, tolerances), *_turned(way, tolerances)]
+    if faults:
+        text = "; ".join(fault.text for fault in faults)
+        where: tuple[Evidence, ...] = (seen.moment(int(way.ticks[-1]), faults[0].text),)
+        share = 1 - sum(fault.costs for fault in faults)
+        return Finding(max(share, 0.0), f"{text[:1].upper()}{text[1:]}.", faults[0].help, where)
+    _, _, radius, _ = fitted(way.places[:, :2])
+    height = float(np.median(way.places[:, 2]))
+    return Finding(
+        1,
+        f"{seen.root} goes in a circle of {radius:.2f} m at a height of {height:.2f} m, upright "
+        "and looking where it goes.",
+    )
+
+
+def _absent(seen: Seen) -> Finding:
+    wanted = f"from {ODOM!r} to {seen.root!r}"
+    others = list(dict.fromkeys((t.topic, bare(t.parent), bare(t.child)) for t in seen.sent))
+    if (swapped := ("/tf", seen.root, ODOM)) in others:
+        told = f"Your transform goes from {swapped[1]!r} to {ODOM!r}: the frames are swapped"
+        help = f"The parent, {ODOM!r}, stands in header.frame_id; the child in child_frame_id."
+    elif any(each == ("/tf_static", ODOM, seen.root) for each in others):
+        told = f"The transform {wanted} came on /tf_static, and what is static never moves"
+        help = "Send what moves by a TransformBroadcaster: it goes to /tf."
+    elif others:
+        _, parent, child = others[0]
+        told = f"No transform {wanted} came on /tf, but one from {parent!r:.40} to {child!r:.40}"
+        help = f"The robot stands in the world by {ODOM!r} and the root link of its URDF."
+    else:
+        told = f"No transform {wanted} came on /tf"
+        help = "Does your node send its TransformStamped each time, by a TransformBroadcaster?"
+    return Finding(0, f"{told}.", help)
+
+
+def _circle(way: Way, tolerances: Tolerances) -> list[Fault]:
+    points = way.places[:, :2]
+    x, y, radius, off = fitted(points)
+    low, high = tolerances["radius_m"]
+    help = "x and y are the radius times the cosine and the sine of one angle that grows steadily."
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    if float(steps.sum()) < tolerances["way_least_m"]:
+        text = f"the robot stays where it is, at {_place(points[0])}"
+        return [Fault(text, CIRCLE + HEADING, help)]
+    if not math.isfinite(radius) or off > tolerances["round_share"] * radius:
+        return [Fault("its way is no circle", CIRCLE, help)]
+    if not low <= radius <= high:
+        text = f"its circle has a radius of {radius:.3g} m; expected {low} to {high} m"
+        return [Fault(text, CIRCLE, "Lengths are in metres.")]
+    angles = np.unwrap(np.arctan2(points[:, 1] - y, points[:, 0] - x))
+    turns = np.diff(angles)
+    turns = turns[np.abs(turns) > 1e-9]
+    one_way = max((turns > 0).mean(), (turns < 0).mean()) if len(turns) else 0.0
+    if one_way < tolerances["one_way"]:
+        return [Fault("it goes to and fro on its circle", CIRCLE, help)]
+    if float(np.quantile(steps, 0.99)) > 6 * float(np.median(steps)) + 0.01:
+        return [Fault("it jumps along its circle", CIRCLE, help)]
+    return []
+
+
+def _height(way: Way, tolerances: Tolerances) -> list[Fault]:
+    heights = way.places[:, 2]
+    low, high = tolerances["height_m"]
+    height = float(np.median(heights))
+    if float(np.ptp(heights)) > tolerances["height_error_m"]:
+        text = f"its height changes, from {heights.min():.2f} to {heights.max():.2f} m"
+        return [Fault(text, HEIGHT, "A robot that walks on level ground keeps its height.")]
+    if not low <= height <= high:
+        return [
+            Fault(
+                f"its height is {height:.3g} m; expected {low} to {high} m",
+                HEIGHT,
+                "The legs reach below the root link: how high must that be for them to stand?",
+            )
+        ]
+    return []
+
+
+def _turned(way: Way, tolerances: Tolerances) -> list[Fault]:
+    x, y, z, w = way.quaternions.T
+    squares = x * x + y * y + z * z + w * w
+    faults = []
+    if float(np.abs(squares - 1).max()) >= DENORMALIZED:
+        worst = float(np.sqrt(squares[int(np.argmax(np.abs(squares - 1)))]))
+        faults.append(
+            Fault(
+                f"its quaternion has the length {worst:.3g}, and tf2 refuses what is not 1",
+                QUATERNION,
+                "A turn by an angle about z is z = sin(angle / 2), w = cos(angle / 2).",
+            )
+        )
+    with np.errstate(all="ignore"):
+        upright = np.degrees(np.arccos(np.clip((w * w - x * x - y * y + z * z) / squares, -1, 1)))
+    if not float(np.quantile(upright, 0.95)) <= tolerances["upright_deg"]:
+        text = f"it does not stand upright, but leans by {np.median(upright):.0f} degrees"
+        order = "A Quaternion has the order x, y, z, w; is yours w first?"
+        cost = 0.0 if faults else QUATERNION
+        return [*faults, Fault(text, cost + HEADING, order)]
+    off = heading_error(way)
+    if off is not None and abs(off) > tolerances["heading_deg"]:
+        faults.append(
+            Fault(
+                f"it looks {abs(off):.0f} degrees beside the direction in which it goes",
+                HEADING,
+                "On a circle one goes at a right angle to the radius. Half an angle stands in a "
+                "quaternion.",
+            )
+        )
+    return faults
+
+
+def heading_error(way: Way) -> float | None:
+    """By how much it usually looks beside its direction [degrees]; None where it does not move."""
+    points, yaw = way.places[:, :2], way.yaw
+    steps = points[2:] - points[:-2]  # about the point between
+    moves = np.linalg.norm(steps, axis=1) > 1e-6
+    if not moves.any():
+        return None
+    goes = np.arctan2(steps[moves, 1], steps[moves, 0])
+    off = (yaw[1:-1][moves] - goes + math.pi) % (2 * math.pi) - math.pi
+    return math.degrees(float(off[int(np.argsort(np.abs(off))[int(0.9 * (len(off) - 1))])]))
+
+
+def fitted(points: Floats) -> tuple[float, float, float, float]:
+    """The circle nearest to points, by least squares: its centre, radius, and the usual distance.
+
+    Kasa's fit: x² + y² = 2 a x + 2 b y + c. Not a number where the points are none, or a line.
+    """
+    middle = points.mean(axis=0)
+    x, y = (points - middle).T
+    matrix = np.column_stack((2 * x, 2 * y, np.ones(len(x))))
+    (a, b, c), _, rank, _ = np.linalg.lstsq(matrix, x * x + y * y, rcond=None)
+    square = c + a * a + b * b
+    if rank < 3 or not square > 0:
+        return math.nan, math.nan, math.nan, math.nan
+    radius = math.sqrt(square)
+    off = float(np.quantile(np.abs(np.hypot(x - a, y - b) - radius), 0.95))
+    return float(a + middle[0]), float(b + middle[1]), radius, off
+
+
+def _place(point: Floats) -> str:
+    return f"({point[0]:.2f}, {point[1]:.2f})"

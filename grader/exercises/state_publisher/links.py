@@ -1,0 +1,70 @@
+"""Whether every link of the robot hangs below `odom`, by one way, and by one sender."""
+
+from __future__ import annotations
+
+import math
+
+from grader.exercise.verdict import Finding
+from grader.exercises.state_publisher.circle import DENORMALIZED
+from grader.exercises.state_publisher.naming import listed
+from grader.exercises.state_publisher.seen import Seen
+from grader.scenes.robot.decoding import Transform
+from grader.scenes.robot.motion import ODOM, bare
+
+HELP = (
+    f"robot_state_publisher sends what lies inside of the robot, from your joint states; your node "
+    f"sends one transform, from {ODOM!r} to the root link, and no other."
+)
+
+
+def judge_links(seen: Seen) -> Finding:
+    """What a listener of tf knows at the end."""
+    kept = [each for each in seen.trace.transforms if is_kept(each)]
+    parents: dict[str, set[str]] = {}
+    senders: dict[str, set[str]] = {}
+    for each in kept:
+        parents.setdefault(bare(each.child), set()).add(bare(each.parent))
+        senders.setdefault(bare(each.child), set()).add(each.publisher)
+    for child in (*seen.links, ODOM):
+        several = parents.get(child, set())
+        if len(several) > 1 or len(senders.get(child, ())) > 1:
+            first = next(t for t in kept if bare(t.child) == child and t.publisher != "scene")
+            told = (
+                f"has two parents, {listed(sorted(several))}"
+                if len(several) > 1
+                else (
+                    "is sent by your node and by robot_state_publisher, and jumps between the two"
+                )
+            )
+            where = (seen.moment(first.tick, f"{child} has two places"),)
+            return Finding(0, f"The frame {child!r} {told}.", HELP, where)
+    up = {child: next(iter(several)) for child, several in parents.items()}
+    lost = [link for link in seen.links if not _is_below_odom(link, up)]
+    if lost or not seen.links:
+        where = (seen.moment(seen.trace.ticks, f"{listed(lost)}: no way from {ODOM}"),)
+        return Finding(
+            0,
+            f"{len(lost)} of {len(seen.links)} links have no place in {ODOM!r}: {listed(lost)}.",
+            HELP,
+            where,
+        )
+    return Finding(1, f"All {len(seen.links)} links have a place in {ODOM!r}.")
+
+
+def is_kept(transform: Transform) -> bool:
+    """Whether tf2 keeps a transform that it hears."""
+    numbers = (*transform.translation, *transform.rotation)
+    parent, child = bare(transform.parent), bare(transform.child)
+    if not parent or not child or parent == child or not all(map(math.isfinite, numbers)):
+        return False
+    return abs(math.fsum(value * value for value in transform.rotation) - 1) < DENORMALIZED
+
+
+def _is_below_odom(link: str, up: dict[str, str]) -> bool:
+    seen: set[str] = set()
+    while link != ODOM:
+        if link in seen or link not in up:
+            return False
+        seen.add(link)
+        link = up[link]
+    return True

@@ -1,0 +1,109 @@
+"""Whether each joint moves as a joint of its kind should: turns on, or goes to and fro."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from grader.exercise.check import Tolerances
+from grader.exercise.verdict import Evidence, Finding
+from grader.exercises.state_publisher.seen import Seen, finite
+from grader.scenes.robot.motion import Floats, Joint
+from robot_py.model import JointType
+
+HELP = (
+    "Angles are in radians and lengths in metres. A joint that turns on has a position that grows "
+    "each time; one that goes to and fro changes its direction where it has gone far enough."
+)
+
+
+def judge_moves(seen: Seen, tolerances: Tolerances) -> Finding:
+    """Each joint of the description that moves."""
+    if not seen.trace.joint_states:
+        return seen.no_joint_states()
+    told, wrong = [], []
+    where: list[Evidence] = []
+    for name, joint in seen.moving.items():
+        said = seen.joints.get(name)
+        if said is None or len(said.positions) < tolerances["least_messages"]:
+            wrong.append(f"{name} has no positions to move by")
+            continue
+        fault, seen_of_it = _judge(said, joint.type, tolerances)
+        if fault:
+            wrong.append(f"{name} {fault}")
+            where.append(seen.moment(int(said.ticks[-1]), f"{name}: {fault}"))
+        else:
+            told.append(f"{name} {seen_of_it}")
+    text = "; ".join([*wrong, *told])
+    share = len(told) / max(len(seen.moving), 1)
+    return Finding(share, f"{text[:1].upper()}{text[1:]}.", HELP, tuple(where))
+
+
+def _judge(joint: Joint, kind: JointType, tolerances: Tolerances) -> tuple[str, str]:
+    """What is wrong with its movement; or '', and how it moves."""
+    positions = finite(joint.positions)
+    if len(positions) < len(joint.positions):
+        return "has positions that are no numbers", ""
+    if float(np.ptp(positions)) < 1e-6:
+        return f"stays at {positions[0]:g}", ""
+    duration_s = max(float(joint.ticks[-1] - joint.ticks[0]) * 0.016, 0.016)
+    if kind == JointType.CONTINUOUS:
+        return _turns(positions, duration_s, tolerances)
+    unit = "m" if kind == JointType.PRISMATIC else "rad"
+    span = tolerances["push_m" if kind == JointType.PRISMATIC else "swing_rad"]
+    return _swings(positions, unit, span, tolerances)
+
+
+def _turns(positions: Floats, duration_s: float, tolerances: Tolerances) -> tuple[str, str]:
+    """On and on, one way; a turn more or less is the same place."""
+    raw = np.diff(positions)
+    steps = (raw + math.pi) % (2 * math.pi) - math.pi
+    jumps = np.abs(raw - steps) > 1e-6  # by whole turns
+    speed = float(np.abs(steps[~jumps]).sum() / duration_s) if (~jumps).any() else math.inf
+    if jumps.mean() > 0.2 or speed > tolerances["turn_most"]:
+        spin = float(np.median(np.abs(raw)) * len(raw) / duration_s)
+        return f"turns by {spin:.0f} rad/s: are these degrees?", ""
+    moved = steps[np.abs(steps) > 1e-9]
+    one_way = max((moved > 0).mean(), (moved < 0).mean()) if len(moved) else 0.0
+    total = abs(float(steps.sum()))
+    if one_way < tolerances["one_way"]:
+        return "turns to and fro; it should turn on, one way", ""
+    if total < tolerances["turn_least_rad"]:
+        return f"turns by {total:.2f} rad in {duration_s:.0f} s; that is hardly seen", ""
+    return "", f"turns on, by {speed:.2f} rad/s"
+
+
+def _swings(
+    positions: Floats, unit: str, span: tuple[float, float], tolerances: Tolerances
+) -> tuple[str, str]:
+    """To and fro, within a span that such a joint has."""
+    low, high = float(positions.min()), float(positions.max())
+    wide = high - low
+    seen = f"goes from {low:.3g} to {high:.3g} {unit}"
+    if wide > span[1]:
+        what = "degrees" if unit == "rad" else "centimetres"
+        return f"{seen}, {wide:.3g} {unit} wide: are these {what}?", ""
+    if wide < span[0]:
+        return f"{seen}: that is hardly seen", ""
+    returns = turning_points(positions, wide / 4)
+    if returns < tolerances["returns"]:
+        return f"{seen} and turns back {returns} times; it should go to and fro", ""
+    steps = np.abs(np.diff(positions))
+    if float(np.quantile(steps, 0.99)) > tolerances["jump_share"] * wide:
+        return f"{seen} in jumps, not step by step", ""
+    return "", f"{seen}, to and fro"
+
+
+def turning_points(values: Floats, least: float) -> int:
+    """How often values turn back by so much at least."""
+    count, direction, extreme = 0, 0, float(values[0])
+    for value in values.tolist():
+        if direction == 0:
+            if abs(value - extreme) >= least:
+                direction, extreme = (1 if value > extreme else -1), value
+        elif (value - extreme) * direction > 0:
+            extreme = value
+        elif (extreme - value) * direction >= least:
+            count, direction, extreme = count + 1, -direction, value
+    return count

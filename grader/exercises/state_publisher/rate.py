@@ -1,0 +1,115 @@
+"""How often messages come, and how steadily: counted in windows, for a tick is no clock."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from grader.exercise.check import Tolerances
+from grader.exercise.sentences import counted
+from grader.exercise.verdict import Finding
+from grader.exercises.state_publisher.seen import Seen
+from grader.scenes.robot.trace import TF, TF_STATIC, TICK_S, RobotTrace
+
+#: So long a window is [ticks]: about half a second.
+WINDOW_TICKS = 32
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How messages came.
+
+    Attributes:
+        hertz: the usual rate.
+        steady: the share of windows that have about so many, 0 to 1.
+        gap_tick: where the worst window begins.
+    """
+
+    hertz: float
+    steady: float
+    gap_tick: int
+
+
+def pace(ticks: list[int], end: int, tolerances: Tolerances) -> Pace:
+    """How messages came, from the first of them to the end of the run.
+
+    Args:
+        ticks: of each, in order; one at least.
+        end: the last tick of the run.
+    """
+    first = ticks[0]
+    edges = np.arange(first, max(end, first + WINDOW_TICKS) + 1, WINDOW_TICKS)
+    counts, _ = np.histogram(ticks, edges)
+    usual = float(np.median(counts))
+    near = np.abs(counts - usual) <= np.maximum(1.01, tolerances["rate_deviation"] * usual)
+    worst = int(np.argmax(np.abs(counts - usual)))
+    return Pace(usual / (WINDOW_TICKS * TICK_S), float(near.mean()), int(edges[worst]))
+
+
+def judge_rate(seen: Seen, tolerances: Tolerances) -> Finding:
+    """Joint states and transforms: rate, steadiness, and what of them is too much."""
+    trace = seen.trace
+    if not trace.joint_states:
+        return seen.no_joint_states()
+    each = [("joint states", _of_one_joint(trace))]
+    messages = {t.message: t.tick for t in seen.sent if t.topic == TF}
+    if messages:
+        each.append(("transforms", list(messages.values())))
+    wrong, told, where = [], [], []
+    for what, ticks in each:
+        found = pace(ticks, trace.ticks, tolerances)
+        low, high = tolerances["rate_hz"]
+        said = f"{what} came {found.hertz:.0f} times a second"
+        if not 0.95 * low <= found.hertz <= 1.05 * high:
+            wrong.append(f"{said}; expected {low} to {high}")
+        elif found.steady < tolerances["rate_share"]:
+            wrong.append(f"{said}, but only {found.steady:.0%} of the time")
+        else:
+            told.append(said)
+            continue
+        where.append(seen.moment(found.gap_tick, f"{what} do not come as usual"))
+    share = 1 - len(wrong) / len(each)
+    flood = _flood(seen, tolerances)
+    if flood:
+        wrong.append(flood)
+        share = min(share, 0.5)
+    if not wrong:
+        return Finding(1, f"{_sentence(told)}, steadily.")
+    return Finding(
+        share,
+        f"{_sentence(wrong)}.",
+        "One message of each kind, from one timer at a fixed rate, is what others can follow.",
+        tuple(where),
+    )
+
+
+def _of_one_joint(trace: RobotTrace) -> list[int]:
+    """The ticks of the joint that is named most often: each may have messages of its own."""
+    named: dict[str, list[int]] = {}
+    for state in trace.joint_states:
+        for name in dict.fromkeys(state.names) or [""]:
+            named.setdefault(name, []).append(state.tick)
+    return max(named.values(), key=len)
+
+
+def _flood(seen: Seen, tolerances: Tolerances) -> str:
+    """What is sent more often than it should be, as a clause; ''."""
+    static = len({t.message for t in seen.sent if t.topic == TF_STATIC})
+    if static > tolerances["static_most"]:
+        return (
+            f"{counted(static, 'message')} came on /tf_static: a StaticTransformBroadcaster is "
+            "for what never moves, and sends it once"
+        )
+    per_message = Counter((t.message, t.child) for t in seen.sent)
+    repeated = [key for key, number in per_message.items() if number > 1]
+    if repeated:
+        most = max(per_message.values())
+        return f"a message on tf holds the transform of {repeated[0][1]!r:.60} {most} times"
+    return ""
+
+
+def _sentence(parts: list[str]) -> str:
+    text = "; ".join(parts)
+    return text[:1].upper() + text[1:]
