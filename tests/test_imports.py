@@ -111,7 +111,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.grading": GROUND | STATIONS - below("grader", "reports"),
     "grader.__init__": GROUND | STATIONS | {"grader.grading"},
     "grader.batch": GROUND | STATIONS | {"grader.grading", "grader.testing.solutions"},
-    "grader.testing": GROUND | STATIONS | {"grader.__init__", "grader.grading", "turtlesim_py"},
+    "grader.testing": GROUND
+    | STATIONS
+    | {"grader.__init__", "grader.grading", "turtlesim_py", "robot_py"},
     "grader.cli": GROUND | STATIONS | below("grader", "__init__", "grading", "testing", "batch"),
     "grader.__main__": {"grader.cli"},
 }

@@ -28,6 +28,8 @@ OLD_WORDS: Final = ("node_executable", "node_name", "node_namespace")
 DESCRIPTIONS: Final = (".urdf", ".urdf.xml", ".xacro")
 #: What `setup.py` calls to list the files of a folder.
 _LISTING: Final = ("walk", "listdir", "scandir", "rglob", "iterdir", "glob")
+#: What a launch file may start that cannot be read.
+ANYTHING: Final = LaunchedNode(None, None, None)
 _AT_HOME: Final = re.compile(r"(/home/|/Users/|/root/|~/|[A-Za-z]:[\\/]).*")
 
 
@@ -95,8 +97,8 @@ def _as_deep(path: str, pattern: str) -> bool:
 
 def _launch(file: Path, called: str, *, is_installed: bool) -> LaunchDescription:
     data = read_bounded(file)
-    if data is None:
-        return LaunchDescription(called, is_installed=is_installed, includes=True)
+    if data is None or file.suffix not in (".py", ".xml"):  # YAML: Python alone does not read it
+        return LaunchDescription(called, is_installed=is_installed, nodes=(ANYTHING,))
     fault, includes = "", False
     nodes: list[LaunchedNode] = []
     texts: list[str] = []
@@ -111,7 +113,7 @@ def _launch(file: Path, called: str, *, is_installed: bool) -> LaunchDescription
             includes = any(_called(each) == "IncludeLaunchDescription" for each in ast.walk(tree))
             texts = [e.value for e in ast.walk(tree) if _is_text(e)]  # type: ignore[attr-defined]
     else:
-        entries = list(_written(file, data))
+        entries = list(_written(data))
         nodes = [_node(attributes) for tag, attributes in entries if tag == "node"]
         includes = any(tag == "include" for tag, _ in entries)
         texts = [t for _, attributes in entries for t in attributes.values() if isinstance(t, str)]
@@ -184,36 +186,14 @@ def _parameter_names(
     return None
 
 
-def _written(file: Path, data: bytes) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The tags of an XML or YAML launch file with their attributes, `param` as a list of names."""
-    if file.suffix == ".xml":
-        root = parse_xml(data)
-        if root is None or isinstance(root, str):
-            return
-        for element in root.iter():
-            names = [param.get("name") for param in element.findall("param")]
-            yield element.tag, {**element.attrib, "param": names}
+def _written(data: bytes) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The tags of an XML launch file with their attributes, `param` as a list of names."""
+    root = parse_xml(data)
+    if root is None or isinstance(root, str):
         return
-    import yaml  # here: few have one
-
-    try:
-        todo: list[Any] = [yaml.safe_load(data)]
-    except (yaml.YAMLError, ValueError, RecursionError):
-        return
-    for _ in range(10_000):  # an alias may lead round in a circle
-        if not todo:
-            return
-        match todo.pop():
-            case list(items):
-                todo += items
-            case dict(entries):
-                todo += entries.values()
-                for tag, said in entries.items():
-                    if isinstance(said, dict):
-                        params = said.get("param")
-                        listed = params if isinstance(params, list) else []
-                        names = [p.get("name") for p in listed if isinstance(p, dict)]
-                        yield str(tag), {**said, "param": names}
+    for element in root.iter():
+        names = [param.get("name") for param in element.findall("param")]
+        yield element.tag, {**element.attrib, "param": names}
 
 
 def _node(attributes: dict[str, Any]) -> LaunchedNode:

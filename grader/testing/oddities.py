@@ -10,6 +10,7 @@ from grader.exercise.loading import Exercise
 from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.driving import Controller, pen, twist
 from grader.scenes.turtlesim.trace import FIRST_TURTLE
+from grader.testing import robot_oddities
 from grader.testing.driving import drive
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import Pose
@@ -127,6 +128,11 @@ ODDITIES: Final[Mapping[str, Controller]] = {
 
 def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
     """Recordings of every oddity, from every start; none for a scene that has none."""
+    if exercise.scene == "robot":
+        return {
+            f"a node that {what}": Recordings(robot_oddities.recorded(odd, exercise.setting))
+            for what, odd in robot_oddities.ODDITIES.items()
+        }
     if exercise.scene != "turtlesim":
         return {}
     return {

@@ -9,12 +9,12 @@ import numpy as np
 
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
-from grader.exercises.state_publisher.seen import Seen
+from grader.exercises.state_publisher.seen import Seen, sentence
 from grader.scenes.robot.motion import ODOM, Floats, Way, bare
 
 #: What each is worth: the circle, its height, the heading, the quaternion.
 CIRCLE, HEIGHT, HEADING, QUATERNION = 0.35, 0.15, 0.3, 0.2
-#: tf2 refuses a quaternion whose square is off 1 by this.
+#: The square of a quaternion's length may be off 1 by this.
 DENORMALIZED = 0.01
 
 
@@ -40,10 +40,11 @@ def judge_odometry(seen: Seen, tolerances: Tolerances) -> Finding:
         )
     faults = [*_circle(way, tolerances), *_height(way, tolerances), *_turned(way, tolerances)]
     if faults:
-        text = "; ".join(fault.text for fault in faults)
         where: tuple[Evidence, ...] = (seen.moment(int(way.ticks[-1]), faults[0].text),)
         share = 1 - sum(fault.costs for fault in faults)
-        return Finding(max(share, 0.0), f"{text[:1].upper()}{text[1:]}.", faults[0].help, where)
+        return Finding(
+            max(share, 0.0), sentence([fault.text for fault in faults]), faults[0].help, where
+        )
     _, _, radius, _ = fitted(way.places[:, :2])
     height = float(np.median(way.places[:, 2]))
     return Finding(
@@ -123,7 +124,7 @@ def _turned(way: Way, tolerances: Tolerances) -> list[Fault]:
         worst = float(np.sqrt(squares[int(np.argmax(np.abs(squares - 1)))]))
         faults.append(
             Fault(
-                f"its quaternion has the length {worst:.3g}, and tf2 refuses what is not 1",
+                f"its quaternion has the length {worst:.3g} instead of 1",
                 QUATERNION,
                 "A turn by an angle about z is z = sin(angle / 2), w = cos(angle / 2).",
             )

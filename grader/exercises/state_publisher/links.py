@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 from grader.exercise.verdict import Finding
-from grader.exercises.state_publisher.circle import DENORMALIZED
 from grader.exercises.state_publisher.naming import listed
-from grader.exercises.state_publisher.seen import Seen
+from grader.exercises.state_publisher.seen import Seen, sentence
 from grader.scenes.robot.decoding import Transform
 from grader.scenes.robot.motion import ODOM, bare
 
@@ -19,7 +18,7 @@ HELP = (
 
 def judge_links(seen: Seen) -> Finding:
     """What a listener of tf knows at the end."""
-    kept = [each for each in seen.trace.transforms if is_kept(each)]
+    kept = [each for each in seen.trace.transforms if not why_refused(each)]
     parents: dict[str, set[str]] = {}
     senders: dict[str, set[str]] = {}
     for each in kept:
@@ -42,6 +41,11 @@ def judge_links(seen: Seen) -> Finding:
     lost = [link for link in seen.links if not _is_below_odom(link, up)]
     if lost or not seen.links:
         where = (seen.moment(seen.trace.ticks, f"{listed(lost)}: no way from {ODOM}"),)
+        if refused := next((t for t in seen.sent if why_refused(t)), None):
+            told = (
+                f"tf2 refuses your transform from {refused.parent!r:.40} to {refused.child!r:.40}"
+            )
+            return Finding(0, sentence([f"{told}: {why_refused(refused)}"]), HELP, where)
         return Finding(
             0,
             f"{len(lost)} of {len(seen.links)} links have no place in {ODOM!r}: {listed(lost)}.",
@@ -51,13 +55,17 @@ def judge_links(seen: Seen) -> Finding:
     return Finding(1, f"All {len(seen.links)} links have a place in {ODOM!r}.")
 
 
-def is_kept(transform: Transform) -> bool:
-    """Whether tf2 keeps a transform that it hears."""
+def why_refused(transform: Transform) -> str:
+    """Why tf2 does not keep a transform that it hears, as a clause; ''."""
     numbers = (*transform.translation, *transform.rotation)
     parent, child = bare(transform.parent), bare(transform.child)
-    if not parent or not child or parent == child or not all(map(math.isfinite, numbers)):
-        return False
-    return abs(math.fsum(value * value for value in transform.rotation) - 1) < DENORMALIZED
+    if not parent or not child:
+        return "a frame has no name"
+    if parent == child:
+        return "the two are one"
+    if not all(map(math.isfinite, numbers)):
+        return "it holds what is no number"
+    return "" if any(transform.rotation) else "its quaternion is all zeros, which turns nothing"
 
 
 def _is_below_odom(link: str, up: dict[str, str]) -> bool:

@@ -8,7 +8,8 @@ import numpy as np
 
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
-from grader.exercises.state_publisher.seen import Seen, finite
+from grader.exercises.state_publisher.naming import judge_names
+from grader.exercises.state_publisher.seen import Seen, finite, number, sentence
 from grader.scenes.robot.motion import Floats, Joint
 from robot_py.model import JointType
 
@@ -22,22 +23,24 @@ def judge_moves(seen: Seen, tolerances: Tolerances) -> Finding:
     """Each joint of the description that moves."""
     if not seen.trace.joint_states:
         return seen.no_joint_states()
+    if not seen.joints.keys() & seen.moving.keys():
+        names = judge_names(seen)
+        return Finding(0, names.rationale, names.help, names.evidence)
     told, wrong = [], []
     where: list[Evidence] = []
     for name, joint in seen.moving.items():
         said = seen.joints.get(name)
         if said is None or len(said.positions) < tolerances["least_messages"]:
-            wrong.append(f"{name} has no positions to move by")
+            wrong.append(f"{name!r} has no positions to move by")
             continue
         fault, seen_of_it = _judge(said, joint.type, tolerances)
         if fault:
-            wrong.append(f"{name} {fault}")
+            wrong.append(f"{name!r} {fault}")
             where.append(seen.moment(int(said.ticks[-1]), f"{name}: {fault}"))
         else:
-            told.append(f"{name} {seen_of_it}")
-    text = "; ".join([*wrong, *told])
+            told.append(f"{name!r} {seen_of_it}")
     share = len(told) / max(len(seen.moving), 1)
-    return Finding(share, f"{text[:1].upper()}{text[1:]}.", HELP, tuple(where))
+    return Finding(share, sentence([*wrong, *told]), HELP, tuple(where))
 
 
 def _judge(joint: Joint, kind: JointType, tolerances: Tolerances) -> tuple[str, str]:
@@ -46,7 +49,7 @@ def _judge(joint: Joint, kind: JointType, tolerances: Tolerances) -> tuple[str, 
     if len(positions) < len(joint.positions):
         return "has positions that are no numbers", ""
     if float(np.ptp(positions)) < 1e-6:
-        return f"stays at {positions[0]:g}", ""
+        return f"stays at {number(positions[0])}", ""
     duration_s = max(float(joint.ticks[-1] - joint.ticks[0]) * 0.016, 0.016)
     if kind == JointType.CONTINUOUS:
         return _turns(positions, duration_s, tolerances)
@@ -80,7 +83,7 @@ def _swings(
     """To and fro, within a span that such a joint has."""
     low, high = float(positions.min()), float(positions.max())
     wide = high - low
-    seen = f"goes from {low:.3g} to {high:.3g} {unit}"
+    seen = f"goes from {number(low)} to {number(high)} {unit}"
     if wide > span[1]:
         what = "degrees" if unit == "rad" else "centimetres"
         return f"{seen}, {wide:.3g} {unit} wide: are these {what}?", ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from grader.exercise.verdict import Finding
+from grader.exercises.state_publisher.seen import sentence
 from grader.packaged import LaunchDescription, LaunchedNode, Packaged
 
 STATE_PUBLISHER = "robot_state_publisher"
@@ -21,10 +22,9 @@ def judge_package(packaged: Packaged | None) -> Finding:
         )
     if packaged.started and not packaged.shortcomings:
         return Finding(1, f"`ros2 run {packaged.name} {packaged.started}` can start it.")
-    text = "; ".join(packaged.shortcomings)
     return Finding(
         0.5 if packaged.started else 0,
-        f"{text[:1].upper()}{text[1:]}.",
+        sentence(list(packaged.shortcomings)),
         "What `ros2 run` starts is a console script in the entry_points of setup.py.",
     )
 

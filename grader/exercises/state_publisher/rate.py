@@ -10,7 +10,7 @@ import numpy as np
 from grader.exercise.check import Tolerances
 from grader.exercise.sentences import counted
 from grader.exercise.verdict import Finding
-from grader.exercises.state_publisher.seen import Seen
+from grader.exercises.state_publisher.seen import Seen, sentence
 from grader.scenes.robot.trace import TF, TF_STATIC, TICK_S, RobotTrace
 
 #: So long a window is [ticks]: about half a second.
@@ -76,10 +76,10 @@ def judge_rate(seen: Seen, tolerances: Tolerances) -> Finding:
         wrong.append(flood)
         share = min(share, 0.5)
     if not wrong:
-        return Finding(1, f"{_sentence(told)}, steadily.")
+        return Finding(1, sentence([f"{each}, steadily" for each in told]))
     return Finding(
         share,
-        f"{_sentence(wrong)}.",
+        sentence(wrong),
         "One message of each kind, from one timer at a fixed rate, is what others can follow.",
         tuple(where),
     )
@@ -108,8 +108,3 @@ def _flood(seen: Seen, tolerances: Tolerances) -> str:
         most = max(per_message.values())
         return f"a message on tf holds the transform of {repeated[0][1]!r:.60} {most} times"
     return ""
-
-
-def _sentence(parts: list[str]) -> str:
-    text = "; ".join(parts)
-    return text[:1].upper() + text[1:]

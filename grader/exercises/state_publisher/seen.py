@@ -61,6 +61,18 @@ class Seen:
         return Evidence(tick, round(tick * TICK_S, 3), _inside(x), _inside(y), note)
 
 
+def sentence(parts: list[str]) -> str:
+    """Clauses as a sentence; what begins with the name of a file stays as it is."""
+    text = "; ".join(parts)
+    first = text.partition(" ")[0]
+    return f"{text if '.' in first else text[:1].upper() + text[1:]}."
+
+
+def number(value: float) -> str:
+    """As it may stand in a sentence: -0.506, 0, 29."""
+    return f"{round(value, 3) + 0.0:.4g}"
+
+
 def _inside(value: float) -> float:
     if not math.isfinite(value):
         return 0.0

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
-from grader.exercises.state_publisher.seen import Seen
+from grader.exercises.state_publisher.seen import Seen, sentence
 
 #: What each of the three is worth.
 SET, INCREASE, SAME = 0.4, 0.2, 0.4
@@ -47,10 +47,9 @@ def judge_stamps(seen: Seen, tolerances: Tolerances) -> Finding:
         where.append(seen.moment(alone[0].tick, "a stamp of its own"))
     if not wrong:
         return Finding(1, "All stamps are set, increase, and are the same in both messages.")
-    text = "; ".join(wrong)
     return Finding(
         share,
-        f"{text[:1].upper()}{text[1:]}.",
+        sentence(wrong),
         "Ask the clock once for each step, and use that time in the joint state and the transform.",
         tuple(where),
     )

@@ -4,8 +4,8 @@
     python virtual_main.py FD EVIDENCE SCENE ROOT path/to/script.py [function]
     python virtual_main.py --zygote SOCKET GRADER_PID MESSAGES
 
-FD is the link to the simulator, EVIDENCE a pipe to the grader (`telling`), SCENE a JSON list of two:
-the names and namespaces of the simulator's nodes, and whether two stamps have to be told apart.
+FD is the link to the simulator, EVIDENCE a pipe to the grader (`telling`), SCENE a JSON list of the
+simulator's nodes, with names and namespaces, and of whether two stamps have to be told apart.
 Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
 the same. Everything of ours is imported before the submission is, and then forgotten by the import
 system.

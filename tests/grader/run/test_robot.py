@@ -1,0 +1,70 @@
+"""The tutorial's node in virtual time: as in real time, and the same every time."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader import grading
+from grader.exercise.loading import load_exercise
+from grader.recording.recording import Recordings
+from grader.scenes.robot.trace import RobotTrace
+from grader.testing.solutions import read_solutions
+
+pytest.importorskip("tf2_ros")
+EXERCISE = load_exercise("state_publisher")
+LOOP = EXERCISE.folder / "right" / "constructor_loop.py"
+TWO_STAMPS = "odom_trans.header.stamp = now.to_msg()"
+
+
+@pytest.fixture(scope="module")
+def recorded() -> Recordings:
+    return grading.record(LOOP, EXERCISE)
+
+
+def trace_of(recordings: Recordings) -> RobotTrace:
+    return RobotTrace.of(recordings.nominal.trace)
+
+
+def test_a_loop_in_the_constructor_runs_in_virtual_time(recorded):
+    assert recorded.nominal.run.time == "virtual"
+    assert recorded.nominal.run.outcome == "finished"
+    assert len(trace_of(recorded).joint_states) == 600  # 30 a second for 20 s
+
+
+def test_two_runs_are_equal(recorded):
+    again = grading.record(LOOP, EXERCISE)
+    assert again.nominal.run.trace_sha256 == recorded.nominal.run.trace_sha256
+    assert trace_of(again).messages == trace_of(recorded).messages
+
+
+def test_what_comes_30_times_a_second_goes_out_15_times(recorded):
+    own = {t.message for t in trace_of(recorded).transforms if t.publisher == "scene"}
+    assert len(own) == pytest.approx(300, abs=3)
+
+
+def test_a_recording_is_read_back_as_it_was(recorded, tmp_path):
+    grading.save_recordings(recorded, tmp_path / "recording")
+    read = grading.load_recordings(tmp_path / "recording")
+    assert trace_of(read).messages == trace_of(recorded).messages
+    verdicts = [grading.judge(each, EXERCISE).verdicts for each in (recorded, read)]
+    assert verdicts[0] == verdicts[1]
+
+
+def test_what_a_package_says_of_itself_is_read_back_too(tmp_path):
+    reference = read_solutions(EXERCISE)[0].path
+    recorded = grading.record(reference, EXERCISE)
+    grading.save_recordings(recorded, tmp_path / "recording")
+    read = grading.load_recordings(tmp_path / "recording")
+    assert read.nominal.packaged == recorded.nominal.packaged
+    assert read.nominal.packaged.started == "state_publisher"
+
+
+def test_two_questions_for_the_time_in_one_step_get_two_answers(tmp_path):
+    text = LOOP.read_text()
+    assert text.count(TWO_STAMPS) == 1
+    asked = text.replace(TWO_STAMPS, TWO_STAMPS.replace("now", "self.get_clock().now()"))
+    (tmp_path / "node.py").write_text(asked)
+    trace = trace_of(grading.record(tmp_path / "node.py", EXERCISE))
+    told = {state.stamp_ns for state in trace.joint_states}
+    apart = [t for t in trace.transforms if t.child == "axis" and t.stamp_ns not in told]
+    assert len(apart) == len(trace.joint_states)
