@@ -93,7 +93,9 @@ def _write_sheet(folder: Path, exercise: Exercise, grade: str) -> None:
     manifest = folder / "package.xml"
     text = manifest.read_text(encoding="utf-8", errors="replace") if manifest.is_file() else ""
     package = re.search(r"<name>\s*(\w+)\s*</name>", text)
-    program = next(iter(_with_todos(folder)), PROGRAM)
+    to_fill_in = _with_todos(folder)  # what lies in a Python package first
+    to_fill_in.sort(key=lambda file: not (folder / file).with_name("__init__.py").exists())
+    program = next(iter(to_fill_in), PROGRAM)
     start = Start(program, package[1] if package else "", grade)
     made = sheet(exercise, load_scene(exercise.scene), start)
     (folder / SHEET).write_text(made, encoding="utf-8")

@@ -134,10 +134,12 @@ def _waits(checks: Iterable[Check]) -> Iterator[str]:
 
 def _runs(exercise: Exercise, scene: Scene) -> str:
     limits, varied = exercise.limits, exercise.varied
+    rest = f"when the {scene.thing} has moved and then rested for {limits.rest_s:g} s, "
+    rested = rest if limits.rest_s else ""
     told = [
         "Your node is run beside a simulator that shows no window, for "
-        f"{limits.total_s:g} simulated seconds at most. The run ends before that when the "
-        f"{scene.thing} has moved and then rested for {limits.rest_s:g} s, when nothing has moved "
+        f"{limits.total_s:g} simulated seconds at most. The run ends before that "
+        f"{rested}when nothing has moved "
         f"in the first {limits.first_motion_s:g} s, or when your node ends. Time is simulated: the "
         "same program gets the same verdict every time, on any machine.",
     ]

@@ -45,10 +45,11 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def publishes(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """It publishes steadily.
 
-    Joint states come {rate_hz} times a second, and for {rate_share%} % of the time their number in
-    half a second is off the usual by {rate_deviation%} % at most: half of the points. The same
-    holds for the node's transforms on /tf, if it sends any: the other half. Half at most for more
-    than {static_most} messages on /tf_static, or a message that holds the same transform twice.
+    Joint states come {rate_least_hz} to {rate_most_hz} times a second, and for {rate_share%} of the
+    time their number in half a second is off the usual by {rate_deviation%} at most: half of the
+    points. The same holds for the node's transforms on /tf, if it sends any: the other half. Half
+    at most for more than {static_most} messages on /tf_static, or a message that holds the same
+    transform twice.
     """
     return error_first(recordings, judge_rate(Seen(recordings), tolerances))
 
@@ -70,7 +71,7 @@ def stamps(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """The messages carry the time.
 
     No stamp is 0; else there are no points. From message to message they increase (1/5 of the
-    points), and {same_share%} % of the transforms have the stamp of a joint state (2/5).
+    points), and {same_share%} of the transforms have the stamp of a joint state (2/5).
     """
     return error_first(recordings, judge_stamps(Seen(recordings), tolerances))
 
@@ -80,9 +81,10 @@ def joints_move(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """The joints move as they should.
 
     A continuous joint turns on, one way for 95 % of the time, by {turn_least_rad} rad at least and
-    by no more than {turn_most} rad/s. A revolute one goes to and fro, {swing_rad} rad wide, a
-    prismatic one {push_m} m wide; both turn back {returns} times at least, and go step by step. The
-    points are the part of the joints that do. Limits in the URDF do not count.
+    by no more than {turn_most} rad/s. A revolute one goes to and fro, {swing_least_rad} to
+    {swing_most_rad} rad wide, a prismatic one {push_least_m} to {push_most_m} m wide; both turn
+    back {returns} times at least, and go step by step. The points are the part of the joints that
+    do. Limits in the URDF do not count.
     """
     return error_first(recordings, judge_moves(Seen(recordings), tolerances))
 
@@ -91,10 +93,11 @@ def joints_move(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def odometry(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """The robot goes in a circle and looks ahead.
 
-    The transforms from `odom` to the root link lie on a circle with a radius of {radius_m} m, in
-    either direction, and go one way without jumps (35 % of the points); at a constant height of
-    {height_m} m (15 %); the robot stands upright and looks in the direction in which it goes, give
-    or take {heading_deg} degrees (30 %); and the quaternion has the length 1 (20 %).
+    The transforms from `odom` to the root link lie on a circle with a radius of {radius_least_m} to
+    {radius_most_m} m, in either direction, and go one way without jumps (35 % of the points); at a
+    constant height of {height_least_m} to {height_most_m} m (15 %); the robot stands upright and
+    looks in the direction in which it goes, give or take {heading_deg} degrees (30 %); and the
+    quaternion has the length 1 (20 %).
     """
     return error_first(recordings, judge_odometry(Seen(recordings), tolerances))
 

@@ -76,7 +76,7 @@ def _absent(seen: Seen) -> Finding:
 def _circle(way: Way, tolerances: Tolerances) -> list[Fault]:
     points = way.places[:, :2]
     x, y, radius, off = fitted(points)
-    low, high = tolerances["radius_m"]
+    low, high = tolerances["radius_least_m"], tolerances["radius_most_m"]
     help = "x and y are the radius times the cosine and the sine of one angle that grows steadily."
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     if float(steps.sum()) < tolerances["way_least_m"]:
@@ -100,7 +100,7 @@ def _circle(way: Way, tolerances: Tolerances) -> list[Fault]:
 
 def _height(way: Way, tolerances: Tolerances) -> list[Fault]:
     heights = way.places[:, 2]
-    low, high = tolerances["height_m"]
+    low, high = tolerances["height_least_m"], tolerances["height_most_m"]
     height = float(np.median(heights))
     if float(np.ptp(heights)) > tolerances["height_error_m"]:
         text = f"its height changes, from {heights.min():.2f} to {heights.max():.2f} m"

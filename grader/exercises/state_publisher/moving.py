@@ -54,7 +54,10 @@ def _judge(joint: Joint, kind: JointType, tolerances: Tolerances) -> tuple[str, 
     if kind == JointType.CONTINUOUS:
         return _turns(positions, duration_s, tolerances)
     unit = "m" if kind == JointType.PRISMATIC else "rad"
-    span = tolerances["push_m" if kind == JointType.PRISMATIC else "swing_rad"]
+    names = (
+        ("push_least_m", "push_most_m") if unit == "m" else ("swing_least_rad", "swing_most_rad")
+    )
+    span = tolerances[names[0]], tolerances[names[1]]
     return _swings(positions, unit, span, tolerances)
 
 

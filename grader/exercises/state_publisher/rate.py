@@ -60,7 +60,7 @@ def judge_rate(seen: Seen, tolerances: Tolerances) -> Finding:
     wrong, told, where = [], [], []
     for what, ticks in each:
         found = pace(ticks, trace.ticks, tolerances)
-        low, high = tolerances["rate_hz"]
+        low, high = tolerances["rate_least_hz"], tolerances["rate_most_hz"]
         said = f"{what} came {found.hertz:.0f} times a second"
         if not 0.95 * low <= found.hertz <= 1.05 * high:
             wrong.append(f"{said}; expected {low} to {high}")
