@@ -30,7 +30,9 @@ def test_a_plan_survives_the_way_to_another_process(plan):
 
 
 def test_every_field_and_its_type_survive():
-    plan = Plan(Limits(1.0, 2.0, 3.0), Start(-0.1, 1 / 3, 5e-324), "moon", 42, ("odd", "ü\n"), "i")
+    plan = Plan(
+        Limits(1.0, 2.0, 3.0), Start(-0.1, 1 / 3, 5e-324), "moon", 42, ("odd", "ü\n"), "i", "s"
+    )
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))
     back = Plan.from_json(plan.to_json())
