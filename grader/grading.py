@@ -25,7 +25,7 @@ from grader.recording import folder as recording_folder
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
-from grader.run import real_time, virtual_time
+from grader.run import real_time, static, virtual_time
 from grader.run.lost import SimulatorLost, judged_all_the_same
 from grader.run.plan import Plan
 from grader.run.processes import cores
@@ -52,6 +52,11 @@ class Runner(Protocol):
 
 
 RUNNERS: Mapping[Clock, Runner] = {"real": real_time.run, "virtual": virtual_time.run}
+
+
+def runner(exercise: Exercise, time: Clock) -> Runner:
+    """What runs submissions to an exercise; where nothing is started, no clock counts."""
+    return RUNNERS[time] if exercise.is_started else static.run
 
 
 def grade(
@@ -85,7 +90,7 @@ def grade(
         GraderFailure: the grader itself failed, twice; never the submission's fault.
     """
     asked = _loaded(exercise)
-    with _opened(submission, executable) as opened:
+    with _opened(submission, executable, asked) as opened:
         recordings = _record(opened, asked, time, seed, progress)
         return judge(recordings, asked, submission=opened.name)
 
@@ -100,8 +105,9 @@ def record(
     progress: Progress | None = None,
 ) -> Recordings:
     """Run a submission, and do not judge it; see `grade`."""
-    with _opened(submission, executable) as opened:
-        return _record(opened, _loaded(exercise), time, seed, progress)
+    asked = _loaded(exercise)
+    with _opened(submission, executable, asked) as opened:
+        return _record(opened, asked, time, seed, progress)
 
 
 def judge(
@@ -279,7 +285,7 @@ def _record(
         raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
         raise UsageError(f"seed: expected a whole number, found {seed!r}")
-    return run_all(submission, exercise, RUNNERS[time], seed=seed, progress=progress)
+    return run_all(submission, exercise, runner(exercise, time), seed=seed, progress=progress)
 
 
 def _loaded(exercise: AnyPath | Exercise) -> Exercise:
@@ -287,9 +293,12 @@ def _loaded(exercise: AnyPath | Exercise) -> Exercise:
 
 
 @contextmanager
-def _opened(submission: AnyPath | Submission, executable: str | None) -> Iterator[Submission]:
+def _opened(
+    submission: AnyPath | Submission, executable: str | None, exercise: Exercise
+) -> Iterator[Submission]:
     if isinstance(submission, Submission):
         yield submission
         return
-    with open_submission(Path(submission), executable) as opened:
+    is_started = exercise.is_started
+    with open_submission(Path(submission), executable, is_started=is_started) as opened:
         yield opened

@@ -49,7 +49,8 @@ def graded(args: argparse.Namespace) -> Result:
     _withdraw(out, args.json, error_file.inputs(args))
     exercise = load_exercise(args.exercise)
     with ExitStack() as held:
-        with open_submission(args.submission, args.executable) as submission:
+        is_started = exercise.is_started
+        with open_submission(args.submission, args.executable, is_started=is_started) as submission:
             result, recordings = _run_and_judge(args, submission, exercise, out, held)
         _report(args, result, recordings, out)
     return result
@@ -70,14 +71,15 @@ def _run_and_judge(
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
     origin = grading.provenance(submission, exercise, args.seed)
     _make_folders(out, args.json, held)
-    messages.print(f"Running it beside a simulator, in {args.time} time ...")
+    how = f"Running it beside a simulator, in {args.time} time"
+    messages.print(f"{how if exercise.is_started else 'Looking at it, and starting nothing'} ...")
 
     def tell(nominal: Recording) -> None:
         if args.watch:
             known = grading.judge_nominal(nominal, exercise, submission=submission.name)
             _show_nominal(known, nominal, out, messages)
 
-    runner = grading.RUNNERS[args.time]
+    runner = grading.runner(exercise, args.time)
     with folder.saving(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
         with (
             progress.shown(messages, "running") as show,

@@ -188,6 +188,8 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
         )
     except NoFinding as error:
         raise CheckFailed(_told(check, error)) from error
+    if not finding.judged:
+        return not_judged(finding.rationale, finding.help)
     share = min(max(float(finding.share), 0.0), 1.0)
     passed = share >= 1.0
     return Verdict(

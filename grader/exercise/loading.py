@@ -33,6 +33,8 @@ KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs"),
     *("points", "visible", "late", "tolerances", "starter"),
 )
+#: Where nothing is started, no time passes that could be limited.
+NO_LIMITS = Limits(0.0, 0.0, 0.0)
 LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
 MOST_RUNS = 100
@@ -69,7 +71,7 @@ class Exercise:
         name: as `--exercise` takes it, and as a result names it.
         title: what a student reads.
         task: what is to be done, in Markdown; '' where the title says it all.
-        limits: when a run ends.
+        limits: when a run ends; `NO_LIMITS` where nothing is started.
         varied: further runs that start elsewhere.
         points: check name -> points, in the order of the report.
         tolerances: what the checks may read; their names are the checks' own business.
@@ -101,8 +103,15 @@ class Exercise:
     late: LatePolicy | None = None
 
     @property
+    def is_started(self) -> bool:
+        """Whether something of a submission is started; else it is only looked at."""
+        return not load_scene(self.scene).examiner
+
+    @property
     def conditions(self) -> dict[str, float]:
         """What only a run can follow: a recording that was made with other values keeps them."""
+        if not self.is_started:
+            return {}
         parts = {"limits": asdict(self.limits), "varied_runs": asdict(self.varied)}
         if parts["varied_runs"].pop(PER_STUDENT):
             parts["varied_runs"][PER_STUDENT] = 1
@@ -222,7 +231,7 @@ def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
 def _described(file: YamlFile, place: Place) -> dict[str, Any]:
     """The exercise.yaml of an exercise, which must be whole."""
     data: dict[str, Any] = file.data
-    for key in ("exercise", "title", "limits", "points"):
+    for key in ("exercise", "title", "points"):
         if key not in data:
             raise Mistake((), f"it has no {key!r}")
     _check_keys(data)
@@ -284,13 +293,7 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     if scene not in SCENES:
         raise Mistake(("scene",), f"expected one of {', '.join(SCENES)}, found {scene!r}")
     setting = _setting(data.get("setting"), load_scene(scene), place)
-    limits = _numbers(data, "limits", dict.fromkeys(LIMITS, 1.0))
-    missing = [key for key in LIMITS if key not in limits]
-    if missing:
-        raise Mistake(("limits",), f"{missing[0]} is missing; there must be {', '.join(LIMITS)}")
-    for key in ("first_motion_s", "total_s"):
-        if not limits[key]:
-            raise Mistake(("limits", key), "expected a number above 0, found 0")
+    limits = _limits(data) if not load_scene(scene).examiner else _without_clock(data, scene)
     varied = _varied(data)
     _check_varied(varied, load_scene(scene).farthest_start_m)
     tolerances = data.get("tolerances") or {}
@@ -304,7 +307,7 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     exercise = Exercise(
         name=data["exercise"],
         title=str(data["title"]),
-        limits=Limits(**{key: float(value) for key, value in limits.items()}),
+        limits=limits,
         varied=varied,
         points=points,
         tolerances=tolerances,
@@ -318,6 +321,26 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         visible=handing_in.visible(data.get("visible"), checks, points),
     )
     return replace(exercise, late=handing_in.late(data.get("late"), exercise.max_score))
+
+
+def _limits(data: Mapping[str, Any]) -> Limits:
+    if "limits" not in data:
+        raise Mistake((), "it has no 'limits'")
+    limits = _numbers(data, "limits", dict.fromkeys(LIMITS, 1.0))
+    missing = [key for key in LIMITS if key not in limits]
+    if missing:
+        raise Mistake(("limits",), f"{missing[0]} is missing; there must be {', '.join(LIMITS)}")
+    for key in ("first_motion_s", "total_s"):
+        if not limits[key]:
+            raise Mistake(("limits", key), "expected a number above 0, found 0")
+    return Limits(**{key: float(value) for key, value in limits.items()})
+
+
+def _without_clock(data: Mapping[str, Any], scene: str) -> Limits:
+    for part in ("limits", "varied_runs"):
+        if data.get(part):
+            raise Mistake((part,), f"nothing is started in the scene {scene!r}: leave it out")
+    return NO_LIMITS
 
 
 def _sha256(data: Mapping[str, Any], setting: str, folder: Path) -> str:

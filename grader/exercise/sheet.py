@@ -54,7 +54,7 @@ def sheet(exercise: Exercise, scene: Scene, start: Start) -> str:
         _judged(exercise, scene),
         _tolerances(exercise),
         ["## How to try it", scene.how_to_try(start.program, start.package)],
-        _handed_in(start),
+        _handed_in(start, exercise),
     )
     texts = (text.strip("\n") for part in parts for text in part)
     return "\n\n".join(text for text in texts if text) + "\n"
@@ -133,6 +133,13 @@ def _waits(checks: Iterable[Check]) -> Iterator[str]:
 
 
 def _runs(exercise: Exercise, scene: Scene) -> str:
+    if not exercise.is_started:
+        return _wrapped(
+            f"Nothing of your {scene.thing} is started, and no time passes: what it installs and "
+            "what it would start is found out by evaluating its set-up and its launch files, in a "
+            f"process that reaches nothing else. The same {scene.thing} gets the same verdict "
+            "every time, on any machine, with ROS and without."
+        )
     limits, varied = exercise.limits, exercise.varied
     rest = f"when the {scene.thing} has moved and then rested for {limits.rest_s:g} s, "
     rested = rest if limits.rest_s else ""
@@ -182,7 +189,7 @@ def _in_yaml(value: object) -> str:
     return dumped.removesuffix("...\n").strip()
 
 
-def _handed_in(start: Start) -> Iterator[str]:
+def _handed_in(start: Start, exercise: Exercise) -> Iterator[str]:
     yield "## How to hand it in"
     yield "Grade it yourself first, as often as you like, from the folder above this one:"
     yield f"    {start.grade}"
@@ -192,8 +199,9 @@ def _handed_in(start: Start) -> Iterator[str]:
         "in the last line, shows it in a picture. With `--watch` it is graded again whenever "
         "you save."
     )
+    what = "the .py file, the folder" if exercise.is_started else "the folder"
     yield _wrapped(
-        "Hand in the .py file, the folder of the package, or a .zip of it, as your course asks. "
+        f"Hand in {what} of the package, or a .zip of it, as your course asks. "
         "Leave out what is made: `graded`, `build`, `install`, `log`, `__pycache__`."
     )
 

@@ -58,12 +58,15 @@ class Finding:
         rationale: what was seen, with numbers.
         help: what to look at, without giving the code away; for anything but a pass.
         evidence: where to see it.
+        judged: False where the check cannot tell, for no fault of the submission's: the verdict is
+            then "not judged", and says why by `rationale`.
     """
 
     share: float
     rationale: str
     help: str = ""
     evidence: tuple[Evidence, ...] = ()
+    judged: bool = True
 
 
 @dataclass(frozen=True)
@@ -141,6 +144,8 @@ def wrong_with(finding: object, runs: int) -> str:
         text = getattr(finding, name)
         if not isinstance(text, str):
             return f"{name}: expected a text, found {text!r}"
+    if type(finding.judged) is not bool:
+        return f"judged: expected True or False, found {finding.judged!r}"
     evidence: object = finding.evidence
     if not isinstance(evidence, tuple):
         return f"evidence: expected a tuple, found a {type(evidence).__name__}"

@@ -269,8 +269,9 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
         _write_json(folder / CONDUCT, recording.conduct.to_json())
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)
-    if recording.start is None:  # a scenario begins in the usual place
-        scenario = {"name": NAME, "description": "a graded run", **scene.scenario(recording.trace)}
+    # a scenario begins in the usual place
+    if recording.start is None and (inputs := scene.scenario(recording.trace)):
+        scenario = {"name": NAME, "description": "a graded run", **inputs}
         _write_json(folder / SCENARIO, scenario, indent=None)
 
 

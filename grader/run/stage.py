@@ -20,7 +20,7 @@ from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
 from grader.run.student import main as student_main
-from grader.submission.opening import EntryPoint, Launch, Submission
+from grader.submission.opening import EntryPoint, Launch, Submission, Whole
 
 
 def target(submission: Submission) -> list[str]:
@@ -30,6 +30,8 @@ def target(submission: Submission) -> list[str]:
         words = [json.dumps([[p.name, _words(p.entry), p.arguments] for p in start.programs])]
     elif isinstance(start, EntryPoint):
         words = [_words(start)]
+    elif isinstance(start, Whole):
+        raise ValueError("nothing of this submission is started")
     else:
         words = [str(start.path), *([start.function] if start.function else [])]
     return [str(submission.root), *words]
@@ -91,9 +93,11 @@ class Stage:
         command: Sequence[str],
         submission: Submission,
         pass_fds: tuple[int, ...] = (),
+        env: Mapping[str, str] | None = None,
     ) -> Watched:
         """Start the submission's process in its own folder."""
-        return self._start(command, student_environment({}), submission, pass_fds)
+        env = student_environment({}) if env is None else env
+        return self._start(command, env, submission, pass_fds)
 
     def virtual_student(
         self, command: Sequence[str], submission: Submission, pass_fds: tuple[int, ...]

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from grader.scenes.scene import Scene
 
 #: The scenes that there are; each is a module of this package with an object `SCENE`.
-NAMES = ("turtlesim", "robot")
+NAMES = ("turtlesim", "robot", "package")
 #: Packages whose messages nearly every submission to one of them imports; some may not be there.
 MESSAGES = (
     *("geometry_msgs", "std_msgs", "std_srvs", "turtlesim", "turtlesim_msgs"),

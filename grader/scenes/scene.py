@@ -216,6 +216,14 @@ class Scene(Protocol):
         """As an exercise names it; also that of its folder."""
 
     @property
+    def examiner(self) -> str:
+        """The program, in this repository, that looks at a submission of which nothing is started.
+
+        '' in a scene that has nodes. Where there is one, a run has no clock and no simulator:
+        the program is the submission's process, and leaves what `decode` takes.
+        """
+
+    @property
     def tick_ns(self) -> int:
         """The length of a tick [ns]."""
 

@@ -20,6 +20,7 @@ from grader.submission.start import (
     Program,
     Script,
     Submission,
+    Whole,
 )
 from grader.text import clip
 
@@ -58,12 +59,14 @@ def found(submission: Submission) -> bytes:
     )
 
 
-def _told(start: EntryPoint | Script | Launch) -> dict[str, object]:
+def _told(start: EntryPoint | Script | Launch | Whole) -> dict[str, object]:
     match start:
         case EntryPoint(module, function):
             return {"module": module, "function": function}
         case Script(path, function):
             return {"path": str(path), "function": function}
+        case Whole(package):
+            return {"package": package}
     return {
         "programs": [
             {"name": each.name, "entry": _told(each.entry), "arguments": list(each.arguments)}
@@ -147,7 +150,7 @@ def _packaged(said: dict[str, Any] | None) -> Packaged | None:
         raise _nonsense() from None
 
 
-def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch:
+def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch | Whole:
     match said:
         case {"programs": list(programs)} if programs:
             return Launch(tuple(map(_program, programs)))
@@ -155,6 +158,8 @@ def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch:
             return EntryPoint(module, function)
         case {"path": str(path), "function": str() | None as function}:
             return Script(Path(path), function)
+        case {"package": str(package)}:
+            return Whole(package)
     raise _nonsense()
 
 

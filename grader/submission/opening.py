@@ -15,17 +15,22 @@ from pathlib import Path
 from grader.scratch import make_folder
 from grader.submission import reader
 from grader.submission.private_copy import copy_privately
-from grader.submission.start import EntryPoint, Imports, Launch, Script, Submission
+from grader.submission.start import EntryPoint, Imports, Launch, Script, Submission, Whole
 
-__all__ = ["EntryPoint", "Imports", "Launch", "Script", "Submission", "open_submission"]
+__all__ = [
+    *("EntryPoint", "Imports", "Launch", "Script", "Submission", "Whole", "open_submission"),
+]
 
 
 @contextmanager
-def open_submission(path: Path, executable: str | None = None) -> Iterator[Submission]:
+def open_submission(
+    path: Path, executable: str | None = None, *, is_started: bool = True
+) -> Iterator[Submission]:
     """Find what to start, in a copy that is there until the context ends.
 
     `executable` chooses among the console scripts or Python files of a folder or zip; a single
-    .py file leaves no choice.
+    .py file leaves no choice. Where nothing is started (`is_started`), all of it is taken, which
+    must be a folder or an archive with a package; `executable` then chooses among packages.
 
     Raises:
         SubmissionError: there is nothing to start, no way to tell what, or too much to be read.
@@ -36,7 +41,7 @@ def open_submission(path: Path, executable: str | None = None) -> Iterator[Submi
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()
-        yield _in_private(reader.read(path, executable, scratch), path, scratch)
+        yield _in_private(reader.read(path, executable, scratch, is_started=is_started), path, scratch)
 
 
 def _in_private(submission: Submission, path: Path, scratch: Path) -> Submission:

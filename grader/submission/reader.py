@@ -58,8 +58,10 @@ def warm() -> None:
             _warm.append(_Process())
 
 
-def read(path: Path, executable: str | None, scratch: Path) -> Submission:
-    """Read a submission; see `finding.find`.
+def read(
+    path: Path, executable: str | None, scratch: Path, *, is_started: bool = True
+) -> Submission:
+    """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
     Raises:
         SubmissionError: as there, or it takes more than the limits.
@@ -78,6 +80,7 @@ def read(path: Path, executable: str | None, scratch: Path) -> Submission:
                 "path": str(path),
                 "executable": executable,
                 "scratch": str(scratch),
+                "is_started": is_started,
             }
         )
         end = asked.end()

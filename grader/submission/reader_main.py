@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.errors import SubmissionError, UsageError
-from grader.submission import answer, encoding, limits, unpacking
+from grader.submission import answer, encoding, limits, unpacking, whole
 from grader.submission.finding import find
 from grader.submission.folder import shown
 from grader.submission.imports import read_imports
@@ -35,6 +35,8 @@ def _answer(request: dict[str, Any]) -> bytes:
     path, scratch = Path(request["path"]), Path(request["scratch"])
     _tell_what_is_read(path if path.is_dir() else path.parent, *unpacking.places(scratch))
     try:
+        if not request["is_started"]:
+            return answer.found(whole.find(path, request["executable"], scratch))
         found = find(path, request["executable"], scratch)
         only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
         imports = read_imports(found.root, found.start, only)

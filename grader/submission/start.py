@@ -46,6 +46,17 @@ class Launch:
 
 
 @dataclass(frozen=True)
+class Whole:
+    """Start nothing: all of it is looked at.
+
+    Attributes:
+        package: the one that is asked for, where there may be several; '' for none in particular.
+    """
+
+    package: str = ""
+
+
+@dataclass(frozen=True)
 class Imports:
     """The modules, by the first part of their names, that are not the submission's own.
 
@@ -68,7 +79,7 @@ class Submission:
 
     name: str  # as handed in: "alice.zip", "turtle_controller.py"
     root: Path  # in its copy, absolute; comes first on sys.path and is the working directory
-    start: EntryPoint | Script | Launch
+    start: EntryPoint | Script | Launch | Whole
     found: str  # a sentence for the user: "console script turtle_controller in setup.py"
     imports: Imports = field(default_factory=Imports, compare=False)
     #: for the result: what is wrong with it that a run does not show, and what was not started

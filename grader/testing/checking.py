@@ -8,9 +8,8 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from grader.exercise.loading import Exercise, load_exercise
-from grader.grading import AnyPath, run_all
+from grader.grading import AnyPath, run_all, runner
 from grader.recording.recording import Recordings
-from grader.run import virtual_time
 from grader.scratch import make_folder
 from grader.submission.opening import open_submission
 from grader.testing.examination import Examination, Problem, Trial
@@ -76,8 +75,9 @@ def _run(
     with make_folder() as folder, ThreadPoolExecutor(jobs) as pool:
 
         def run(solution: Solution) -> Recordings:
-            with open_submission(paths[solution.name]) as submission:
-                return run_all(submission, exercise, virtual_time.run)
+            path, is_started = paths[solution.name], exercise.is_started
+            with open_submission(path, is_started=is_started) as submission:
+                return run_all(submission, exercise, runner(exercise, "virtual"))
 
         paths = {solution.name: solution.lay_out(folder) for solution in solutions}
         tasks: dict[Future[Recordings], str] = {}

@@ -45,6 +45,7 @@ class Turtlesim:
     """
 
     name: Final = "turtlesim"
+    examiner: Final = ""
     tick_ns: Final = TICK_NS
     introduction: Final = Introduction(
         nodes=(("turtlesim", "/"),),

@@ -31,6 +31,8 @@ HOST = (
     *("grader/__init__.py", "grader/system.py", "grader/versions.py", "grader/run/__init__.py"),
     *("grader/run/student", "grader/run/lockstep"),
     *("grader/run/processes/__init__.py", "grader/run/processes/cores.py"),
+    # of a package that is looked at
+    *("grader/limited.py", "grader/scenes/__init__.py", "grader/scenes/package"),
 )
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
 #: Of /etc, where libraries are, and the time zone; who is here, the process is told otherwise.

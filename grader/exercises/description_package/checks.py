@@ -1,0 +1,159 @@
+"""What is looked at: the installation, the launch files, the description, its meshes, the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from grader.exercise.check import Checks, Tolerances
+from grader.exercise.verdict import Finding
+from grader.exercises.description_package import (
+    installing,
+    launching,
+    needs,
+    parametric,
+    robots,
+    spawning,
+)
+from grader.exercises.description_package.looked import Looked, nothing
+from grader.recording.recording import Recordings
+
+checks = Checks()
+
+
+def _of(recordings: Recordings, judge: Callable[[Looked], Finding]) -> Finding:
+    looked = Looked.at(recordings)
+    return nothing(recordings) if looked is None else judge(looked)
+
+
+@checks()
+def installed(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """Everything that is asked for is installed.
+
+    setup.py is run with a `setup()` that only takes its arguments down (of a CMakeLists.txt, the
+    install() commands are read), and the files are laid out below an empty prefix. What launch
+    files ask for (descriptions, meshes, RViz's files, other launch files, programs, packages) has
+    to be there, in that prefix and when it is moved to another place.
+
+    - setup.py ends with an error, or lists a file that is not there, or a folder: 0, for colcon
+      build stops there.
+    - One thing is missing: half of the points. The files of one folder count as one thing.
+    - More is missing: 0.
+
+    A marker below share/ament_index, or a package.xml, that nothing installs costs nothing: colcon
+    adds both.
+    """
+    return _of(recordings, installing.judge)
+
+
+@checks()
+def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """A launch file shows the robot: its description, its joints, RViz.
+
+    Each launch file, in Python or XML, is evaluated with its default arguments, and nothing is
+    started. The best of them counts:
+
+    - robot_state_publisher with the parameter robot_description: half of the points,
+    - something that publishes joint states, if any joint moves: joint_state_publisher, with or
+      without gui, a node of the package, a controller, a simulator: a quarter,
+    - rviz2 with a file: a quarter. Who opens RViz by hand needs an .rviz file that is installed.
+
+    If it ends with an error: 0; if another one of the package does: half at most. One that uses
+    what the grader does not know makes this check not judged, where nothing else passes it.
+    """
+    return _of(recordings, launching.judge)
+
+
+@checks()
+def urdf(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """The description is a valid URDF, of which nothing is dropped.
+
+    What robot_state_publisher gets is read by the rules of urdfdom 4.0.2, ROS 2 Jazzy's; where no
+    launch file hands on any, what the files of the package give.
+
+    - urdfdom refuses it, or xacro has not been run on it: 0.
+    - urdfdom drops a part (it says so, and the robot shows without it), or accepts what cannot be
+      meant (limits with lower above upper, an axis 0 0 0, a link with two parents, a mimic of no
+      joint, a mass or moment of inertia that no body has): half of the points.
+    """
+    return _of(recordings, robots.judge)
+
+
+@checks()
+def meshes(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """Meshes are named by package://, and are there.
+
+    Each file that the description names, textures too, has to be found from its name: by
+    package://PACKAGE/PATH, or a file:// that $(find) has made. The share of those that are so is
+    the share of the points. One that the package has and does not install is no fault here.
+    A description without any gets all points.
+    """
+    return _of(recordings, robots.judge_meshes)
+
+
+@checks()
+def dependencies(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """package.xml declares the packages that are used.
+
+    Used are those whose nodes or files a launch file starts or includes, whose meshes the
+    description names, and xacro. What every desktop installation of ROS 2 has (robot_state_publisher,
+    rviz2, tf2_ros, ...) need not be declared. The share that is, is the share of the points.
+    """
+    return _of(recordings, needs.judge)
+
+
+@checks()
+def spawn(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """What puts the robot into Gazebo has the right arguments.
+
+    spawn_entity.py of gazebo_ros, or create of ros_gz_sim: exactly one origin (-topic, -file, ...),
+    a name where one is needed, numbers as places, and a topic that the same launch file publishes.
+    All or nothing; a package that puts nothing into Gazebo gets the points.
+    """
+    return _of(recordings, lambda looked: spawning.judge(looked, False))
+
+
+@checks()
+def spawns(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """A launch file puts the robot into Gazebo.
+
+    As `spawn`, and one has to be there.
+    """
+    return _of(recordings, lambda looked: spawning.judge(looked, True))
+
+
+@checks()
+def parameters(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """The numbers of the xacro are what the robot is made of.
+
+    Each of the properties {numbers} is doubled, and xacro run again: a part has to change its size,
+    and something has to move along. The share of those that do so is the share of the points.
+    """
+    names = [str(each) for each in tolerances["numbers"]]
+    return _of(recordings, lambda looked: parametric.judge(looked, names))
+
+
+@checks()
+def masses(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """The robot weighs what it should.
+
+    All links together weigh {mass_kg} kg, give or take {mass_error%}, and each link with a
+    collision has an inertial. Otherwise half of the points.
+    """
+    mass_kg, error = tolerances["mass_kg"], tolerances["mass_error"]
+    return _of(recordings, lambda looked: parametric.judge_masses(looked, mass_kg, error))
+
+
+@checks()
+def one_source(recordings: Recordings, tolerances: Tolerances) -> Finding:
+    """Beside Gazebo nothing else publishes joint states.
+
+    No launch file that puts the robot into Gazebo starts a joint_state_publisher. All or nothing.
+    """
+    return _of(recordings, spawning.judge_one_source)
+
+
+@checks.tolerance
+def numbers(value: object) -> None:
+    """Look at the names of properties."""
+    if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+        raise ValueError(f"expected a list of names, found {value!r}")

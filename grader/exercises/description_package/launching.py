@@ -1,0 +1,185 @@
+"""What the launch files describe: a robot_state_publisher, what moves its joints, and RViz."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from grader.exercise.verdict import Finding
+from grader.exercises.description_package.looked import Looked, not_judged, placed, shown
+from grader.scenes.package.trace import Launch, Node
+from robot_py.urdf import parse
+
+PUBLISHER = "robot_state_publisher"
+JOINT_SOURCES = ("joint_state_publisher", "joint_state_publisher_gui")
+#: What each part of it is worth.
+DESCRIPTION, JOINTS, RVIZ = 0.5, 0.25, 0.25
+#: A launch file of the package that ends with an error leaves no more than this.
+BROKEN = 0.5
+_MOVES = re.compile(r'type\s*=\s*["\'](?:revolute|continuous|prismatic)["\']')
+
+
+class Part(NamedTuple):
+    """A part that is missing."""
+
+    worth: float
+    rationale: str
+    help: str
+
+
+def judge(looked: Looked) -> Finding:
+    """The launch file that comes nearest to showing the robot."""
+    if not looked.launches:
+        return Finding(
+            0,
+            "The package has no launch file.",
+            "Write launch/display.launch.py: it starts robot_state_publisher with the description, "
+            "joint_state_publisher_gui, and rviz2 with your .rviz file.",
+        )
+    found = {launch.file: lacking(looked, launch) for launch in looked.launches}
+    best = min(found, key=lambda file: sum(part.worth for part in found[file]))
+    share = 1.0 - sum(part.worth for part in found[best])
+    broken = [
+        each
+        for each in looked.launches
+        if each.problem is not None and each.problem.kind in ("error", "limit")
+    ]
+    if share < 1 and looked.not_known is not None:
+        return not_judged(looked.not_known, f"{best} alone does not show the robot")
+    if broken:
+        launch = broken[0]
+        assert launch.problem is not None
+        return Finding(
+            min(share, BROKEN) if launch.file != best else 0.0,
+            f"{launch.file} ends with {shown(launch.problem.text)}{placed(launch.problem)}.",
+            _advice(launch.problem.text),
+        )
+    if not found[best]:
+        return Finding(1, f"{best} starts {PUBLISHER} with the description, and what belongs to it.")
+    texts = " ".join(part.rationale for part in found[best])
+    return Finding(share, f"{best}: {texts}", found[best][0].help)
+
+
+def lacking(looked: Looked, launch: Launch) -> list[Part]:
+    """What of the three parts a launch file does not have."""
+    parts = []
+    publishers = [node for node in launch.nodes if node.executable == PUBLISHER]
+    texts = [looked.text(p.text) for n in publishers for p in n.parameters if is_description(p.name)]
+    if not publishers:
+        parts.append(
+            Part(
+                DESCRIPTION,
+                "it starts no robot_state_publisher.",
+                "Start it with the parameter robot_description: the text of your URDF.",
+            )
+        )
+    elif not any(text.strip() for text in texts):
+        parts.append(_no_description(publishers[0]))
+    if moves(looked, texts) and not any(is_joint_source(looked, node) for node in launch.nodes):
+        if not _includes_simulator(launch):
+            parts.append(
+                Part(
+                    JOINTS,
+                    "nothing publishes /joint_states: the moving joints have no transforms, and "
+                    "RViz shows what hangs on them white.",
+                    "Start joint_state_publisher_gui, or a node of yours that publishes "
+                    "JointState.",
+                )
+            )
+    rviz = _rviz(looked, launch)
+    return [*parts, *([rviz] if rviz else [])]
+
+
+def is_description(name: str) -> bool:
+    """Whether a parameter is the one that robot_state_publisher reads."""
+    return name == "robot_description"
+
+
+def moves(looked: Looked, texts: list[str]) -> bool:
+    """Whether a joint of the robot moves."""
+    texts = texts or [looked.text(each.text) for each in looked.descriptions]
+    for text in texts:
+        model = parse(text).model
+        if model is None:
+            if _MOVES.search(text):
+                return True
+        elif any(joint.type.is_movable for joint in model.joints.values()):
+            return True
+    return not texts
+
+
+def is_joint_source(looked: Looked, node: Node) -> bool:
+    """Whether a node publishes joint states, as far as one can see."""
+    if node.package in JOINT_SOURCES:
+        return True
+    if "joint_state_broadcaster" in node.arguments or "joint_broad" in node.arguments:
+        return True
+    if node.package == looked.name:
+        scripts = {each.name: each for each in looked.setup.scripts}
+        return node.executable not in scripts or scripts[node.executable].says
+    return node.package in looked.trace.others
+
+
+def _includes_simulator(launch: Launch) -> bool:
+    """A simulator publishes the joints of what it simulates."""
+    return any(each.package in ("gazebo_ros", "ros_gz_sim") for each in launch.includes)
+
+
+def _no_description(node: Node) -> Part:
+    names = [each.name for each in node.parameters]
+    if node.arguments and not names:
+        found = "it gets only arguments, which robot_state_publisher reads no more."
+    elif names:
+        found = f"its parameters are {shown(', '.join(names))}."
+    else:
+        found = "it gets no parameter."
+    return Part(
+        DESCRIPTION,
+        f"robot_state_publisher has no robot_description: {found}",
+        "Give it parameters=[{'robot_description': ...}] with the text of the URDF, not its path.",
+    )
+
+
+def _rviz(looked: Looked, launch: Launch) -> Part | None:
+    started = [node for node in launch.nodes if node.executable == "rviz2"]
+    if any(_has_file(node) for node in started) or any("rviz2 -d" in p for p in launch.processes):
+        return None
+    if started:
+        return Part(
+            RVIZ,
+            "rviz2 starts without a file: it shows an empty grid.",
+            "Save RViz's settings into the package, install the file, and start rviz2 with "
+            "arguments=['-d', FILE].",
+        )
+    files = [path for path in looked.setup.installed if path.endswith(".rviz")]
+    by_hand = not any(n.executable == "rviz2" for each in looked.launches for n in each.nodes)
+    if files and by_hand:
+        return None  # who launches it opens RViz with the file that is installed
+    return Part(
+        RVIZ,
+        "it starts no rviz2, and no .rviz file is installed for who opens it by hand."
+        if not files
+        else "it starts no rviz2.",
+        "Start rviz2 with arguments=['-d', FILE], FILE being the .rviz file in the share folder.",
+    )
+
+
+def _has_file(node: Node) -> bool:
+    words = list(node.arguments)
+    if any(word.startswith("-d ") or word.startswith("--display-config=") for word in words):
+        return True
+    at = next((n for n, w in enumerate(words) if w in ("-d", "--display-config")), len(words))
+    return len(words) > at + 1 and words[at + 1].strip() != ""
+
+
+def _advice(text: str) -> str:
+    if "file not found" in text and "xacro/" in text:
+        return "Command joins its parts as they stand: a blank is missing, Command(['xacro ', path])."
+    if "unexpected keyword argument" in text:
+        return "Compare the names with those of your ROS release: node_executable and node_name "\
+            "are called executable and name since Foxy."
+    if "xacro" in text:
+        return "Run xacro by hand on the same file: it says the same, with file and line."
+    if "as yaml" in text:
+        return "Wrap it: ParameterValue(Command([...]), value_type=str)."
+    return "`ros2 launch` says the same, with all lines of the traceback."

@@ -1,0 +1,93 @@
+"""What was found of a package, as the checks ask for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from grader.exercise.verdict import Finding
+from grader.recording.recording import Recordings
+from grader.scenes.package.trace import Description, Launch, Node, PackageTrace, Problem, Setup
+from grader.text import clip_inside, without_controls
+
+_LONGEST = 200
+
+
+@dataclass(frozen=True)
+class Looked:
+    """A package that was looked at."""
+
+    trace: PackageTrace
+    setup: Setup
+
+    @classmethod
+    def at(cls, recordings: Recordings) -> Looked | None:
+        """What was found; None where nobody got so far."""
+        trace = PackageTrace.of(recordings.nominal.trace)
+        return None if trace.setup is None else cls(trace, trace.setup)
+
+    @property
+    def name(self) -> str:
+        """The package's."""
+        return self.setup.name
+
+    @property
+    def launches(self) -> Sequence[Launch]:
+        """Its launch files."""
+        return self.trace.launches
+
+    @property
+    def descriptions(self) -> list[Description]:
+        """Those that a launch file hands on; where none does, those of the package's files."""
+        every = self.trace.descriptions
+        return [each for each in every if each.is_launched] or list(every)
+
+    def text(self, number: int) -> str:
+        """A text by its number."""
+        return self.trace.texts[number] if number >= 0 else ""
+
+    @property
+    def not_known(self) -> Launch | None:
+        """The first launch file that could not be evaluated for no fault of its own."""
+        unknown = (each for each in self.launches if each.problem and each.problem.kind == "unknown")
+        return next(unknown, None)
+
+
+def nothing(recordings: Recordings) -> Finding:
+    """The finding of every check where nobody got so far."""
+    run = recordings.nominal.run
+    why = f": {run.flags[0]}" if run.flags else ""
+    return Finding(
+        0,
+        f"The package could not be looked at{why}.",
+        "Does setup.py or a launch file end the process that it runs in, or run without end?",
+    )
+
+
+def not_judged(launch: Launch, what: str) -> Finding:
+    """Of what nobody can tell, because a launch file uses what the grader does not know."""
+    problem = launch.problem or Problem("", "")
+    return Finding(
+        0,
+        f"Not judged: {what}, and {launch.file} could not be evaluated: {shown(problem.text)}.",
+        "This is no fault of the package: tell whoever runs the course.",
+        judged=False,
+    )
+
+
+def shown(text: str) -> str:
+    """A text of the submission's in a sentence."""
+    return clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
+
+
+def placed(problem: Problem) -> str:
+    """' (launch/display.launch.py, line 9)', with a blank before it; '' for no place."""
+    if not problem.file:
+        return ""
+    return f" ({problem.file}, line {problem.line})" if problem.line else f" ({problem.file})"
+
+
+def folder_of(path: str) -> str:
+    """The folder of a path, to tell of many files at once."""
+    return str(PurePosixPath(path).parent)

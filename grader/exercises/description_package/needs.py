@@ -1,0 +1,59 @@
+"""Packages that are used and have to be declared."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grader.exercise.verdict import Finding
+from grader.exercises.description_package.looked import Looked
+from grader.scenes.package.examining.known import DESKTOP
+
+#: What comes along with another package.
+COVERED: Final = {
+    "ros_gz": ("ros_gz_sim", "ros_gz_bridge", "ros_gz_image"),
+    "gazebo_ros_pkgs": ("gazebo_ros", "gazebo_plugins", "gazebo_msgs"),
+    "joint_state_publisher_gui": ("joint_state_publisher",),
+    "urdf_launch": ("joint_state_publisher", "joint_state_publisher_gui", "xacro"),
+    "urdf_tutorial": ("joint_state_publisher", "joint_state_publisher_gui", "xacro", "urdf_launch"),
+    "ros2_controllers": (
+        *("joint_state_broadcaster", "diff_drive_controller", "joint_trajectory_controller"),
+        "forward_command_controller",
+    ),
+    "ros2_control": ("controller_manager",),
+}
+
+
+def judge(looked: Looked) -> Finding:
+    """Whether who installs the package by rosdep gets what it needs."""
+    declared = set(looked.setup.depends)
+    covered = {other for name in declared for other in COVERED.get(name, ())}
+    needed = used(looked) - DESKTOP
+    missing = sorted(needed - declared - covered)
+    if looked.setup.manifest:
+        return Finding(
+            0,
+            f"package.xml cannot be read for dependencies: {looked.setup.manifest}.",
+            "Compare it with one that `ros2 pkg create` writes.",
+        )
+    if not missing:
+        told = ", ".join(sorted(needed)) or "nothing but what every desktop installation has"
+        return Finding(1, f"What it uses is declared: {told}.")
+    return Finding(
+        1 - len(missing) / len(needed),
+        f"package.xml does not declare {', '.join(missing)}, which the package uses: "
+        "`rosdep install` does not bring it, and on another machine it is missing.",
+        f"Add <exec_depend>{missing[0]}</exec_depend>.",
+    )
+
+
+def used(looked: Looked) -> set[str]:
+    """Other packages that launch files, descriptions and xacro need."""
+    found = {name for launch in looked.launches for name in launch.packages}
+    found |= {each.package for launch in looked.launches for each in launch.includes}
+    for description in looked.descriptions:
+        found |= {each.path for each in description.meshes if each.state == "foreign"}
+        if description.is_launched and description.source.endswith((".xacro", ".xacro.xml")):
+            found.add("xacro")
+    own = {looked.name, *looked.trace.others}
+    lacking = {e.name for launch in looked.launches for e in launch.lacking if e.kind == "package"}
+    return {each for each in found - own - lacking if "/" not in each}

@@ -1,0 +1,1 @@
+"""The walker has no nodes of its own."""

@@ -1,0 +1,177 @@
+"""What is wrong with a robot's description: what urdfdom says, and what it does not notice."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+
+from grader.exercise.verdict import Finding
+from grader.exercises.description_package.looked import Looked, not_judged, shown
+from grader.scenes.package.trace import Description
+from robot_py.findings import Consequence
+from robot_py.model import Inertial, Joint, JointType, Model
+from robot_py.urdf import parse
+
+#: What is left where a robot is there, and something of it is wrong or dropped.
+FAULTY = 0.5
+#: Moments of inertia may miss the triangle inequality by so much: they are rounded.
+ROUNDED = 0.01
+_XACRO = re.compile(r"</?xacro:\w+|\$\{[^}]*\}|\$\((?:arg|find|env|optenv|eval|dirname)\b[^)]*\)")
+
+
+def judge(looked: Looked) -> Finding:
+    """Whether every description is a robot, with all of its parts."""
+    if not looked.descriptions:
+        if looked.not_known is not None:
+            return not_judged(looked.not_known, "no description was found")
+        return Finding(
+            0,
+            "There is no robot description: no launch file hands one to robot_state_publisher, and "
+            "no file in the package is a URDF.",
+            "A URDF is a file with <robot name=...>; it belongs into the folder urdf.",
+        )
+    links = 0
+    for description in looked.descriptions:
+        finding = _of(looked, description)
+        if finding.share < 1:
+            return finding
+        links += looked.text(description.text).count("<link ")
+    return Finding(1, f"urdfdom takes all {links} links, and nothing in them is at odds.")
+
+
+def _of(looked: Looked, description: Description) -> Finding:
+    where = description.source or description.by
+    text = looked.text(description.text)
+    if description.problem is not None:
+        return Finding(
+            0,
+            f"{where}: {shown(description.problem.text)}.",
+            "Run xacro by hand on the file: it says the same, with file and line.",
+        )
+    if not text.strip():
+        return Finding(0, f"{where}: the description is empty.", "Which file does it come from?")
+    if raw := _XACRO.search(text):
+        return Finding(
+            0,
+            f"{where}: xacro has not been run on it: {shown(raw[0])!r} is left in what "
+            "robot_state_publisher gets, which understands plain URDF alone.",
+            "Hand on what xacro makes of the file: Command(['xacro ', path]).",
+        )
+    reading = parse(text)
+    model = reading.model
+    for consequence, share in ((Consequence.REFUSED, 0.0), (Consequence.DROPPED, FAULTY)):
+        said = [each for each in reading.findings if each.consequence is consequence]
+        if said:
+            line = f" (line {said[0].line})" if said[0].line and "xacro" not in where else ""
+            what = (
+                "robot_state_publisher ends over it"
+                if consequence is Consequence.REFUSED
+                else "the rest of that part is dropped, and the robot shows without it"
+            )
+            return Finding(
+                share, f"{where}: urdfdom says {shown(said[0].text)!r}{line}: {what}.", _help(said[0].text)
+            )
+    assert model is not None
+    fault = next(faults(model), "")
+    if fault:
+        return Finding(
+            FAULTY,
+            f"{where}: {fault}",
+            "urdfdom accepts this without a word; what RViz and simulators make of it is not what "
+            "is meant.",
+        )
+    return Finding(1, "")
+
+
+def _help(text: str) -> str:
+    if "root link" in text:
+        return "Every link but one is the child of exactly one joint. Which has none, or is misspelt?"
+    if "limit" in text:
+        return 'Such a joint needs <limit lower="" upper="" effort="" velocity=""/>.'
+    if "XML" in text:
+        return "The file is no XML: look for a tag that is not closed, at the line or above."
+    return "`check_urdf FILE` prints the same line; the element that it names is at fault."
+
+
+def faults(model: Model) -> Iterator[str]:
+    """What urdfdom does not notice."""
+    children = Counter(joint.child for joint in model.joints.values())
+    for child, count in children.items():
+        if count > 1:
+            yield f"the link {shown(child)!r} is the child of {count} joints; it can hang on one only."
+    for joint in model.joints.values():
+        yield from _of_joint(joint, model)
+    for link in model.links.values():
+        if link.name != link.name.strip() or " " in link.name:
+            yield f"the link {shown(link.name)!r} has a blank in its name, which is no frame's."
+        if link.inertial is not None:
+            yield from (f"the link {shown(link.name)!r} {each}" for each in _of_mass(link.inertial))
+
+
+def _of_joint(joint: Joint, model: Model) -> Iterator[str]:
+    named = f"the joint {shown(joint.name)!r}"
+    if joint.parent == joint.child:
+        yield f"{named} joins {shown(joint.child)!r} to itself."
+    if joint.type.is_movable and not any(joint.axis):
+        yield f"{named} moves about the axis 0 0 0, which is none."
+    limit = joint.limit
+    if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC) and limit is not None:
+        if limit.lower > limit.upper:
+            yield f"{named} has the limits {limit.lower:g} to {limit.upper:g}: lower is above upper."
+        elif limit.lower == limit.upper == 0:
+            yield f"{named} cannot move: its <limit> has no lower and no upper, which are then 0."
+    if joint.mimic is not None and joint.mimic.joint not in model.joints:
+        yield f"{named} mimics {shown(joint.mimic.joint)!r}, and there is no such joint."
+
+
+def _of_mass(inertial: Inertial) -> Iterator[str]:
+    if not inertial.mass > 0 or not math.isfinite(inertial.mass):
+        yield f"has a mass of {inertial.mass:g} kg."
+        return
+    moments = sorted((inertial.ixx, inertial.iyy, inertial.izz))
+    if not all(math.isfinite(each) for each in moments) or moments[0] <= 0:
+        yield f"has a moment of inertia of {moments[0]:g}; expected more than 0."
+    elif moments[0] + moments[1] < moments[2] * (1 - ROUNDED):
+        told = ", ".join(f"{each:g}" for each in (inertial.ixx, inertial.iyy, inertial.izz))
+        yield f"has the moments of inertia {told}, which no body has: two are less than the third."
+
+
+def judge_meshes(looked: Looked) -> Finding:
+    """Whether every mesh is named so that it is found wherever the package is installed."""
+    readable = [each for each in looked.descriptions if each.is_xml]
+    if not readable:
+        return Finding(
+            0,
+            "Not judged: there is no description whose meshes could be looked for.",
+            "See what is said of the description itself first.",
+            judged=False,
+        )
+    meshes = {mesh.uri: mesh for each in readable for mesh in each.meshes}.values()
+    if not meshes:
+        return Finding(1, "The description names no files.")
+    wrong = [each for each in meshes if each.state in ("scheme", "missing", "case", "package")]
+    if not wrong:
+        return Finding(1, f"All {len(meshes)} files that the description names are to be found.")
+    first = wrong[0]
+    why = {
+        "scheme": "no viewer resolves that: expected package://PACKAGE/PATH",
+        "missing": "there is no such file",
+        "case": f"there is {first.path}: letters count",
+        "package": f"there is no package {shown(first.path)!r}",
+    }[first.state]
+    if first.uri.startswith("file://"):
+        why = "a path of one machine, which no other has"
+    more = f" So {len(wrong) - 1} more." if len(wrong) > 1 else ""
+    return Finding(
+        1 - len(wrong) / len(meshes),
+        f"{first_source(readable)} names {shown(first.uri)}, and {why}.{more}",
+        "The way to a mesh begins with package:// and your package's name, and goes on as below its "
+        f"share folder: package://{looked.name}/meshes/FILE.",
+    )
+
+
+def first_source(descriptions: list[Description]) -> str:
+    """The file that a description is from."""
+    return next((each.source or each.by for each in descriptions), "The description")

@@ -1,0 +1,141 @@
+"""How a model gets into Gazebo: the arguments of the program that puts it there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from grader.exercise.verdict import Finding
+from grader.exercises.description_package.launching import (
+    JOINT_SOURCES,
+    PUBLISHER,
+    is_description,
+)
+from grader.exercises.description_package.looked import Looked, shown
+from grader.scenes.package.trace import Launch, Node
+
+#: Program -> where the model may come from (one of these), and what must be named.
+PROGRAMS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "spawn_entity.py": (("-file", "-topic", "-database", "-stdin"), ("-entity",)),
+    "create": (("-file", "-param", "-string", "-topic"), ()),
+}
+_PLACES = ("-x", "-y", "-z", "-R", "-P", "-Y", "-timeout", "-spawn_service_timeout")
+_TAKES_NOTHING = ("-stdin", "-unpause", "-b", "-package_to_model", "-allow_renaming")
+
+
+def spawners(launch: Launch) -> list[Node]:
+    """The nodes that put a model into a world."""
+    packages = ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo")
+    return [
+        each
+        for each in launch.nodes
+        if each.package in packages and each.executable in PROGRAMS
+    ]
+
+
+def judge(looked: Looked, is_asked: bool) -> Finding:
+    """Whether the model gets there."""
+    found = [(launch, node) for launch in looked.launches for node in spawners(launch)]
+    included = [
+        launch
+        for launch in looked.launches
+        if any(each.file.endswith("gz_spawn_model.launch.py") for each in launch.includes)
+    ]
+    if not found and not included:
+        if is_asked:
+            return Finding(
+                0,
+                "No launch file puts the robot into Gazebo.",
+                "Start create of ros_gz_sim with -topic robot_description and -name.",
+            )
+        return Finding(1, "No launch file puts the robot into Gazebo, and none need.")
+    for launch, node in found:
+        fault = next(_faults(launch, node), "")
+        if fault:
+            return Finding(
+                0,
+                f"{launch.file}: {node.executable} {fault}",
+                "Compare the arguments with `ros2 run PACKAGE PROGRAM --help`.",
+            )
+    return Finding(1, f"{(found or [(included[0], None)])[0][0].file} puts the robot into Gazebo.")
+
+
+def _faults(launch: Launch, node: Node) -> Iterator[str]:
+    sources, needed = PROGRAMS[node.executable]
+    given = _given(node)
+    if None in given:
+        yield f"gets {shown(given[None])!r}, which is no argument of it."
+    origins = [each for each in sources if each in given]
+    if len(origins) != 1:
+        told = ", ".join(origins) or "none"
+        yield f"needs exactly one of {', '.join(sources)}; it gets {told}."
+    for name in needed:
+        if not given.get(name):
+            yield f"needs {name} with a name."
+    for name in _PLACES:
+        if name in given and not _is_number(given[name]):
+            yield f"gets {name} {shown(given[name])!r}; expected a number."
+    if "-topic" in given:
+        topic = given["-topic"].rsplit("/", 1)[-1]
+        if topic == "robot_description" and not _is_published(launch):
+            yield "waits for the topic robot_description, and the launch file starts nothing that "\
+                "publishes it."
+        elif topic != "robot_description" and not _is_remapped(launch, topic):
+            yield f"waits for the topic {shown(given['-topic'])!r}, which nobody publishes; "\
+                "robot_state_publisher publishes robot_description."
+
+
+def _given(node: Node) -> dict[str | None, str]:
+    """Option -> value; None: what is no option."""
+    words = [word for each in node.arguments for word in each.split()]
+    if "--ros-args" in words:
+        words = words[: words.index("--ros-args")]
+    found: dict[str | None, str] = {}
+    while words:
+        name = words.pop(0)
+        name = name[1:] if name.startswith("--") else name
+        if not name.startswith("-") or _is_number(name):
+            found.setdefault(None, name)
+        elif name in _TAKES_NOTHING:
+            found[name] = ""
+        else:
+            found[name] = words.pop(0) if words else ""
+    for each in node.parameters:
+        if node.executable == "create":
+            found.setdefault(f"-{each.name}", each.value or "(a text)")
+    return found
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_published(launch: Launch) -> bool:
+    return any(
+        node.executable == PUBLISHER and any(is_description(p.name) for p in node.parameters)
+        for node in launch.nodes
+    ) or any(each.package == "urdf_launch" for each in launch.includes)
+
+
+def _is_remapped(launch: Launch, topic: str) -> bool:
+    return any(each.endswith(topic) for node in launch.nodes for each in node.remappings)
+
+
+def judge_one_source(looked: Looked) -> Finding:
+    """Whether the simulator alone says where the joints are."""
+    for launch in looked.launches:
+        if not spawners(launch):
+            continue
+        second = [node for node in launch.nodes if node.package in JOINT_SOURCES]
+        if second:
+            return Finding(
+                0,
+                f"{launch.file} starts {second[0].executable} beside Gazebo, which publishes the "
+                "joints as well: the wheels jump between what turns and what the sliders say.",
+                "Beside a simulator no joint_state_publisher may run; it belongs into the launch "
+                "file for RViz alone.",
+            )
+    return Finding(1, "Beside Gazebo nothing else publishes joint states.")

@@ -1,0 +1,1 @@
+"""The robot has no nodes of its own, so far."""

@@ -1,0 +1,1 @@
+"""A package that is looked at, and not run: the scene `package`."""

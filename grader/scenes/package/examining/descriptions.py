@@ -1,0 +1,131 @@
+"""Robot descriptions: the files that they name, and what happens where their numbers change."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any, Final
+from xml.etree import ElementTree
+
+from grader.scenes.package.examining.launches import Place, Taken, prepare, watch_files
+from grader.scenes.package.examining.packages import is_description
+
+_MOST_FILES: Final = 500
+#: So many numbers of a xacro are doubled, in files that are no longer than this [characters].
+_MOST_NUMBERS: Final = 30
+_LONGEST_TEXT: Final = 400_000
+_MOST_VARIED: Final = 4_000_000
+_NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_PROPERTY: Final = re.compile(
+    rf'<xacro:property\b(?=[^>]*\bname="(?P<name>\w+)")[^>]*\bvalue="(?P<value>\s*{_NUMBER}\s*)"'
+)
+_ARGUMENT: Final = re.compile(
+    rf'<xacro:arg\b(?=[^>]*\bname="(?P<name>\w+)")[^>]*\bdefault="(?P<value>\s*{_NUMBER}\s*)"'
+)
+
+
+def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
+    """The files that a description names; None where it is no XML."""
+    try:
+        if "<!DOCTYPE" in text:
+            return None
+        root = ElementTree.fromstring(text)
+    except (ElementTree.ParseError, ValueError):
+        return None
+    found: dict[tuple[str, bool], dict[str, Any]] = {}
+    for element in root.iter():
+        if element.tag in ("mesh", "texture") and (uri := element.get("filename")):
+            key = uri, element.tag == "mesh"
+            if key not in found and len(found) < _MOST_FILES:
+                state, path = _resolved(uri.strip(), place)
+                told = {"uri": place.told(uri)[:1000], "state": state}
+                found[key] = {**told, "path": place.told(path)[:1000], "is_mesh": key[1]}
+    return list(found.values())
+
+
+def _resolved(uri: str, place: Place) -> tuple[str, str]:
+    if uri.startswith("package://"):
+        package, _, inside = uri.removeprefix("package://").partition("/")
+        one = next((each for each in place.all if each.name == package), None)
+        if one is None:
+            is_there = (place.stubs / "share" / package).is_dir()
+            return ("foreign" if is_there and package else "package"), package
+        return _looked_for(place.prefix / "share" / package / inside, place)
+    if uri.startswith("file://"):
+        path = Path(uri.removeprefix("file://"))
+        if not path.is_absolute() or str(path).startswith(f"{place.stubs}/"):
+            return ("foreign" if path.is_absolute() else "scheme"), str(path)
+        return _looked_for(path, place)
+    return "scheme", uri
+
+
+def _looked_for(path: Path, place: Place) -> tuple[str, str]:
+    if path.is_file():
+        return "found", str(path)
+    meant = place.meant(str(path))
+    if meant:
+        return "left", place.own(meant)
+    name = path.name.lower()
+    for each in place.all:
+        for file in each.package.files:
+            if os.path.basename(file).lower() == name:
+                return "case", file
+    return "missing", str(path)
+
+
+def from_files(place: Place) -> dict[str, Any]:
+    """In a copy of the process: the descriptions in the package's files, expanded.
+
+    For packages whose launch files hand none to a robot_state_publisher.
+    """
+    prepare(place)
+    taken = Taken(place)
+    watch_files(taken, place)
+    made: list[dict[str, Any]] = []
+    sources = {source: path for path, source in place.judged.files.items()}
+    for file in place.judged.package.files:
+        if not is_description(file) or len(made) >= 5:
+            continue
+        path = place.prefix / sources[file] if file in sources else None
+        path = path or place.judged.package.folder / file
+        text = path.read_text(encoding="utf-8", errors="replace")
+        if not re.search(r"<robot\b[^>]*\bname\s*=", text):
+            continue  # a part that another file includes
+        code, errors = 0, ""
+        if "xacro" in text:
+            code, text, errors = taken.xacro([str(path)])
+        made.append({"file": file, "text": "" if code else text, "errors": errors[-400:]})
+    return {"made": made, "lacking": taken.found["lacking"]}
+
+
+def varied(place: Place, source: str, words: list[str]) -> list[dict[str, str]]:
+    """In a copy of the process: a xacro with one of its numbers doubled, for each of them.
+
+    Args:
+        source: the xacro file, where it is laid out.
+        words: the arguments that xacro is given beside.
+    """
+    prepare(place)
+    taken = Taken(place)
+    watch_files(taken, place)
+    found: list[dict[str, str]] = []
+    size = 0
+    share = place.prefix / "share" / place.judged.name
+    for path in sorted(share.rglob("*")):
+        if path.suffix not in (".xacro", ".urdf", ".xml") or not path.is_file():
+            continue
+        text = path.read_text(encoding="utf-8", errors="replace")
+        if len(text) > _LONGEST_TEXT:
+            continue
+        for match in (*_PROPERTY.finditer(text), *_ARGUMENT.finditer(text)):
+            if len(found) >= _MOST_NUMBERS or size > _MOST_VARIED:
+                return found
+            value = 2 * float(match["value"])
+            other = f"{text[: match.start('value')]}{value!r}{text[match.end('value') :]}"
+            path.write_text(other, encoding="utf-8")
+            code, made, _ = taken.xacro([source, *words])
+            path.write_text(text, encoding="utf-8")
+            size += len(made)
+            found.append({"name": match["name"], "text": "" if code else place.told(made)})
+    return found

@@ -1,0 +1,69 @@
+"""A double of ROS's `ament_index_python.packages`: packages below AMENT_PREFIX_PATH.
+
+What is asked for is appended to the file that the variable GRADER_ASKED names, a line each: `+ NAME`
+where it is there, `- NAME` where it is not. A package that is not there stands for the one that is
+looked at (GRADER_PACKAGE) where that is named: so the rest can be looked at as well.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from launch._core import unknown
+
+_MARKS = "share/ament_index/resource_index/packages"
+
+
+class PackageNotFoundError(KeyError):
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def get_search_paths() -> list[str]:
+    return [each for each in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if each]
+
+
+def _tell(sign: str, name: str) -> None:
+    with open(os.environ["GRADER_ASKED"], "a", encoding="utf-8", errors="replace") as file:
+        file.write(f"{sign} {' '.join(name.split())[:200]}\n")
+
+
+def get_package_prefix(package_name: str) -> str:
+    if not package_name:
+        raise ValueError("package name must be a non-empty string")
+    for prefix in get_search_paths():
+        if Path(prefix, _MARKS, package_name).is_file():
+            _tell("+", package_name)
+            return prefix
+    _tell("-", package_name)
+    instead = os.environ.get("GRADER_PACKAGE", "")
+    if instead and instead != package_name:
+        return get_package_prefix(instead)
+    raise PackageNotFoundError(
+        f"package '{package_name}' not found, searching: {get_search_paths()}"
+    )
+
+
+def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
+    prefix = get_package_prefix(package_name)
+    own = os.path.join(prefix, "share", package_name)
+    if not os.path.isdir(own) and (instead := os.environ.get("GRADER_PACKAGE", "")):
+        return os.path.join(prefix, "share", instead)
+    return own
+
+
+def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:
+    return Path(get_package_share_directory(package_name))
+
+
+def get_packages_with_prefixes() -> dict[str, str]:
+    found = {}
+    for prefix in reversed(get_search_paths()):
+        folder = Path(prefix, _MARKS)
+        if folder.is_dir():
+            found.update((each.name, prefix) for each in folder.iterdir())
+    return found
+
+
+__getattr__ = unknown("ament_index_python.packages")

@@ -1,0 +1,209 @@
+"""What all of these doubles stand on: entities, substitutions, the context, and what is not known.
+
+They are ROS's `launch` as far as a description package uses it (ros2/launch, branch jazzy): the same
+names, arguments and refusals. Nothing is started: what would be is taken down in `Context.record`.
+A name that ROS may have and these have not ends in `NotKnown`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from grader.scenes.package.examining.steps import NotKnown
+
+NOT_KNOWN = "it uses {}, which the grader does not know"
+
+
+def unknown(module: str) -> Any:
+    """The `__getattr__` of a module: names that are not here may be in the original."""
+
+    def missing(name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise NotKnown(NOT_KNOWN.format(f"{module}.{name}"))
+
+    return missing
+
+
+class Record:
+    """What a launch file would have started, and asked for; `grader...launches` makes a better."""
+
+    def node(self, node: dict[str, Any]) -> None: ...
+
+    def process(self, words: list[str]) -> None: ...
+
+    def include(self, path: str, arguments: dict[str, str]) -> bool:
+        return False
+
+    def path(self, path: str) -> str:
+        return path
+
+    def command(self, words: list[str], on_stderr: str) -> str:
+        raise NotKnown(NOT_KNOWN.format("a command"))
+
+    def executable(self, package: str, name: str) -> None: ...
+
+    def remark(self, text: str) -> None: ...
+
+    def declared(self, name: str) -> None: ...
+
+
+class LaunchContext:
+    def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
+        self.argv = list(argv or [])
+        self.launch_configurations: dict[str, str] = {}
+        self.environment = os.environ
+        self.locals_: dict[str, Any] = {}
+        self.record = Record()
+        self.is_later = False
+        self.depth = 0
+
+    @property
+    def locals(self) -> Any:
+        return type("Locals", (), dict(self.locals_))()
+
+    def extend_locals(self, extensions: dict[str, Any]) -> None:
+        self.locals_.update(extensions)
+
+    def extend_globals(self, extensions: dict[str, Any]) -> None:
+        self.locals_.update(extensions)
+
+    def get_locals_as_dict(self) -> dict[str, Any]:
+        return dict(self.locals_)
+
+    def perform_substitution(self, substitution: Any) -> str:
+        return str(substitution.perform(self))
+
+    def __getattr__(self, name: str) -> Any:
+        raise NotKnown(NOT_KNOWN.format(f"LaunchContext.{name}"))
+
+
+class Substitution:
+    def perform(self, context: LaunchContext) -> str:
+        return ""
+
+    def describe(self) -> str:
+        return repr(self)
+
+
+class TextSubstitution(Substitution):
+    def __init__(self, *, text: str) -> None:
+        if not isinstance(text, str):
+            raise TypeError(
+                f"TextSubstitution expected str object got '{type(text)}' instead."
+            )
+        self.text = text
+
+    def perform(self, context: LaunchContext) -> str:
+        return self.text
+
+
+def normalize_to_list_of_substitutions(subs: Any) -> list[Substitution]:
+    def one(each: Any) -> Substitution:
+        if isinstance(each, Substitution):
+            return each
+        if isinstance(each, str):
+            return TextSubstitution(text=each)
+        if isinstance(each, Path):
+            return TextSubstitution(text=str(each))
+        raise TypeError(
+            f"Failed to normalize given item of type '{type(each)}', when only "
+            "'str' or 'launch.Substitution' were expected."
+        )
+
+    if isinstance(subs, str | Path | Substitution):
+        return [one(subs)]
+    if isinstance(subs, Iterable):
+        return [one(each) for each in subs]
+    return [one(subs)]
+
+
+def perform_substitutions(context: LaunchContext, subs: Iterable[Substitution]) -> str:
+    return "".join(str(each.perform(context)) for each in subs)
+
+
+def text_of(context: LaunchContext, subs: Any) -> str:
+    """Whatever may be a substitution, as a text."""
+    return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
+
+
+class LaunchDescriptionEntity:
+    def visit(self, context: LaunchContext) -> list[Any] | None:
+        return None
+
+
+class Condition:
+    def __init__(self, *, predicate: Any = None) -> None:
+        self.predicate = predicate
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        return bool(self.predicate(context)) if self.predicate else True
+
+
+class Action(LaunchDescriptionEntity):
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        self.condition = condition
+
+    def visit(self, context: LaunchContext) -> list[Any] | None:
+        if self.condition is None or self.condition.evaluate(context):
+            return self.execute(context)
+        return None
+
+    def execute(self, context: LaunchContext) -> list[Any] | None:
+        return None
+
+
+class LaunchDescription(LaunchDescriptionEntity):
+    def __init__(
+        self, initial_entities: Iterable[Any] | None = None, *, deprecated_reason: str | None = None
+    ) -> None:
+        self.entities = [] if initial_entities is None else list(initial_entities)
+        self.deprecated_reason = deprecated_reason
+
+    def add_entity(self, entity: Any) -> None:
+        self.entities.append(entity)
+
+    def add_action(self, action: Any) -> None:
+        self.add_entity(action)
+
+    def visit(self, context: LaunchContext) -> list[Any] | None:
+        return self.entities
+
+    def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[Any]:
+        from launch.actions import DeclareLaunchArgument
+
+        return [each for each in self.entities if isinstance(each, DeclareLaunchArgument)]
+
+
+class LaunchDescriptionSource:
+    def __init__(
+        self, launch_description: Any = None, location: Any = "", method: str = "unspecified"
+    ) -> None:
+        self.given = launch_description
+        self.location_ = normalize_to_list_of_substitutions(location)
+        self.method = method
+
+    @property
+    def location(self) -> str:
+        return "".join(getattr(each, "text", "") for each in self.location_)
+
+
+def walk(entities: Any, context: LaunchContext, depth: int = 0) -> None:
+    """Visit what a launch service would."""
+    if entities is None:
+        return
+    if isinstance(entities, LaunchDescriptionEntity):
+        entities = [entities]
+    for entity in list(entities):
+        if entity is None:
+            continue
+        if not isinstance(entity, LaunchDescriptionEntity):
+            raise TypeError(
+                f"expected an action in the launch description, found {type(entity).__name__}"
+            )
+        if depth > 60:
+            raise RecursionError("launch files that include each other")
+        walk(entity.visit(context), context, depth + 1)

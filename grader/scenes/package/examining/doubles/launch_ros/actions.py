@@ -1,0 +1,239 @@
+"""A double of ROS's `launch_ros.actions`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+from launch._core import (
+    Action,
+    LaunchContext,
+    Substitution,
+    normalize_to_list_of_substitutions,
+    text_of,
+    unknown,
+)
+from launch.actions import ExecuteProcess, TimerAction
+from launch_ros.parameter_descriptions import (
+    Parameter,
+    ParameterFile,
+    ParameterValue,
+    evaluated,
+    is_substitution,
+)
+
+_NAMESPACE, _PARAMETERS = "ros_namespace", "global_params"
+
+
+class Node(ExecuteProcess):
+    def __init__(
+        self,
+        *,
+        executable: Any,
+        package: Any = None,
+        name: Any = None,
+        namespace: Any = None,
+        exec_name: Any = None,
+        parameters: Any = None,
+        remappings: Any = None,
+        ros_arguments: Any = None,
+        arguments: Any = None,
+        **kwargs: Any,
+    ) -> None:
+        if parameters is not None and not isinstance(parameters, list):
+            raise TypeError(
+                "Expected 'parameters' given to Node to be one of ['list'], but got "
+                f"'{parameters!r:.80}' of type '{type(parameters)}'"
+            )
+        super().__init__(cmd=[], name=exec_name, **kwargs)
+        self._package, self._executable = package, executable
+        for given in (package, executable, name, namespace):
+            if given is not None:
+                normalize_to_list_of_substitutions(given)
+        self._name, self._namespace = name, namespace
+        self._parameters = [_known(each) for each in parameters or []]
+        self._remappings = [_pair(each) for each in remappings or []]
+        self._arguments = [
+            normalize_to_list_of_substitutions(each)
+            for each in (*_words(arguments), *_words(ros_arguments))
+        ]
+
+    def execute(self, context: LaunchContext) -> None:
+        record = context.record
+        package = "" if self._package is None else text_of(context, self._package)
+        executable = text_of(context, self._executable)
+        if package:
+            record.executable(package, executable)
+        record.node(
+            {
+                "package": package,
+                "executable": executable,
+                "name": "" if self._name is None else text_of(context, self._name),
+                "namespace": _namespace(context, self._namespace),
+                "arguments": [text_of(context, each) for each in self._arguments],
+                "parameters": self._evaluated(context),
+                "remappings": [
+                    f"{text_of(context, a)}:={text_of(context, b)}" for a, b in self._remappings
+                ],
+                "later": context.is_later,
+            }
+        )
+        self._afterwards(context)
+
+    def _evaluated(self, context: LaunchContext) -> list[dict[str, Any]]:
+        found: dict[str, dict[str, Any]] = {}
+        for each in (*context.locals_.get(_PARAMETERS, ()), *self._parameters):
+            for name, value, wrapped in _values(context, each):
+                found[name] = {"name": name, "value": value, "wrapped": wrapped}
+        return list(found.values())
+
+
+def _words(given: Any) -> list[Any]:
+    if given is None:
+        return []
+    if isinstance(given, str | Substitution):
+        raise TypeError(f"expected a list of arguments, found {given!r:.80}")
+    return list(given)
+
+
+def _pair(given: Any) -> tuple[Any, Any]:
+    if not isinstance(given, list | tuple) or len(given) != 2:
+        raise TypeError(f"remap_rules must be a list of two-tuples, found {given!r:.80}")
+    return given[0], given[1]
+
+
+def _known(given: Any) -> Any:
+    kinds = (Mapping, str, Path, Substitution, ParameterFile, Parameter, list, tuple)
+    if not isinstance(given, kinds):
+        raise TypeError(
+            "Expected 'param' given to normalize_parameters to be a path, a dictionary or a "
+            f"Parameter, but got '{given!r:.80}' of type '{type(given)}'"
+        )
+    return given
+
+
+def _values(context: LaunchContext, given: Any) -> Iterable[tuple[str, Any, bool]]:
+    """Name, value, and whether it surely is a text, of each parameter in an entry."""
+    if isinstance(given, Parameter):
+        yield text_of(context, given.name), given.evaluate(context), given.is_text
+    elif isinstance(given, Mapping):
+        yield from _of_mapping(context, given, "")
+    else:
+        path = given.param_file if isinstance(given, ParameterFile) else given
+        yield from _of_file(context.record.path(text_of(context, path)))
+
+
+def _of_mapping(
+    context: LaunchContext, given: Mapping[Any, Any], before: str
+) -> Iterable[tuple[str, Any, bool]]:
+    for key, value in given.items():
+        if not isinstance(key, str | Substitution | list | tuple):
+            raise TypeError(f"Expected 'key' of a parameter to be a text, but got {key!r:.80}")
+        name = f"{before}{text_of(context, key)}"
+        if isinstance(value, Mapping):
+            yield from _of_mapping(context, value, f"{name}.")
+        elif isinstance(value, ParameterValue):
+            yield name, value.evaluate(context), value.is_text
+        else:
+            yield name, evaluated(context, value), not is_substitution(value)
+
+
+def _of_file(path: str) -> Iterable[tuple[str, Any, bool]]:
+    data = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    for node in data.values() if isinstance(data, dict) else ():
+        found = node.get("ros__parameters") if isinstance(node, dict) else None
+        for name, value in (found or {}).items():
+            yield str(name), value, True
+
+
+def _namespace(context: LaunchContext, given: Any) -> str:
+    own = "" if given is None else text_of(context, given)
+    outer = context.launch_configurations.get(_NAMESPACE, "")
+    return own if own.startswith("/") or not outer else "/".join(filter(None, (outer, own)))
+
+
+class LifecycleNode(Node):
+    def __init__(self, *, name: Any, namespace: Any, autostart: Any = False, **kwargs: Any) -> None:
+        super().__init__(name=name, namespace=namespace, **kwargs)
+
+
+class ComposableNodeContainer(Node):
+    def __init__(
+        self,
+        *,
+        name: Any,
+        namespace: Any,
+        composable_node_descriptions: Any = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(name=name, namespace=namespace, **kwargs)
+
+
+class LoadComposableNodes(Action):
+    def __init__(
+        self, *, composable_node_descriptions: Any, target_container: Any, **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+
+
+class PushROSNamespace(Action):
+    def __init__(self, namespace: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._namespace = namespace
+
+    def execute(self, context: LaunchContext) -> None:
+        context.launch_configurations[_NAMESPACE] = _namespace(context, self._namespace)
+
+
+PushRosNamespace = PushROSNamespace
+
+
+class SetParameter(Action):
+    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._parameter = Parameter(name, value)
+
+    def execute(self, context: LaunchContext) -> None:
+        before = context.locals_.get(_PARAMETERS, ())
+        context.locals_[_PARAMETERS] = (*before, self._parameter)
+
+
+class SetUseSimTime(SetParameter):
+    def __init__(self, value: Any, **kwargs: Any) -> None:
+        super().__init__("use_sim_time", value, **kwargs)
+
+
+class SetParametersFromFile(Action):
+    def __init__(self, filename: Any, node_name: Any = None, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._file = filename
+
+    def execute(self, context: LaunchContext) -> None:
+        before = context.locals_.get(_PARAMETERS, ())
+        context.locals_[_PARAMETERS] = (*before, ParameterFile(self._file))
+
+
+class SetRemap(Action):
+    def __init__(self, src: Any, dst: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+
+class SetROSLogDir(Action):
+    def __init__(self, new_log_dir: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+
+class ROSTimer(TimerAction):
+    pass
+
+
+RosTimer = ROSTimer
+
+__all__ = [
+    *("ComposableNodeContainer", "LifecycleNode", "LoadComposableNodes", "Node"),
+    *("PushROSNamespace", "PushRosNamespace", "ROSTimer", "RosTimer", "SetParameter"),
+    *("SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime"),
+]
+__getattr__ = unknown("launch_ros.actions")

@@ -1,0 +1,201 @@
+"""Packages laid out below a prefix, as `colcon build` would install them."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shutil
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from grader.scenes.package.examining import cmake, known
+from grader.scenes.package.examining.packages import MANIFEST, Package
+from grader.scenes.package.examining.setup_call import run_setup
+from grader.scenes.package.examining.steps import Ended, step
+from grader.scenes.package.trace import Problem, Script, Setup
+
+MARKS = "share/ament_index/resource_index/packages"
+#: Folders whose files a description package is expected to install.
+_SHARED = (
+    *("urdf", "meshes", "launch", "rviz", "xacro", "config", "robots", "worlds", "models"),
+    *("params", "materials", "textures", "description", "mesh"),
+)
+_SCRIPT = re.compile(r"\s*(?P<name>[^=\s]+)\s*=\s*(?P<module>[\w.]+)\s*:\s*(?P<function>[\w.]+)")
+
+
+@dataclass
+class Installed:
+    """A package that is laid out.
+
+    Attributes:
+        package: it.
+        name: what it is called below the prefix.
+        setup: what it installs; what is told of it.
+        files: path below the prefix -> file of the package.
+    """
+
+    package: Package
+    name: str
+    setup: Setup
+    files: dict[str, str] = field(default_factory=dict)
+
+    def own(self, path: str, prefix: Path) -> str:
+        """A file of the package by a path below the prefix or in its folder; '' for others."""
+        for base, named in ((prefix, self.files), (self.package.folder, None)):
+            if path.startswith(f"{base}/"):
+                inside = os.path.normpath(path.removeprefix(f"{base}/"))
+                return named.get(inside, "") if named is not None else inside
+        return ""
+
+
+def lay_out(package: Package, root: Path, prefix: Path) -> Installed:
+    """Find out what a package installs, and copy that."""
+    said, problem, absent, files, programs = _said(package, prefix)
+    scripts = [_script(line, package) for line in said.get("scripts", [])]
+    name = package.name or said.get("name", "") or package.folder.name
+    folders: list[str] = []
+    found: dict[str, str] = {}
+    for where, source in files:
+        path = package.folder / source
+        if path.is_dir():
+            folders.append(source)
+        elif not path.is_file():
+            absent.append(source)
+        else:
+            to = os.path.normpath(os.path.join(where, os.path.basename(source)))
+            if _copy(path, prefix, to):
+                found[to] = os.path.relpath(path, package.folder)
+    where = said.get("scripts_folder") or "bin"
+    programs += [f"{where}/{script.name}" for script in scripts]
+    programs += [f"{where}/{os.path.basename(each)}" for each in said.get("plain_scripts", [])]
+    for program in programs:
+        _touch(prefix / os.path.normpath(program.lstrip("/")), prefix)
+    _make_known(package, name, prefix)
+    setup = Setup(
+        name=name,
+        told=said.get("name", ""),
+        folder="" if package.folder == root else os.path.relpath(package.folder, root),
+        build_type=package.build_type,
+        manifest=package.manifest,
+        depends=package.depends,
+        problem=problem,
+        absent=tuple(dict.fromkeys(absent)),
+        folders=tuple(dict.fromkeys(folders)),
+        scripts=tuple(scripts),
+        scripts_folder=said.get("scripts_folder", ""),
+        installed=tuple(sorted(found)),
+        sources=tuple(found[each] for each in sorted(found)),
+        left=_left(package, set(found.values())),
+    )
+    return Installed(package, name, setup, found)
+
+
+def _said(
+    package: Package, prefix: Path
+) -> tuple[dict[str, Any], Problem | None, list[str], list[tuple[str, str]], list[str]]:
+    """The set-up's arguments, its problem, what is absent, (folder, file) of each, programs."""
+    if package.is_cmake:
+        if not (package.folder / "CMakeLists.txt").is_file():
+            return {}, Problem("error", "there is no CMakeLists.txt"), [], [], []
+        files, absent, programs = cmake.installs(package.folder)
+        return {}, None, absent, files, programs
+    if not (package.folder / "setup.py").is_file():
+        return {}, Problem("error", "there is no setup.py"), [], [], []
+
+    def own(path: str) -> str:
+        here = f"{package.folder}/"
+        return path.removeprefix(here) if path.startswith(here) else ""
+
+    try:
+        said = step(lambda: run_setup(package.folder), own)
+        files = [(str(where), str(n)) for where, names in said["data_files"] for n in names]
+    except Ended as ended:
+        return {}, ended.problem, [], [], []
+    except (KeyError, TypeError, ValueError):
+        return {}, Problem("error", "setup.py answered nonsense"), [], [], []
+    return said, None, [], files, []
+
+
+def _copy(path: Path, prefix: Path, to: str) -> bool:
+    target = Path(os.path.normpath(prefix / to))
+    if not target.is_relative_to(prefix):
+        return False  # somewhere else on the machine: nobody finds it there
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(path, target)
+    return True
+
+
+def _touch(path: Path, prefix: Path) -> None:
+    if Path(os.path.normpath(path)).is_relative_to(prefix):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+
+
+def _make_known(package: Package, name: str, prefix: Path) -> None:
+    """Marker and package.xml, which colcon adds by itself."""
+    _touch(prefix / MARKS / name, prefix)
+    share = prefix / "share" / name
+    share.mkdir(parents=True, exist_ok=True)
+    if (package.folder / MANIFEST).is_file() and not (share / MANIFEST).exists():
+        shutil.copyfile(package.folder / MANIFEST, share / MANIFEST)
+
+
+def make_stubs(stubs: Path, declared: set[str], own: set[str]) -> None:
+    """A prefix with the packages of ROS that may be asked for, and those that are declared."""
+    for name in sorted((known.KNOWN | declared) - own):
+        if re.fullmatch(r"[\w-]{1,100}", name):
+            _touch(stubs / MARKS / name, stubs)
+            (stubs / "share" / name).mkdir(parents=True, exist_ok=True)
+    for name, files in known.FILES.items():
+        for file in files:
+            _touch(stubs / "share" / name / file, stubs)
+
+
+def _left(package: Package, installed: set[str]) -> tuple[str, ...]:
+    return tuple(
+        each
+        for each in package.files
+        if each.split("/")[0] in _SHARED
+        and each not in installed
+        and not each.endswith((".pyc", ".md", ".txt", "__init__.py"))
+    )[:200]
+
+
+def _script(line: str, package: Package) -> Script:
+    found = _SCRIPT.match(line)
+    if found is None:
+        return Script(line[:100], "", "", "it is not of the form 'name = module:function'", "", False)
+    name, module, function = found["name"], found["module"], found["function"]
+    base = module.replace(".", "/")
+    for folder in ("", "src/"):
+        for file in (f"{folder}{base}.py", f"{folder}{base}/__init__.py"):
+            if (package.folder / file).is_file():
+                return Script(name, module, function, *_of(package.folder / file, file, function))
+    return Script(name, module, function, f"there is no module {module}", "", False)
+
+
+def _of(path: Path, file: str, function: str) -> tuple[str, str, bool]:
+    """The fault of a script, its source, and whether that speaks of joint states."""
+    text = path.read_text(encoding="utf-8", errors="replace")[:1_000_000]
+    says = "JointState" in text or "joint_states" in text
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return f"{file} does not parse", file, says
+    names = {
+        name
+        for node in ast.walk(tree)
+        for name in (
+            [node.name]
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+            else [target.id for target in node.targets if isinstance(target, ast.Name)]
+            if isinstance(node, ast.Assign)
+            else [alias.asname or alias.name for alias in node.names]
+            if isinstance(node, ast.Import | ast.ImportFrom)
+            else []
+        )
+    }
+    first = function.split(".")[0]
+    return ("" if first in names else f"{file} has no {first}"), file, says

@@ -1,0 +1,276 @@
+"""The process that looks at a package: finds it, lays it out, evaluates it, leaves what it found.
+
+    python main.py {"root": ..., "package": ..., "leaves": ...}
+
+It is a submission's process, confined as such: what is in it may be anything. It leaves a trace as
+JSON in the open file `leaves`. Each step that runs a stranger's code is a copy of it, and cannot
+reach that file.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[4]
+if __name__ == "__main__":
+    sys.path[0] = str(ROOT)
+
+from grader.scenes.package import strict, trace  # noqa: E402
+from grader.scenes.package.examining import descriptions, launches, layout, packages  # noqa: E402
+from grader.scenes.package.examining.launches import Place  # noqa: E402
+from grader.scenes.package.examining.steps import Ended, problem_of, step  # noqa: E402
+from grader.scenes.package.trace import (  # noqa: E402
+    Description,
+    Launch,
+    Mesh,
+    PackageTrace,
+    Problem,
+    Varied,
+)
+
+_MOST_LAUNCHES, _MOST_TEXTS = 40, 20
+
+
+def main() -> None:
+    """Look, and leave what was found."""
+    from ctypes import CDLL
+
+    order = json.loads(sys.argv[1])
+    CDLL(None).prctl(4, 0)  # PR_SET_DUMPABLE: no copy opens our descriptors by /proc
+    with tempfile.TemporaryDirectory(prefix="package-") as scratch:
+        data = trace.encode(look(Path(order["root"]), order["package"], Path(scratch).resolve()))
+    with open(order["leaves"], "wb") as left:
+        left.write(data)
+
+
+def look(root: Path, asked: str, scratch: Path) -> PackageTrace:
+    """What there is to be found in a folder with packages."""
+    found = packages.find(root.resolve())
+    one = packages.judged(found, asked)
+    if one is None:
+        return PackageTrace()
+    prefix = scratch / "prefix"
+    laid = {id(each): layout.lay_out(each, root.resolve(), prefix) for each in found}
+    judged, everything = laid[id(one)], tuple(laid.values())
+    stubs = scratch / "stubs"
+    declared = {name for each in everything for name in each.setup.depends}
+    layout.make_stubs(stubs, declared, {each.name for each in everything})
+    (scratch / "empty").mkdir()
+    place = Place(prefix, stubs, scratch / "empty", scratch / "asked", judged, everything)
+    return Looking(place, scratch).trace()
+
+
+class Looking:
+    """One package that is laid out, looked at."""
+
+    def __init__(self, place: Place, scratch: Path) -> None:
+        self._place = place
+        self._scratch = scratch
+        self._texts: list[str] = []
+        self._descriptions: list[Description] = []
+        self._commands: dict[int, list[str]] = {}
+
+    def trace(self) -> PackageTrace:
+        """All of it."""
+        place = self._place
+        found = [self._launch(file) for file in place.judged.package.launch_files[:_MOST_LAUNCHES]]
+        if not any(each.text >= 0 for each in self._descriptions):
+            found += self._from_files(found)
+        varied = self._varied()
+        self._elsewhere(found)
+        return PackageTrace(
+            setup=strict.from_json(trace.Setup, _cleaned(strict.to_json(place.judged.setup), place)),
+            others=tuple(each.name[:200] for each in place.all if each is not place.judged)[:100],
+            launches=tuple(found),
+            descriptions=tuple(self._descriptions),
+            varied=tuple(varied),
+            texts=tuple(self._texts),
+        )
+
+    def _launch(self, file: str) -> Launch:
+        place = self._place
+        try:
+            said = step(lambda: _evaluated(place, file), place.own)
+        except Ended as ended:
+            return _ended(file, _cleaned(vars(ended.problem), place))
+        said = _cleaned(said, place)
+        try:
+            return self._taken(file, said)
+        except (ValueError, KeyError, TypeError, IndexError):
+            return _ended(file, {**vars(Problem("limit", "its process was made to answer nonsense"))})
+
+    def _taken(self, file: str, said: dict[str, Any]) -> Launch:
+        """A launch file as what was taken down of it."""
+        numbers = [self._number(text) for text in said["texts"]]
+        for node in said["nodes"]:
+            for parameter in node["parameters"]:
+                if parameter["text"] >= 0:
+                    parameter["text"] = numbers[parameter["text"]]
+        there, missing = said["asked"]
+        lacking = [{**each, "by": each["by"] or file} for each in said["lacking"]]
+        lacking += [{"kind": "package", "name": n, "source": "", "by": file} for n in missing]
+        launch = strict.from_json(
+            Launch,
+            {
+                "file": file,
+                "problem": said["problem"],
+                "lacking": lacking,
+                "packages": there,
+                "moved": "",
+                **{key: said[key] for key in ("nodes", "processes", "includes", "declared")},
+                "remarks": [*said["remarks"], *_unwrapped(said["nodes"])],
+            },
+        )
+        for node in launch.nodes:
+            if node.executable == "robot_state_publisher":
+                for each in node.parameters:
+                    if each.name == "robot_description":
+                        self._describe(each.text, launch.file, said["source"])
+        return launch
+
+    def _number(self, text: str) -> int:
+        if len(text) > trace.LONGEST_TEXT:
+            raise ValueError("a longer text than any description")
+        if text in self._texts:
+            return self._texts.index(text)
+        if len(self._texts) >= _MOST_TEXTS:
+            raise ValueError("more texts than any package has")
+        self._texts.append(text)
+        return len(self._texts) - 1
+
+    def _describe(self, number: int, by: str, sources: Sequence[str], launched: bool = True) -> None:
+        """Take down a description, once."""
+        if any(each.text == number for each in self._descriptions):
+            return
+        text = self._texts[number] if number >= 0 else ""
+        real = self._real(text)
+        named = descriptions.meshes(real, self._place)
+        made = Description(
+            text=number,
+            by=by,
+            is_launched=launched,
+            source=next((each for each in map(self._own, sources) if each), ""),
+            problem=None,
+            meshes=tuple(strict.from_json(Mesh, each) for each in named or ()),
+            is_xml=named is not None,
+        )
+        if sources and sources[0].startswith("/prefix/"):
+            self._commands[len(self._descriptions)] = [self._real(sources[0])]
+        self._descriptions.append(made)
+
+    def _own(self, told: str) -> str:
+        return self._place.own(self._real(told))
+
+    def _real(self, text: str) -> str:
+        """A text with the places as they are here."""
+        for each in self._place.all:
+            text = text.replace(f"/source/{each.name}", str(each.package.folder))
+        return text.replace("/prefix/", f"{self._place.prefix}/").replace(
+            "/opt/ros/jazzy/", f"{self._place.stubs}/"
+        )
+
+    def _from_files(self, found: Sequence[Launch]) -> list[Launch]:
+        """Descriptions that no launch file hands on; they stand in for one that should."""
+        place = self._place
+        try:
+            said = _cleaned(step(lambda: descriptions.from_files(place), place.own), place)
+            for each in said["made"]:
+                file = str(each["file"])
+                if each["text"]:
+                    self._describe(self._number(each["text"]), file, [file], launched=False)
+                else:
+                    problem = Problem("error", f"xacro: {each['errors']}"[:400], file, 0)
+                    self._descriptions.append(
+                        Description(-1, file, False, file, problem, (), False)
+                    )
+        except Ended as ended:
+            problem = Problem(**_cleaned(vars(ended.problem), place))
+            self._descriptions.append(Description(-1, "", False, "", problem, (), False))
+        except (ValueError, KeyError, TypeError):
+            pass
+        return []
+
+    def _varied(self) -> list[Varied]:
+        place, made = self._place, []
+        for of, words in list(self._commands.items())[:1]:
+            if not words[0].endswith((".xacro", ".xml", ".urdf")):
+                continue
+            try:
+                said = step(lambda words=words: descriptions.varied(place, words[0], []), place.own)
+                for each in said:
+                    text = str(each["text"])
+                    if len(text) > trace.LONGEST_TEXT or len(self._texts) > 100:
+                        continue
+                    if text and text not in self._texts:
+                        self._texts.append(text)
+                    number = self._texts.index(text) if text else -1
+                    made.append(Varied(of, str(each["name"])[:200], number))
+            except (Ended, KeyError, TypeError, ValueError):
+                continue
+        return made
+
+    def _elsewhere(self, found: list[Launch]) -> None:
+        """The same at another place: what is found there no more was named by its whole path."""
+        before = self._place
+        moved = self._scratch / "moved"
+        before.prefix.rename(moved)
+        place = Place(
+            moved, before.stubs, before.empty, before.asked, before.judged, before.all
+        )
+        for number, launch in enumerate(found):
+            if launch.problem is not None:
+                continue
+            try:
+                said = _cleaned(step(lambda f=launch.file: _evaluated(place, f), place.own), place)
+                again = [str(each["name"]) for each in said["lacking"] if each["kind"] == "file"]
+            except (Ended, KeyError, TypeError):
+                again = []
+            known = {each.name for each in launch.lacking}
+            other = next((name for name in again if name not in known), "")
+            if other:
+                found[number] = Launch(**{**vars(launch), "moved": other[:1000]})
+        moved.rename(before.prefix)
+
+
+def _evaluated(place: Place, file: str) -> dict[str, Any]:
+    """In a copy: a launch file evaluated, as JSON."""
+    said = launches.evaluate(place, file)
+    error = said["problem"]
+    said["problem"] = None if error is None else vars(problem_of(error, place.own))
+    return {**said, "asked": launches.asked(place)}
+
+
+def _ended(file: str, problem: dict[str, Any]) -> Launch:
+    return Launch(file, Problem(**problem), (), (), (), (), (), (), (), "")
+
+
+def _unwrapped(nodes: Sequence[dict[str, Any]]) -> list[str]:
+    for node in nodes:
+        for each in node["parameters"]:
+            if each["name"] == "robot_description" and not each["wrapped"]:
+                return [
+                    "robot_description is put through YAML, which takes most descriptions and not "
+                    "all: ParameterValue(..., value_type=str) keeps it as it is"
+                ]
+    return []
+
+
+def _cleaned(value: Any, place: Place) -> Any:
+    """JSON with the places as everybody knows them."""
+    if isinstance(value, str):
+        return place.told(value)
+    if isinstance(value, dict):
+        return {str(key): _cleaned(each, place) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_cleaned(each, place) for each in value]
+    return value
+
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,132 @@
+"""The packages in what was handed in: where they lie, what they say of themselves."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree import ElementTree
+
+MANIFEST = "package.xml"
+_SKIPPED = {"build", "install", "log", "__pycache__", "venv", "env", "node_modules"}
+_DEPENDS = ("depend", "exec_depend", "run_depend", "build_depend", "build_export_depend")
+_REQUIRED = ("name", "version", "description", "maintainer", "license")
+_MOST_BYTES, _MOST_FILES = 1_000_000, 5000
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package.
+
+    Attributes:
+        folder: where it lies.
+        name: by its package.xml; '' where that tells none.
+        build_type, manifest, depends: see `grader.scenes.package.trace.Setup`.
+        files: all of it, relative to its folder, in their order.
+    """
+
+    folder: Path
+    name: str = ""
+    build_type: str = ""
+    manifest: str = ""
+    depends: tuple[str, ...] = ()
+    files: tuple[str, ...] = field(default=(), repr=False)
+
+    @property
+    def is_cmake(self) -> bool:
+        """Whether CMake builds it."""
+        if self.build_type:
+            return self.build_type not in ("ament_python",)
+        return (self.folder / "CMakeLists.txt").is_file() and not (
+            self.folder / "setup.py"
+        ).is_file()
+
+    @property
+    def descriptions(self) -> list[str]:
+        """Its files that may describe a robot."""
+        return [each for each in self.files if is_description(each)]
+
+    @property
+    def launch_files(self) -> list[str]:
+        """Its files that `ros2 launch` would take."""
+        return [each for each in self.files if is_launch_file(each)]
+
+
+def is_description(name: str) -> bool:
+    """Whether a file of this name may be a URDF or a xacro."""
+    return name.endswith((".urdf", ".xacro", ".urdf.xml")) or (
+        name.endswith(".xml") and name.split("/")[0] in ("urdf", "robots", "xacro")
+    )
+
+
+def is_launch_file(name: str) -> bool:
+    """Whether a file of this name is one, as `ros2 launch` completes them."""
+    endings = ("launch.py", "launch.xml", "launch.yaml", "launch.yml", ".launch")
+    return name.endswith(endings)
+
+
+def find(root: Path) -> list[Package]:
+    """All packages, in the order of their paths."""
+    found = []
+    for at, folders, files in os.walk(root):
+        folders[:] = sorted(
+            each for each in folders if each not in _SKIPPED and not each.startswith(".")
+        )
+        is_one = MANIFEST in files or "setup.py" in files or "CMakeLists.txt" in files
+        if is_one and not any(Path(at).is_relative_to(each.folder) for each in found):
+            found.append(read(Path(at)))
+    return found
+
+
+def read(folder: Path) -> Package:
+    """What the package in a folder says of itself."""
+    files = _files(folder)
+    if not (folder / MANIFEST).is_file():
+        return Package(folder, manifest="there is none", files=files)
+    try:
+        data = (folder / MANIFEST).read_bytes()
+        if len(data) > _MOST_BYTES or b"<!DOCTYPE" in data:
+            raise ValueError("it is larger than any, or has a DOCTYPE")
+        root = ElementTree.fromstring(data)
+    except (OSError, ValueError, LookupError, ElementTree.ParseError) as error:
+        return Package(folder, manifest=f"it does not parse: {error}"[:300], files=files)
+    name = (root.findtext("name") or "").strip()
+    lacking = [tag for tag in _REQUIRED if root.find(tag) is None]
+    types = root.findall("export/build_type")
+    return Package(
+        folder,
+        name=name,
+        build_type="".join((types[0].text or "").split()) if types else "",
+        manifest=f"it has no <{lacking[0]}>" if lacking else "",
+        depends=tuple(
+            dict.fromkeys(
+                (each.text or "").strip() for each in root if each.tag in _DEPENDS and each.text
+            )
+        ),
+        files=files,
+    )
+
+
+def judged(found: list[Package], asked: str) -> Package | None:
+    """The package that describes a robot; the one that is asked for."""
+    if asked:
+        return next((each for each in found if each.name == asked), None)
+
+    def worth(package: Package) -> tuple[bool, bool, bool, int]:
+        robots = package.descriptions
+        named = package.name.endswith("_description")
+        return bool(robots), bool(package.launch_files), named, len(robots)
+
+    return max(found, key=worth, default=None)
+
+
+def _files(folder: Path) -> tuple[str, ...]:
+    found: list[str] = []
+    for at, folders, files in os.walk(folder):
+        folders[:] = sorted(
+            each for each in folders if each not in _SKIPPED and not each.startswith(".")
+        )
+        found += [os.path.relpath(Path(at, name), folder) for name in sorted(files)]
+        if len(found) > _MOST_FILES:
+            break
+    return tuple(found[:_MOST_FILES])

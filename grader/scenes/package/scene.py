@@ -1,0 +1,126 @@
+"""The scene `package`: nothing runs beside the submission, which is looked at and not started."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, NoReturn
+
+from grader.scenes.package import messages, trace, view
+from grader.scenes.package.trace import PackageTrace
+from grader.scenes.scene import (
+    Endpoint,
+    Hooks,
+    Introduction,
+    Limits,
+    Message,
+    Scene,
+    Simulation,
+    Start,
+    Trace,
+)
+from grader.scenes.view import Pictures, View
+
+_NOTHING = "nothing runs in the scene 'package'"
+
+
+class Package:
+    """See `grader.scenes.scene.Scene`; it has no nodes, no clock and no place to start."""
+
+    name: Final = "package"
+    examiner: Final = "grader/scenes/package/examining/main.py"
+    tick_ns: Final = 1
+    introduction: Final = Introduction((), (), ())
+    thing: Final = "package"
+    plane: Final = view.PLANE
+    farthest_start_m: Final = 0.0
+
+    def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
+        """None: a package is looked at once, and its variations are in that."""
+        return []
+
+    def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
+        """It has no choice."""
+        return ""
+
+    def adapted(self, text: str, ros_distro: str) -> str:
+        """The same for every release."""
+        return text
+
+    def how_to_try(self, program: str, package: str) -> str:
+        """With ROS: build it, launch it, look."""
+        named = package or "my_robot_description"
+        return (
+            "With ROS 2, in a workspace that holds the package in `src`:\n\n"
+            f"    colcon build --packages-select {named}\n"
+            "    source install/setup.bash\n"
+            f"    ros2 launch {named} display.launch.py\n\n"
+            "A link that RViz shows white, or at the origin, has no transform: nobody publishes "
+            "its joint, the Fixed Frame is wrong, or the workspace was built or sourced before the "
+            "last change."
+        )
+
+    def preload(self) -> None:
+        """Nothing is needed: there is no simulator."""
+
+    def simulate(
+        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str
+    ) -> Simulation:
+        """There is none."""
+        _refuse()
+
+    def untouched(self, start: Start | None) -> Trace:
+        """What is left where nobody could look."""
+        return PackageTrace()
+
+    def encode(self, made: Trace) -> bytes:
+        """A trace as JSON."""
+        return trace.encode(PackageTrace.of(made))
+
+    def decode(self, data: bytes) -> Trace:
+        """The trace that bytes mean; ValueError: they mean none."""
+        return trace.decode(data)
+
+    def message_definitions(self) -> Mapping[str, str]:
+        """That of the one message that holds the trace."""
+        return messages.DEFINITIONS
+
+    def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
+        """The one."""
+        return [(messages.TOPIC, messages.TYPE)]
+
+    def to_messages(self, made: Trace) -> list[Message]:
+        """The trace as a text, in JSON."""
+        return messages.to_messages(PackageTrace.of(made))
+
+    def from_messages(
+        self, found: Sequence[Message], topics: Mapping[str, str], ticks: int
+    ) -> Trace:
+        """The trace of the one message."""
+        return messages.from_messages(found)
+
+    def scenario(self, made: Trace) -> dict[str, Any]:
+        """Nothing that could be replayed."""
+        return {}
+
+    def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
+        """None."""
+        return ()
+
+    def pictures(self, made: Trace) -> Pictures:
+        """The links of the robot, as a tree."""
+        return Pictures(view.picture(PackageTrace.of(made)))
+
+    def view(self, made: Trace) -> View:
+        """Nothing over time."""
+        return view.view()
+
+    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[str]:
+        """Which package was looked at, and what of it could not be."""
+        return view.remarks(PackageTrace.of(made))
+
+
+def _refuse() -> NoReturn:
+    raise NotImplementedError(_NOTHING)
+
+
+SCENE: Scene = Package()

@@ -1,0 +1,318 @@
+"""What looking at a package leaves: what it installs, what its launch files describe, its URDFs.
+
+All of it comes from a process in which a stranger's code ran, and is evidence about that stranger's
+package alone. Paths are those of the package, or begin with `/prefix`, where it was laid out as if
+installed; what belongs to nobody's package is told as it is.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from typing import Self
+
+from grader.scenes.package.strict import from_json, longest, to_json
+
+#: A description may have so many characters; all of a trace so many bytes.
+LONGEST_TEXT = 2_000_000
+MOST_BYTES = 16_000_000
+#: Where a package is laid out, in the paths of a trace.
+PREFIX = "/prefix"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something that ended an evaluation.
+
+    Attributes:
+        kind: `error` - what the package's own code raised; `limit` - it took too much;
+            `argument` - a launch argument without a default; `unknown` - it uses what the grader
+            does not know, which is no fault of the package.
+        text: in a line.
+        file, line: in the package's own files; '' and 0 where that is not known.
+    """
+
+    kind: str
+    text: str
+    file: str = ""
+    line: int = 0
+
+
+@dataclass(frozen=True)
+class Script:
+    """A console script.
+
+    Attributes:
+        fault: why it could not be started, as what follows its name; '' where it could.
+        source: the file that it starts; '' for none.
+        says: whether that file speaks of joint states.
+    """
+
+    name: str
+    module: str
+    function: str
+    fault: str
+    source: str
+    says: bool
+
+
+@dataclass(frozen=True)
+class Lacking:
+    """Something that is named and not there.
+
+    Attributes:
+        kind: `file`, `package` or `executable`.
+        name: as it was asked for: a path, a package, or package and program.
+        source: the package's own file that was meant, as far as one is called the same; '' for
+            none.
+        by: the file that names it; '' where that is not known.
+    """
+
+    kind: str
+    name: str
+    source: str
+    by: str
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What the package says of itself, and installs.
+
+    Attributes:
+        name: of the package, by package.xml; by its set-up where that says none.
+        told: the name that the set-up gives; '' where it gives none.
+        folder: where it lies in what was handed in; '' for its top.
+        build_type: "ament_python", "ament_cmake", ...; '' where none is told.
+        manifest: what is wrong with package.xml; '' for nothing.
+        depends: all packages that it names as dependencies, of whatever kind.
+        problem: what ended its setup.py; None where it came to its end.
+        absent: what it lists to be installed, and is not there.
+        folders: folders that it lists as if they were files.
+        scripts: its console scripts.
+        scripts_folder: where these are installed, as 'lib/NAME'.
+        installed: the files below the prefix: 'share/NAME/urdf/a.urdf'.
+        sources: of each of these, the file that it is of.
+        left: files of urdf, meshes, launch, rviz, ... that nothing installs.
+    """
+
+    name: str
+    told: str
+    folder: str
+    build_type: str
+    manifest: str
+    depends: tuple[str, ...]
+    problem: Problem | None
+    absent: tuple[str, ...]
+    folders: tuple[str, ...]
+    scripts: tuple[Script, ...]
+    scripts_folder: str
+    installed: tuple[str, ...]
+    sources: tuple[str, ...]
+    left: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a launched node.
+
+    Attributes:
+        value: as YAML writes it, in a line; '' for a text that is long.
+        text: the number of the text that it is; -1 for all that is short.
+        wrapped: whether it was said to be a text (ParameterValue, value_type=str), or is one.
+    """
+
+    name: str
+    value: str
+    text: int
+    wrapped: bool
+
+
+@dataclass(frozen=True)
+class Node:
+    """A node that a launch file starts.
+
+    Attributes:
+        later: whether it starts only when something else happens.
+    """
+
+    package: str
+    executable: str
+    name: str
+    namespace: str
+    arguments: tuple[str, ...]
+    parameters: tuple[Parameter, ...]
+    remappings: tuple[str, ...]
+    later: bool
+
+
+@dataclass(frozen=True)
+class Include:
+    """A launch file of another package that is included: its package, path in it, and arguments."""
+
+    package: str
+    file: str
+    arguments: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Launch:
+    """A launch file, evaluated.
+
+    Attributes:
+        file: its source in the package.
+        problem: what ended it; None where it came to its end.
+        nodes, processes, includes: what it starts, with its default arguments.
+        declared: the names of its arguments.
+        packages: other packages that it asks for.
+        lacking: what it names and is not there.
+        remarks: what works, and need not.
+        moved: what is otherwise where the package is installed in another place; '' for nothing.
+    """
+
+    file: str
+    problem: Problem | None
+    nodes: tuple[Node, ...]
+    processes: tuple[str, ...]
+    includes: tuple[Include, ...]
+    declared: tuple[str, ...]
+    packages: tuple[str, ...]
+    lacking: tuple[Lacking, ...]
+    remarks: tuple[str, ...]
+    moved: str
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A file that a description names.
+
+    Attributes:
+        state: `found`; `left` - it is in the package, and nothing installs it there; `missing`;
+            `case` - there is one in other letters; `foreign` - of another package, whose files
+            nobody knows here; `package` - of a package that is not there; `scheme` - no viewer
+            resolves such a name.
+        path: what was looked for; of `case` and `left`, what is there.
+        is_mesh: whether it is a mesh, and no texture.
+    """
+
+    uri: str
+    state: str
+    path: str
+    is_mesh: bool
+
+
+@dataclass(frozen=True)
+class Description:
+    """A robot's description.
+
+    Attributes:
+        text: its number among the texts.
+        by: the launch file that hands it to a robot_state_publisher, or the file that it is from.
+        is_launched: whether a launch file hands it to one.
+        source: the URDF or xacro that it is from, as far as that is known.
+        problem: why there is none, of a file that no launch file uses.
+        meshes: the files that it names.
+        is_xml: whether it can be read for these.
+    """
+
+    text: int
+    by: str
+    is_launched: bool
+    source: str
+    problem: Problem | None
+    meshes: tuple[Mesh, ...]
+    is_xml: bool
+
+
+@dataclass(frozen=True)
+class Varied:
+    """A description with one number of its xacro doubled.
+
+    Attributes:
+        of: the number of the description among the descriptions.
+        name: of the property or argument.
+        text: among the texts; -1 where xacro refused it.
+    """
+
+    of: int
+    name: str
+    text: int
+
+
+@dataclass(frozen=True)
+class PackageTrace:
+    """A package that was looked at; no clock ran.
+
+    Attributes:
+        setup: of the package that is judged; None where nobody got so far.
+        others: the names of packages beside it in what was handed in.
+        launches: its launch files.
+        descriptions: the robots that it describes.
+        varied: with other numbers.
+        texts: what the numbers of texts stand for.
+    """
+
+    setup: Setup | None = None
+    others: tuple[str, ...] = ()
+    launches: tuple[Launch, ...] = ()
+    descriptions: tuple[Description, ...] = ()
+    varied: tuple[Varied, ...] = ()
+    texts: tuple[str, ...] = longest(LONGEST_TEXT)
+
+    @classmethod
+    def of(cls, trace: object) -> Self:
+        """A recording's trace as what it is.
+
+        Raises:
+            TypeError: it is another scene's.
+        """
+        if not isinstance(trace, cls):
+            raise TypeError(f"expected a trace of a package, found a {type(trace).__name__}")
+        return trace
+
+    @property
+    def ticks(self) -> int:
+        """None: there is no clock."""
+        return 0
+
+    @property
+    def simulated_s(self) -> float:
+        """No time passes."""
+        return 0.0
+
+    def sha256(self) -> str:
+        """A hash of all of it; equal hashes mean equal findings."""
+        return hashlib.sha256(encode(self)).hexdigest()
+
+
+def encode(trace: PackageTrace) -> bytes:
+    """A trace as JSON; the same trace gives the same bytes."""
+    return json.dumps(to_json(trace), sort_keys=True).encode("ascii")
+
+
+def decode(data: bytes) -> PackageTrace:
+    """The trace that bytes mean.
+
+    Raises:
+        ValueError: they mean none.
+    """
+    if len(data) > MOST_BYTES:
+        raise ValueError(f"a trace of {len(data)} bytes; expected {MOST_BYTES} at most")
+    try:
+        trace = from_json(PackageTrace, json.loads(data.decode("ascii")))
+    except (TypeError, LookupError, RecursionError) as error:
+        raise ValueError(f"no trace of a package: {type(error).__name__}: {error}") from None
+    _must_agree(trace)
+    return trace
+
+
+def _must_agree(trace: PackageTrace) -> None:
+    """Numbers of texts are of texts that there are."""
+    values = (p for launch in trace.launches for node in launch.nodes for p in node.parameters)
+    numbers = [each.text for each in (*values, *trace.descriptions, *trace.varied)]
+    if any(not -1 <= number < len(trace.texts) for number in numbers):
+        raise ValueError("it names a text that is not there")
+    if any(not 0 <= each.of < len(trace.descriptions) for each in trace.varied):
+        raise ValueError("it names a description that is not there")
+    if trace.setup and len(trace.setup.installed) != len(trace.setup.sources):
+        raise ValueError("installed files and their sources are not equally many")

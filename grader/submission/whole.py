@@ -1,0 +1,74 @@
+"""What of a submission is looked at where nothing is started: all of a folder or an archive."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from grader.errors import SubmissionError
+from grader.submission.folder import HandedIn, files_below, listed, near, shown, top_of
+from grader.submission.manifest import FILE, read_manifest
+from grader.submission.refusals import missing, unreadable
+from grader.submission.setup_files import SETUP_FILES
+from grader.submission.start import Submission, Whole
+from grader.submission.unpacking import Unpacking, is_archive
+
+_HAND_IN: Final = "Hand in the folder of your ROS 2 package, or a .zip of it."
+_MARKS: Final = (FILE, "CMakeLists.txt", *SETUP_FILES)
+
+
+def find(path: Path, package: str | None, scratch: Path) -> Submission:
+    """Find the packages in what was handed in.
+
+    Args:
+        package: chooses among them, by name.
+        scratch: an empty folder, for what has to be unpacked.
+
+    Raises:
+        SubmissionError: there is none, or none of this name.
+        UsageError: there is no such path.
+    """
+    try:
+        return _find(path, package, scratch)
+    except OSError as error:
+        raise unreadable(path, error) from error
+
+
+def _find(path: Path, package: str | None, scratch: Path) -> Submission:
+    name = shown(path.name or path.resolve().name)
+    if not path.exists():
+        raise missing(path)
+    unpacking = Unpacking(scratch)
+    if path.is_dir():
+        handed_in = HandedIn(name, path.resolve())
+    elif is_archive(path):
+        handed_in = HandedIn(name, unpacking.unpack(path))
+    else:
+        raise SubmissionError(f"{name} is neither a folder nor a .zip or .tar.gz. {_HAND_IN}")
+    files = files_below(top_of(handed_in.base))
+    archives = [file for file in files if is_archive(file)]
+    if len(archives) == 1 and not any(file.name in _MARKS for file in files):
+        handed_in.must_hold(archives[0])
+        handed_in = HandedIn(name, unpacking.unpack(archives[0]))
+        files = files_below(top_of(handed_in.base))
+    folders = sorted({file.parent for file in files if file.name in _MARKS})
+    if not folders:
+        names = [handed_in.called(file) for file in files]
+        raise SubmissionError(
+            f"{name} holds no ROS 2 package: no package.xml, setup.py or CMakeLists.txt "
+            f"(it holds: {listed(names) or 'only folders that are not searched'}). {_HAND_IN}"
+        )
+    if package is not None:
+        _must_be_there(handed_in, folders, package)
+    found = f"all of {name}: {listed(map(handed_in.called, folders))}"
+    return Submission(name, handed_in.base, Whole(package or ""), found)
+
+
+def _must_be_there(handed_in: HandedIn, folders: list[Path], package: str) -> None:
+    manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
+    names = sorted({each.name for each in manifests if each is not None})
+    if package not in names:
+        meant = near(package, names) or names
+        raise SubmissionError(
+            f"{handed_in.name} has no package {shown(package)}; there is: {listed(meant)}."
+        )
