@@ -25,6 +25,8 @@ PACKAGES = {
 STUDENTS = re.compile(
     r"turtlesim_challenge\.starter\b|grader\.exercises\.\w+\.(starter|reference|right)\b"
 )
+#: Doubles of ROS's packages, by whose names they import each other.
+DOUBLES = "grader.scenes.package.examining.doubles"
 
 
 def below(package: str, *names: str) -> set[str]:
@@ -81,6 +83,13 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.scenes.turtlesim": GROUND | {"grader.scenes", "turtlesim_py"},
     # the same clock says "tick"
     "grader.scenes.robot": GROUND | {"grader.scenes", "robot_py", "turtlesim_py.ros.pacer"},
+    # a package is looked at in the submission's process, which sees little of ours
+    "grader.scenes.package": GROUND | {"grader.scenes"},
+    "grader.scenes.package.strict": set(),
+    "grader.scenes.package.trace": {"grader.scenes.package.strict"},
+    "grader.scenes.package.examining": below("grader", "limited")
+    | below("grader.scenes.package", "strict", "trace", "__init__"),
+    "grader.scenes.package.examining.doubles": {"grader.scenes.package.examining"},
     "grader.recording": GROUND | {"grader.scenes"},
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
     "grader.run.processes": GROUND,

@@ -18,7 +18,13 @@ from grader.submission.private_copy import copy_privately
 from grader.submission.start import EntryPoint, Imports, Launch, Script, Submission, Whole
 
 __all__ = [
-    *("EntryPoint", "Imports", "Launch", "Script", "Submission", "Whole", "open_submission"),
+    "EntryPoint",
+    "Imports",
+    "Launch",
+    "Script",
+    "Submission",
+    "Whole",
+    "open_submission",
 ]
 
 
@@ -41,7 +47,9 @@ def open_submission(
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()
-        yield _in_private(reader.read(path, executable, scratch, is_started=is_started), path, scratch)
+        yield _in_private(
+            reader.read(path, executable, scratch, is_started=is_started), path, scratch
+        )
 
 
 def _in_private(submission: Submission, path: Path, scratch: Path) -> Submission:

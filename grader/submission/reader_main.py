@@ -15,6 +15,7 @@ from grader.submission import answer, encoding, limits, unpacking, whole
 from grader.submission.finding import find
 from grader.submission.folder import shown
 from grader.submission.imports import read_imports
+from grader.submission.start import Whole
 
 _STDOUT: Final = 1
 _SHORT_OF_MEMORY: Final = answer.short_of_memory()  # made while there is some
@@ -39,6 +40,7 @@ def _answer(request: dict[str, Any]) -> bytes:
             return answer.found(whole.find(path, request["executable"], scratch))
         found = find(path, request["executable"], scratch)
         only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
+        assert not isinstance(found.start, Whole)
         imports = read_imports(found.root, found.start, only)
         refused = encoding.faults(imports.files, found.root)
         return answer.found(replace(found, imports=imports, notes=(*refused, *found.notes)))

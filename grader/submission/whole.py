@@ -58,17 +58,13 @@ def _find(path: Path, package: str | None, scratch: Path) -> Submission:
             f"{name} holds no ROS 2 package: no package.xml, setup.py or CMakeLists.txt "
             f"(it holds: {listed(names) or 'only folders that are not searched'}). {_HAND_IN}"
         )
-    if package is not None:
-        _must_be_there(handed_in, folders, package)
-    found = f"all of {name}: {listed(map(handed_in.called, folders))}"
-    return Submission(name, handed_in.base, Whole(package or ""), found)
-
-
-def _must_be_there(handed_in: HandedIn, folders: list[Path], package: str) -> None:
     manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
-    names = sorted({each.name for each in manifests if each is not None})
-    if package not in names:
+    names = sorted({shown(each.name) for each in manifests if each is not None and each.name})
+    if package is not None and package not in names:
         meant = near(package, names) or names
         raise SubmissionError(
-            f"{handed_in.name} has no package {shown(package)}; there is: {listed(meant)}."
+            f"{name} has no package {shown(package)}; there is: {listed(meant) or 'none'}."
         )
+    count = "the package" if len(names) == 1 else "packages"
+    found = f"{count} {listed(names)}" if names else f"a package without {FILE}"
+    return Submission(name, handed_in.base, Whole(package or ""), found)

@@ -17,22 +17,22 @@ is left of some checks' points, a share below 1 or `some`, and that all others s
 it, it is enough that some check fails.
 
 Where the first right solution is a folder, as a package is, `program` says in which of its files
-passages are replaced; `in` says so of one passage. Files may be `put` into a copy of the folder,
-from beside this file, and be `removed`; a right solution may be made so as well:
+passages are replaced, and `in` says so of one passage. `files` holds whole files, or null for one
+that goes; what is `put` into the folder lies beside this file. Another right solution may be made
+in the same way:
 
     program: walker/state_publisher.py
     right:
       reference: reference
       a_loop: {put: {walker/state_publisher.py: right/loop.py}}
     mutants:
-      no_launch_file: {remove: [launch/walker.launch.py], leaves: {launch: 0}}
+      no_launch_file: {files: {launch/walker.launch.py: null}, leaves: {launch: 0}}
 """
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -40,22 +40,12 @@ from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.loading import Exercise
 from grader.exercise.yaml_file import Keys, Mistake, read_yaml
+from grader.testing.changes import MADE, Change, changed, lay_out, read
 
 FILE_NAME = "mutants.yaml"
-#: How a solution may be made of the first one.
-MADE = frozenset(("replace", "put", "remove"))
 
 #: What is left of a check's points: a share from 0 to 1, or some of them.
 Left = float | Literal["some"]
-
-
-@dataclass(frozen=True)
-class Change:
-    """A passage, and what stands there instead; `file` is '' for the solution itself."""
-
-    old: str
-    new: str
-    file: str = ""
 
 
 @dataclass(frozen=True)
@@ -66,11 +56,8 @@ class Solution:
         name: its own.
         path: what is handed in, or what is changed before.
         is_right: whether it must get every point; else it is a mutant.
-        changes: passages of `path` and what stands there instead.
+        changes: what makes it of `path`.
         leaves: check -> what is left of its points, where that is less than all; None: not said.
-        program: of a folder, the file that `text` is; '' for a solution that is a file.
-        puts: file of a folder -> what is put there.
-        removes: files of a folder that are not there.
     """
 
     name: str
@@ -78,64 +65,19 @@ class Solution:
     is_right: bool
     changes: tuple[Change, ...] = ()
     leaves: Mapping[str, Left] | None = None
-    program: str = ""
-    puts: Mapping[str, Path] = field(default_factory=dict)
-    removes: tuple[str, ...] = ()
 
-    @property
-    def is_changed(self) -> bool:
-        """Whether it is another than what lies at `path`."""
-        return bool(self.changes or self.puts or self.removes)
-
-    def text(self, file: str = "") -> str:
-        """The source of a file, the program's for '', with its changes.
+    def text(self) -> str:
+        """The source of one that is a file, with its changes.
 
         Raises:
             ExerciseError: a passage does not stand there exactly once.
-            OSError: there is no such file.
         """
-        file = file or self.program
-        source = self.puts.get(file) or (self.path / file if file else self.path)
-        text = source.read_text(encoding="utf-8")
-        for change in self.changes:
-            if (change.file or self.program) != file:
-                continue
-            if text.count(change.old) != 1:
-                raise ExerciseError(
-                    f"mutants: {self.name}: {change.old!r} stands {text.count(change.old)} times "
-                    f"in {source.name}; expected once"
-                )
-            text = text.replace(change.old, change.new)
-        return text
+        text = changed(self.name, self.path, self.changes).get("")
+        return self.path.read_text(encoding="utf-8") if text is None else text
 
     def lay_out(self, folder: Path) -> Path:
-        """What is handed in: what lies at `path` itself, or a changed copy in a new folder."""
-        if not self.is_changed:
-            return self.path
-        copy = folder / self.name / self.path.name
-        copy.parent.mkdir(parents=True)
-        if not self.program:
-            copy.write_text(self.text(), encoding="utf-8")
-            return copy
-        shutil.copytree(self.path, copy, ignore=shutil.ignore_patterns("__pycache__"))
-        for file in {*self.puts, *(change.file or self.program for change in self.changes)}:
-            (copy / file).parent.mkdir(parents=True, exist_ok=True)
-            (copy / file).write_text(self.text(file), encoding="utf-8")
-        for file in self.removes:
-            (copy / file).unlink()
-        return copy
-
-    def look(self) -> None:
-        """See whether it can be laid out.
-
-        Raises:
-            ExerciseError: a passage does not stand in its file exactly once.
-            OSError: a file is not there.
-        """
-        for file in {*self.puts, *(change.file for change in self.changes)}:
-            self.text(file)
-        for file in self.removes:
-            (self.path / file).stat()
+        """What is handed in: the file or folder itself, or a changed copy in a new folder."""
+        return lay_out(self.name, self.path, self.changes, folder) if self.changes else self.path
 
 
 def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solution]:
@@ -155,7 +97,7 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
         except Mistake as mistake:
             raise ExerciseError(file.told(mistake)) from None
         for solution in found:
-            solution.look()
+            changed(solution.name, solution.path, solution.changes)
     except OSError as error:
         raise ExerciseError(
             f"cannot read the solutions of {exercise.name!r}, {path}: {error.strerror}. "
@@ -171,12 +113,14 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
         raise Mistake(("right",), "expected names with paths of right solutions")
     unknown = [key for key in data if key not in ("right", "mutants", "program")]
     if unknown:
-        raise Mistake((str(unknown[0]),), "unknown; there are right, mutants")
+        raise Mistake((str(unknown[0]),), "unknown; there are right, mutants, program")
     (name, where), *others = data["right"].items()
-    path = places.locate(folder, str(where))
-    program = str(data.get("program", "")) if path.is_dir() else ""
-    first = Solution(str(name), path, is_right=True, program=program)
-    right = [first, *(_right(str(n), words, first, folder) for n, words in others)]
+    if isinstance(where, dict):
+        raise Mistake(("right", str(name)), "expected the path of the first right solution")
+    first = Solution(str(name), places.locate(folder, str(where)), is_right=True)
+    program = str(data.get("program", ""))
+    made = _Made(first.path, program, folder)
+    right = [first, *(_right(str(n), words, made) for n, words in others)]
     mutants = data.get("mutants") or {}
     if not isinstance(mutants, dict):
         raise Mistake(("mutants",), "expected names with what is changed")
@@ -185,53 +129,52 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
         raise ExerciseError(f"{min(both)!r} is both a right solution and a mutant")
     return [
         *right,
-        *(_mutant(str(n), words, first, folder, exercise) for n, words in mutants.items()),
+        *(_mutant(str(n), words, made, exercise) for n, words in mutants.items()),
     ]
 
 
-def _right(name: str, words: Any, first: Solution, folder: Path) -> Solution:
+@dataclass(frozen=True)
+class _Made:
+    """What solutions are made of: the first one, its program, and the folder of mutants.yaml."""
+
+    of: Path
+    program: str
+    folder: Path
+
+    def changes(self, words: Mapping[str, Any], keys: Keys) -> tuple[Change, ...]:
+        try:
+            changes = read(words, self.program, self.folder)
+        except (TypeError, KeyError, AttributeError):
+            raise Mistake((*keys, "replace"), "expected a list of old and new") from None
+        is_folder = self.of.is_dir()
+        if not changes or any(bool(each.file) != is_folder for each in changes):
+            raise Mistake(keys, f"there is nothing to replace in {self.of}")
+        return changes
+
+
+def _right(name: str, words: Any, made: _Made) -> Solution:
     if not isinstance(words, dict):
-        return Solution(name, places.locate(folder, str(words)), is_right=True)
+        return Solution(name, places.locate(made.folder, str(words)), is_right=True)
     keys: Keys = ("right", name)
     unknown = words.keys() - MADE
     if unknown:
         raise Mistake(keys, f"unknown {min(map(str, unknown))!r}")
-    return replace(first, name=name, **_made(keys, words, first, folder))
+    return Solution(name, made.of, is_right=True, changes=made.changes(words, keys))
 
 
-def _mutant(name: str, words: Any, of: Solution, folder: Path, exercise: Exercise) -> Solution:
+def _mutant(name: str, words: Any, made: _Made, exercise: Exercise) -> Solution:
     keys: Keys = ("mutants", name)
-    if not isinstance(words, dict) or ("file" in words) == bool(words.keys() & MADE):
+    if not isinstance(words, dict) or ("file" in words) != MADE.isdisjoint(words):
         raise Mistake(keys, "expected either `replace` or `file`")
     unknown = words.keys() - {"file", "leaves", *MADE}
     if unknown:
         raise Mistake(keys, f"unknown {min(map(str, unknown))!r}")
     leaves = _leaves(name, words.get("leaves"), exercise)
     if "file" in words:
-        path = places.locate(folder, str(words["file"]))
+        path = places.locate(made.folder, str(words["file"]))
         return Solution(name, path, is_right=False, leaves=leaves)
-    made = _made(keys, words, of, folder)
-    return replace(of, name=name, is_right=False, leaves=leaves, **made)
-
-
-def _made(keys: Keys, words: Mapping[str, Any], of: Solution, folder: Path) -> dict[str, Any]:
-    """How a solution is made of another one."""
-    try:
-        changes = tuple(
-            Change(str(each["old"]), str(each["new"]), str(each.get("in", "")))
-            for each in words.get("replace", ())
-        )
-    except (TypeError, KeyError, AttributeError):
-        raise Mistake((*keys, "replace"), "expected a list of old and new") from None
-    puts, removes = words.get("put", {}), words.get("remove", [])
-    if not isinstance(puts, dict) or not isinstance(removes, list):
-        raise Mistake(keys, "expected files with what is `put` there, and a list to `remove`")
-    if not (changes or puts or removes) or not (of.path.is_file() or of.program):
-        raise Mistake(keys, f"there is nothing to replace in {of.path}")
-    found = {str(file): places.locate(folder, str(where)) for file, where in puts.items()}
-    if not of.program and (found or removes or any(change.file for change in changes)):
-        raise Mistake(keys, f"{of.path.name} is no folder, in which files could be")
-    return {"changes": changes, "puts": found, "removes": tuple(map(str, removes))}
+    changes = made.changes(words, keys)
+    return Solution(name, made.of, is_right=False, changes=changes, leaves=leaves)
 
 
 def _leaves(name: str, words: object, exercise: Exercise) -> Mapping[str, Left] | None:

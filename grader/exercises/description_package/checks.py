@@ -50,7 +50,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """A launch file shows the robot: its description, its joints, RViz.
 
     Each launch file, in Python or XML, is evaluated with its default arguments, and nothing is
-    started. The best of them counts:
+    started. The best of them counts, of those that start RViz, where any does:
 
     - robot_state_publisher with the parameter robot_description: half of the points,
     - something that publishes joint states, if any joint moves: joint_state_publisher, with or
@@ -85,7 +85,7 @@ def meshes(recordings: Recordings, tolerances: Tolerances) -> Finding:
     Each file that the description names, textures too, has to be found from its name: by
     package://PACKAGE/PATH, or a file:// that $(find) has made. The share of those that are so is
     the share of the points. One that the package has and does not install is no fault here.
-    A description without any gets all points.
+    A description without any gets all points, if a launch file starts anything.
     """
     return _of(recordings, robots.judge_meshes)
 
@@ -95,8 +95,9 @@ def dependencies(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """package.xml declares the packages that are used.
 
     Used are those whose nodes or files a launch file starts or includes, whose meshes the
-    description names, and xacro. What every desktop installation of ROS 2 has (robot_state_publisher,
-    rviz2, tf2_ros, ...) need not be declared. The share that is, is the share of the points.
+    description names, and xacro. What every desktop installation of ROS 2 has
+    (robot_state_publisher, rviz2, tf2_ros, ...) need not be declared. The share that is, is the
+    share of the points.
     """
     return _of(recordings, needs.judge)
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, folder_of, placed, shown
+from grader.scenes.package.trace import EMPTY
 
 #: One thing missing leaves so much; two leave nothing.
 ONE_MISSING = 0.5
-_HOME = re.compile(r"^/(?:home|root|Users|mnt|media|ws|workspace)\b|^[A-Za-z]:[\\/]")
+#: The current folder of who launches, in the paths of a trace.
+_EMPTY = f"{EMPTY}/"
 _BUILD = "colcon build stops there, and nothing is installed"
 
 
@@ -127,21 +128,21 @@ def _file(looked: Looked, name: str, source: str, by: str) -> Missing:
             f"{by} is not installed: `ros2 launch {looked.name}` does not find it.",
             "data_files in setup.py (or install() in CMakeLists.txt) has to list the launch files.",
         )
-    if _HOME.match(name) or not name.startswith(("/prefix/", "/home/", "/opt/ros/", "/source/")):
+    if not name.startswith("/") or name.startswith(_EMPTY):
+        return Missing(
+            name,
+            f"{by} asks for {shown(name.removeprefix(_EMPTY))}, a path from the current folder: it "
+            "is there only for who stands in the right one.",
+            "Join it to the package's share folder: get_package_share_directory(NAME).",
+        )
+    if not name.startswith(("/prefix/", "/opt/ros/")):
         return Missing(
             name,
             f"{by} asks for {shown(name)}: a path of one machine, which no other has.",
             "Ask for the package's share folder: get_package_share_directory(NAME), or "
             "FindPackageShare(NAME).",
         )
-    path = name.removeprefix("/prefix/").removeprefix("/home/")
-    if name.startswith("/home/"):
-        return Missing(
-            name,
-            f"{by} asks for {shown(path)}, a path from the current folder: it is there only for "
-            "who stands in the right one.",
-            "Join it to the package's share folder: get_package_share_directory(NAME).",
-        )
+    path = name.removeprefix("/prefix/")
     if source:
         return Missing(
             folder_of(source),

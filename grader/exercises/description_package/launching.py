@@ -37,7 +37,8 @@ def judge(looked: Looked) -> Finding:
             "joint_state_publisher_gui, and rviz2 with your .rviz file.",
         )
     found = {launch.file: lacking(looked, launch) for launch in looked.launches}
-    best = min(found, key=lambda file: sum(part.worth for part in found[file]))
+    shows = [each.file for each in looked.launches if any(map(is_rviz, each.nodes))]
+    best = min(shows or found, key=lambda file: sum(part.worth for part in found[file]))
     share = 1.0 - sum(part.worth for part in found[best])
     broken = [
         each
@@ -55,7 +56,9 @@ def judge(looked: Looked) -> Finding:
             _advice(launch.problem.text),
         )
     if not found[best]:
-        return Finding(1, f"{best} starts {PUBLISHER} with the description, and what belongs to it.")
+        return Finding(
+            1, f"{best} starts {PUBLISHER} with the description, and what belongs to it."
+        )
     texts = " ".join(part.rationale for part in found[best])
     return Finding(share, f"{best}: {texts}", found[best][0].help)
 
@@ -63,8 +66,10 @@ def judge(looked: Looked) -> Finding:
 def lacking(looked: Looked, launch: Launch) -> list[Part]:
     """What of the three parts a launch file does not have."""
     parts = []
-    publishers = [node for node in launch.nodes if node.executable == PUBLISHER]
-    texts = [looked.text(p.text) for n in publishers for p in n.parameters if is_description(p.name)]
+    publishers = [node for node in launch.nodes if is_publisher(node)]
+    texts = [
+        looked.text(p.text) for n in publishers for p in n.parameters if is_description(p.name)
+    ]
     if not publishers:
         parts.append(
             Part(
@@ -73,21 +78,36 @@ def lacking(looked: Looked, launch: Launch) -> list[Part]:
                 "Start it with the parameter robot_description: the text of your URDF.",
             )
         )
-    elif not any(text.strip() for text in texts):
+    elif not any(text.strip() for text in texts) and not _is_refused(looked, launch):
         parts.append(_no_description(publishers[0]))
-    if moves(looked, texts) and not any(is_joint_source(looked, node) for node in launch.nodes):
-        if not _includes_simulator(launch):
-            parts.append(
-                Part(
-                    JOINTS,
-                    "nothing publishes /joint_states: the moving joints have no transforms, and "
-                    "RViz shows what hangs on them white.",
-                    "Start joint_state_publisher_gui, or a node of yours that publishes "
-                    "JointState.",
-                )
+    is_needed = not publishers or moves(looked, texts)
+    has_source = any(is_joint_source(looked, node) for node in launch.nodes)
+    if is_needed and not has_source and not _includes_simulator(launch):
+        parts.append(
+            Part(
+                JOINTS,
+                "nothing publishes /joint_states: the moving joints have no transforms, and RViz "
+                "shows what hangs on them white.",
+                "Start joint_state_publisher_gui, or a node of yours that publishes JointState.",
             )
+        )
     rviz = _rviz(looked, launch)
     return [*parts, *([rviz] if rviz else [])]
+
+
+def is_publisher(node: Node) -> bool:
+    """Whether a node is a robot_state_publisher."""
+    return PUBLISHER in (node.package, node.executable)
+
+
+def is_rviz(node: Node) -> bool:
+    """Whether a node is RViz."""
+    return "rviz2" in (node.package, node.executable)
+
+
+def _is_refused(looked: Looked, launch: Launch) -> bool:
+    """Whether it would hand on a description, if xacro made one of the file."""
+    return any(each.by == launch.file and each.problem for each in looked.descriptions)
 
 
 def is_description(name: str) -> bool:
@@ -141,7 +161,7 @@ def _no_description(node: Node) -> Part:
 
 
 def _rviz(looked: Looked, launch: Launch) -> Part | None:
-    started = [node for node in launch.nodes if node.executable == "rviz2"]
+    started = [node for node in launch.nodes if is_rviz(node)]
     if any(_has_file(node) for node in started) or any("rviz2 -d" in p for p in launch.processes):
         return None
     if started:
@@ -152,7 +172,7 @@ def _rviz(looked: Looked, launch: Launch) -> Part | None:
             "arguments=['-d', FILE].",
         )
     files = [path for path in looked.setup.installed if path.endswith(".rviz")]
-    by_hand = not any(n.executable == "rviz2" for each in looked.launches for n in each.nodes)
+    by_hand = not any(is_rviz(n) for each in looked.launches for n in each.nodes)
     if files and by_hand:
         return None  # who launches it opens RViz with the file that is installed
     return Part(
@@ -174,10 +194,14 @@ def _has_file(node: Node) -> bool:
 
 def _advice(text: str) -> str:
     if "file not found" in text and "xacro/" in text:
-        return "Command joins its parts as they stand: a blank is missing, Command(['xacro ', path])."
-    if "unexpected keyword argument" in text:
-        return "Compare the names with those of your ROS release: node_executable and node_name "\
-            "are called executable and name since Foxy."
+        return (
+            "Command joins its parts as they stand: a blank is missing, Command(['xacro ', path])."
+        )
+    if "keyword" in text and ("unexpected" in text or "'executable'" in text):
+        return (
+            "Compare the names of the arguments with those of your ROS release: node_executable "
+            "and node_name are called executable and name since Foxy."
+        )
     if "xacro" in text:
         return "Run xacro by hand on the same file: it says the same, with file and line."
     if "as yaml" in text:

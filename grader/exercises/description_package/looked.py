@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 
 from grader.exercise.verdict import Finding
 from grader.recording.recording import Recordings
-from grader.scenes.package.trace import Description, Launch, Node, PackageTrace, Problem, Setup
+from grader.scenes.package.trace import Description, Launch, PackageTrace, Problem, Setup
 from grader.text import clip_inside, without_controls
 
 _LONGEST = 200
@@ -48,9 +48,16 @@ class Looked:
         return self.trace.texts[number] if number >= 0 else ""
 
     @property
+    def starts_nothing(self) -> bool:
+        """Whether all launch files come to their end, and none starts anything."""
+        return not any(e.problem or e.nodes or e.includes or e.processes for e in self.launches)
+
+    @property
     def not_known(self) -> Launch | None:
         """The first launch file that could not be evaluated for no fault of its own."""
-        unknown = (each for each in self.launches if each.problem and each.problem.kind == "unknown")
+        unknown = (
+            each for each in self.launches if each.problem and each.problem.kind == "unknown"
+        )
         return next(unknown, None)
 
 
@@ -62,6 +69,16 @@ def nothing(recordings: Recordings) -> Finding:
         0,
         f"The package could not be looked at{why}.",
         "Does setup.py or a launch file end the process that it runs in, or run without end?",
+    )
+
+
+def nothing_started() -> Finding:
+    """Of what nobody can tell, because no launch file starts anything."""
+    return Finding(
+        0,
+        "Not judged: no launch file starts anything, so there is nothing to look at.",
+        "Write the launch file that shows the robot first.",
+        judged=False,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked
+from grader.exercises.description_package.looked import Looked, nothing_started
 from grader.scenes.package.examining.known import DESKTOP
 
 #: What comes along with another package.
@@ -25,6 +25,8 @@ COVERED: Final = {
 
 def judge(looked: Looked) -> Finding:
     """Whether who installs the package by rosdep gets what it needs."""
+    if looked.starts_nothing:
+        return nothing_started()
     declared = set(looked.setup.depends)
     covered = {other for name in declared for other in COVERED.get(name, ())}
     needed = used(looked) - DESKTOP

@@ -19,7 +19,9 @@ def judge(looked: Looked, names: Sequence[str]) -> Finding:
     """Whether doubling a number moves what depends on it."""
     model = _model(looked)
     if model is None:
-        return Finding(0, "There is no robot to vary.", "See what is said of the description first.")
+        return Finding(
+            0, "There is no robot to vary.", "See what is said of the description first."
+        )
     good, told, help_ = 0, "", ""
     texts = {each.name: looked.text(each.text) for each in looked.trace.varied}
     for name in names:
@@ -62,8 +64,9 @@ def _model(looked: Looked) -> Model | None:
 
 def _sizes(model: Model) -> list[object]:
     return [
-        [each.geometry for each in (*link.visuals, *link.collisions)]
+        [shape.geometry for shape in shapes]
         for link in model.links.values()
+        for shapes in (link.visuals, link.collisions)
     ]
 
 
@@ -80,7 +83,9 @@ def judge_masses(looked: Looked, mass_kg: float, error: float) -> Finding:
     """Whether the robot weighs what it should."""
     model = _model(looked)
     if model is None:
-        return Finding(0, "There is no robot to weigh.", "See what is said of the description first.")
+        return Finding(
+            0, "There is no robot to weigh.", "See what is said of the description first."
+        )
     bare = [each.name for each in model.links.values() if each.collisions and not each.inertial]
     if bare:
         return Finding(
@@ -92,8 +97,8 @@ def judge_masses(looked: Looked, mass_kg: float, error: float) -> Finding:
     if abs(mass - mass_kg) > error * mass_kg:
         return Finding(
             0.5,
-            f"The robot weighs {1000 * mass:.0f} g in all; expected {1000 * mass_kg:.0f} g, give or "
-            f"take {100 * error:g} %.",
+            f"The robot weighs {1000 * mass:.0f} g in all; expected {1000 * mass_kg:.0f} g, give "
+            f"or take {100 * error:g} %.",
             "Add up the masses of all links.",
         )
     return Finding(1, f"The robot weighs {1000 * mass:.0f} g in all.")

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked, not_judged, shown
+from grader.exercises.description_package.looked import Looked, not_judged, nothing_started, shown
 from grader.scenes.package.trace import Description
 from robot_py.findings import Consequence
 from robot_py.model import Inertial, Joint, JointType, Model
@@ -71,7 +71,9 @@ def _of(looked: Looked, description: Description) -> Finding:
                 else "the rest of that part is dropped, and the robot shows without it"
             )
             return Finding(
-                share, f"{where}: urdfdom says {shown(said[0].text)!r}{line}: {what}.", _help(said[0].text)
+                share,
+                f"{where}: urdfdom says {shown(said[0].text)!r}{line}: {what}.",
+                _help(said[0].text),
             )
     assert model is not None
     fault = next(faults(model), "")
@@ -87,7 +89,9 @@ def _of(looked: Looked, description: Description) -> Finding:
 
 def _help(text: str) -> str:
     if "root link" in text:
-        return "Every link but one is the child of exactly one joint. Which has none, or is misspelt?"
+        return (
+            "Every link but one is the child of exactly one joint. Which has none, or is misspelt?"
+        )
     if "limit" in text:
         return 'Such a joint needs <limit lower="" upper="" effort="" velocity=""/>.'
     if "XML" in text:
@@ -100,7 +104,7 @@ def faults(model: Model) -> Iterator[str]:
     children = Counter(joint.child for joint in model.joints.values())
     for child, count in children.items():
         if count > 1:
-            yield f"the link {shown(child)!r} is the child of {count} joints; it can hang on one only."
+            yield f"the link {shown(child)!r} hangs on {count} joints; it can hang on one only."
     for joint in model.joints.values():
         yield from _of_joint(joint, model)
     for link in model.links.values():
@@ -119,7 +123,8 @@ def _of_joint(joint: Joint, model: Model) -> Iterator[str]:
     limit = joint.limit
     if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC) and limit is not None:
         if limit.lower > limit.upper:
-            yield f"{named} has the limits {limit.lower:g} to {limit.upper:g}: lower is above upper."
+            told = f"{limit.lower:g} to {limit.upper:g}"
+            yield f"{named} has the limits {told}: lower is above upper."
         elif limit.lower == limit.upper == 0:
             yield f"{named} cannot move: its <limit> has no lower and no upper, which are then 0."
     if joint.mimic is not None and joint.mimic.joint not in model.joints:
@@ -149,6 +154,8 @@ def judge_meshes(looked: Looked) -> Finding:
             judged=False,
         )
     meshes = {mesh.uri: mesh for each in readable for mesh in each.meshes}.values()
+    if not meshes and looked.starts_nothing:
+        return nothing_started()
     if not meshes:
         return Finding(1, "The description names no files.")
     wrong = [each for each in meshes if each.state in ("scheme", "missing", "case", "package")]
@@ -167,8 +174,8 @@ def judge_meshes(looked: Looked) -> Finding:
     return Finding(
         1 - len(wrong) / len(meshes),
         f"{first_source(readable)} names {shown(first.uri)}, and {why}.{more}",
-        "The way to a mesh begins with package:// and your package's name, and goes on as below its "
-        f"share folder: package://{looked.name}/meshes/FILE.",
+        "The way to a mesh begins with package:// and your package's name, and goes on as below "
+        f"its share folder: package://{looked.name}/meshes/FILE.",
     )
 
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.launching import (
     JOINT_SOURCES,
-    PUBLISHER,
     is_description,
+    is_publisher,
 )
-from grader.exercises.description_package.looked import Looked, shown
+from grader.exercises.description_package.looked import Looked, nothing_started, shown
 from grader.scenes.package.trace import Launch, Node
 
 #: Program -> where the model may come from (one of these), and what must be named.
@@ -26,14 +26,14 @@ def spawners(launch: Launch) -> list[Node]:
     """The nodes that put a model into a world."""
     packages = ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo")
     return [
-        each
-        for each in launch.nodes
-        if each.package in packages and each.executable in PROGRAMS
+        each for each in launch.nodes if each.package in packages and each.executable in PROGRAMS
     ]
 
 
 def judge(looked: Looked, is_asked: bool) -> Finding:
     """Whether the model gets there."""
+    if looked.starts_nothing:
+        return nothing_started()
     found = [(launch, node) for launch in looked.launches for node in spawners(launch)]
     included = [
         launch
@@ -56,7 +56,8 @@ def judge(looked: Looked, is_asked: bool) -> Finding:
                 f"{launch.file}: {node.executable} {fault}",
                 "Compare the arguments with `ros2 run PACKAGE PROGRAM --help`.",
             )
-    return Finding(1, f"{(found or [(included[0], None)])[0][0].file} puts the robot into Gazebo.")
+    launches = [launch for launch, _ in found] or included
+    return Finding(1, f"{launches[0].file} puts the robot into Gazebo.")
 
 
 def _faults(launch: Launch, node: Node) -> Iterator[str]:
@@ -77,11 +78,15 @@ def _faults(launch: Launch, node: Node) -> Iterator[str]:
     if "-topic" in given:
         topic = given["-topic"].rsplit("/", 1)[-1]
         if topic == "robot_description" and not _is_published(launch):
-            yield "waits for the topic robot_description, and the launch file starts nothing that "\
+            yield (
+                "waits for the topic robot_description, and the launch file starts nothing that "
                 "publishes it."
+            )
         elif topic != "robot_description" and not _is_remapped(launch, topic):
-            yield f"waits for the topic {shown(given['-topic'])!r}, which nobody publishes; "\
+            yield (
+                f"waits for the topic {shown(given['-topic'])!r}, which nobody publishes; "
                 "robot_state_publisher publishes robot_description."
+            )
 
 
 def _given(node: Node) -> dict[str | None, str]:
@@ -115,7 +120,7 @@ def _is_number(text: str) -> bool:
 
 def _is_published(launch: Launch) -> bool:
     return any(
-        node.executable == PUBLISHER and any(is_description(p.name) for p in node.parameters)
+        is_publisher(node) and any(is_description(p.name) for p in node.parameters)
         for node in launch.nodes
     ) or any(each.package == "urdf_launch" for each in launch.includes)
 

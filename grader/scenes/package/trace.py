@@ -19,6 +19,8 @@ LONGEST_TEXT = 2_000_000
 MOST_BYTES = 16_000_000
 #: Where a package is laid out, in the paths of a trace.
 PREFIX = "/prefix"
+#: Where the packages of ROS are said to be, and the current folder of who launches.
+ROS, EMPTY = "/opt/ros/jazzy", "/somewhere"
 
 
 @dataclass(frozen=True)
@@ -309,7 +311,11 @@ def decode(data: bytes) -> PackageTrace:
 def _must_agree(trace: PackageTrace) -> None:
     """Numbers of texts are of texts that there are."""
     values = (p for launch in trace.launches for node in launch.nodes for p in node.parameters)
-    numbers = [each.text for each in (*values, *trace.descriptions, *trace.varied)]
+    numbers = [
+        *(each.text for each in values),
+        *(each.text for each in trace.descriptions),
+        *(each.text for each in trace.varied),
+    ]
     if any(not -1 <= number < len(trace.texts) for number in numbers):
         raise ValueError("it names a text that is not there")
     if any(not 0 <= each.of < len(trace.descriptions) for each in trace.varied):

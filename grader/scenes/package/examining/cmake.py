@@ -1,10 +1,11 @@
-"""What a CMakeLists.txt installs, as far as its install() commands say it plainly; it is not run."""
+"""What a CMakeLists.txt installs, as far as its install() commands say it; it is not run."""
 
 from __future__ import annotations
 
 import fnmatch
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
@@ -85,9 +86,10 @@ def _install(
             absent.append(name)
 
 
-def _patterns(words: list[str]):  # type: ignore[no-untyped-def]
+def _patterns(words: list[str]) -> Callable[[str, str], bool]:
     """Whether a file of a folder is installed, by FILES_MATCHING, PATTERN and EXCLUDE."""
-    wanted, refused = [], []
+    wanted: list[str] = []
+    refused: list[str] = []
     for n, word in enumerate(words[:-1]):
         if word == "PATTERN":
             is_out = words[n + 2 : n + 3] == ["EXCLUDE"]

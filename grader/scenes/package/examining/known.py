@@ -22,7 +22,6 @@ PROGRAMS: Final[dict[str, tuple[str, ...]]] = {
     "ros_gz_sim": ("create", "remove", "gzserver"),
     "ros_gz_bridge": ("parameter_bridge", "static_bridge", "bridge_node"),
     "controller_manager": ("ros2_control_node", "spawner", "unspawner", "hardware_spawner"),
-    "turtlesim": ("turtlesim_node", "turtle_teleop_key", "draw_square", "mimic"),
     "xacro": ("xacro",),
 }
 FILES: Final[dict[str, tuple[str, ...]]] = {
@@ -49,7 +48,7 @@ DESKTOP: Final = frozenset(
         *("launch", "launch_ros", "launch_xml", "launch_yaml", "ros2launch", "ros2run"),
         *("ament_index_python", "ament_cmake", "ament_python", "rclpy", "rclcpp", "rcl_interfaces"),
         *("std_msgs", "sensor_msgs", "geometry_msgs", "nav_msgs", "visualization_msgs"),
-        *("std_srvs", "builtin_interfaces", "rosgraph_msgs", "trajectory_msgs", "turtlesim"),
+        *("std_srvs", "builtin_interfaces", "rosgraph_msgs", "trajectory_msgs"),
         *("action_msgs", "rosbag2_py", "rosidl_runtime_py", "composition_interfaces"),
         *("lifecycle_msgs", "common_interfaces", "rclcpp_components", "teleop_twist_keyboard"),
         *("teleop_twist_joy", "joy", "demo_nodes_cpp", "demo_nodes_py", "rqt_graph", "rqt_gui"),
@@ -68,7 +67,7 @@ KNOWN: Final = frozenset(
         *("joint_trajectory_controller", "forward_command_controller", "robot_localization"),
         *("nav2_bringup", "nav2_common", "nav2_map_server", "nav2_amcl", "nav2_lifecycle_manager"),
         *("slam_toolbox", "twist_mux", "rqt_robot_steering", "rqt_joint_trajectory_controller"),
-        *("urdf_tutorial", "turtlebot3_description", "turtlebot3_gazebo", "realsense2_description"),
+        *("urdf_tutorial", "realsense2_description"),
         *("realsense2_camera", "ur_description", "moveit_ros_move_group", "moveit_configs_utils"),
         *("image_transport", "image_proc", "depth_image_proc", "v4l2_camera", "rplidar_ros"),
         *("foxglove_bridge", "rosbridge_server", "webots_ros2_description", "imu_tools"),

@@ -21,9 +21,10 @@ from grader.scenes.package.examining import known
 from grader.scenes.package.examining.layout import Installed
 from grader.scenes.package.examining.packages import is_description
 from grader.scenes.package.examining.steps import NotKnown, in_folder
+from grader.scenes.package.trace import EMPTY, PREFIX, ROS
 
 DOUBLES: Final = Path(__file__).parent / "doubles"
-ROOT: Final = Path(__file__).resolve().parents[4]
+CODE: Final = Path(__file__).resolve().parents[4]
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
 _MOST: Final = 200
@@ -55,11 +56,11 @@ class Place:
 
     def told(self, text: str) -> str:
         """A text with the places as everybody knows them."""
-        for path, shown in ((self.prefix, "/prefix"), (self.stubs, "/opt/ros/jazzy")):
+        for path, shown in ((self.prefix, PREFIX), (self.stubs, ROS)):
             text = text.replace(str(path), shown)
         for each in self.all:
             text = text.replace(str(each.package.folder), f"/source/{each.name}")
-        return text.replace(str(self.empty), "/home")
+        return text.replace(str(self.empty), EMPTY)
 
     def own(self, path: str) -> str:
         """A file of any package of the submission; '' for others."""
@@ -86,7 +87,8 @@ class Place:
         """Variables of a process that evaluates."""
         return {
             "AMENT_PREFIX_PATH": f"{self.prefix}:{self.stubs}",
-            "PYTHONPATH": f"{DOUBLES}:{ROOT}",
+            "PYTHONPATH": f"{DOUBLES}:{CODE}",
+            "PATH": f"{self.stubs}/bin:{os.environ.get('PATH', '')}",
             "GRADER_ASKED": str(self.asked),
             "GRADER_PACKAGE": self.judged.name,
             "ROS_DISTRO": os.environ.get("ROS_DISTRO", "jazzy"),
@@ -104,7 +106,15 @@ class Taken:
         self.context: Any = None
         self.found: dict[str, list[Any]] = {
             key: []
-            for key in ("nodes", "processes", "includes", "declared", "lacking", "remarks")
+            for key in (
+                "nodes",
+                "processes",
+                "includes",
+                "declared",
+                "lacking",
+                "remarks",
+                "refused",
+            )
         }
         self.texts: list[str] = []
         self._depth = 0
@@ -196,6 +206,9 @@ class Taken:
         shown = self._place.told(" ".join(words))
         if words and os.path.basename(words[0]) == "xacro":
             code, out, errors = self.xacro(words[1:])
+            if code:  # the launch file has done what it should
+                self._add("refused", f"xacro: {_end(errors)}")
+                return ""
         else:
             code, out, errors = self._other(words)
         if code:
@@ -359,7 +372,7 @@ def prepare(place: Place) -> None:
     source = str(place.judged.package.folder)
     in_folder(str(place.empty), [str(DOUBLES), source], place.environment())
     place.asked.write_text("")
-    sys.meta_path.insert(0, _Unknown(place))  # type: ignore[arg-type]
+    sys.meta_path.insert(0, _Unknown(place))
 
 
 def asked(place: Place) -> tuple[list[str], list[str]]:
@@ -409,7 +422,7 @@ def watch_files(taken: Taken, place: Place) -> None:
                 taken.sources.append(os.path.abspath(os.fspath(file)))
         return real(file, mode, *args, **kwargs)
 
-    builtins.open = io.open = opened  # type: ignore[assignment]
+    builtins.open = io.open = opened
 
 
 def _is_meant(name: str, place: Place) -> bool:

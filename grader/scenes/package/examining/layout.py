@@ -6,6 +6,7 @@ import ast
 import os
 import re
 import shutil
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -151,6 +152,10 @@ def make_stubs(stubs: Path, declared: set[str], own: set[str]) -> None:
     for name, files in known.FILES.items():
         for file in files:
             _touch(stubs / "share" / name / file, stubs)
+    xacro = stubs / "bin" / "xacro"
+    xacro.parent.mkdir()
+    xacro.write_text(f"#!{sys.executable}\nimport xacro\n\nxacro.main()\n")
+    xacro.chmod(0o755)
 
 
 def _left(package: Package, installed: set[str]) -> tuple[str, ...]:
@@ -166,7 +171,9 @@ def _left(package: Package, installed: set[str]) -> tuple[str, ...]:
 def _script(line: str, package: Package) -> Script:
     found = _SCRIPT.match(line)
     if found is None:
-        return Script(line[:100], "", "", "it is not of the form 'name = module:function'", "", False)
+        return Script(
+            line[:100], "", "", "it is not of the form 'name = module:function'", "", False
+        )
     name, module, function = found["name"], found["module"], found["function"]
     base = module.replace(".", "/")
     for folder in ("", "src/"):

@@ -13,6 +13,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -84,7 +85,9 @@ class Looking:
         varied = self._varied()
         self._elsewhere(found)
         return PackageTrace(
-            setup=strict.from_json(trace.Setup, _cleaned(strict.to_json(place.judged.setup), place)),
+            setup=strict.from_json(
+                trace.Setup, _cleaned(strict.to_json(place.judged.setup), place)
+            ),
             others=tuple(each.name[:200] for each in place.all if each is not place.judged)[:100],
             launches=tuple(found),
             descriptions=tuple(self._descriptions),
@@ -102,7 +105,9 @@ class Looking:
         try:
             return self._taken(file, said)
         except (ValueError, KeyError, TypeError, IndexError):
-            return _ended(file, {**vars(Problem("limit", "its process was made to answer nonsense"))})
+            return _ended(
+                file, {**vars(Problem("limit", "its process was made to answer nonsense"))}
+            )
 
     def _taken(self, file: str, said: dict[str, Any]) -> Launch:
         """A launch file as what was taken down of it."""
@@ -127,10 +132,11 @@ class Looking:
             },
         )
         for node in launch.nodes:
-            if node.executable == "robot_state_publisher":
+            if "robot_state_publisher" in (node.executable, node.package):
                 for each in node.parameters:
                     if each.name == "robot_description":
-                        self._describe(each.text, launch.file, said["source"])
+                        refused = "" if self._texts[each.text].strip() else _first(said["refused"])
+                        self._describe(each.text, launch.file, said["source"], refused)
         return launch
 
     def _number(self, text: str) -> int:
@@ -143,8 +149,10 @@ class Looking:
         self._texts.append(text)
         return len(self._texts) - 1
 
-    def _describe(self, number: int, by: str, sources: Sequence[str], launched: bool = True) -> None:
-        """Take down a description, once."""
+    def _describe(
+        self, number: int, by: str, sources: Sequence[str], refused: str = "", launched: bool = True
+    ) -> None:
+        """Take down a description, once; `refused`: why xacro has made none."""
         if any(each.text == number for each in self._descriptions):
             return
         text = self._texts[number] if number >= 0 else ""
@@ -155,7 +163,7 @@ class Looking:
             by=by,
             is_launched=launched,
             source=next((each for each in map(self._own, sources) if each), ""),
-            problem=None,
+            problem=Problem("error", refused) if refused else None,
             meshes=tuple(strict.from_json(Mesh, each) for each in named or ()),
             is_xml=named is not None,
         )
@@ -170,9 +178,10 @@ class Looking:
         """A text with the places as they are here."""
         for each in self._place.all:
             text = text.replace(f"/source/{each.name}", str(each.package.folder))
-        return text.replace("/prefix/", f"{self._place.prefix}/").replace(
-            "/opt/ros/jazzy/", f"{self._place.stubs}/"
-        )
+        places = {trace.PREFIX: self._place.prefix, trace.ROS: self._place.stubs}
+        for told, path in places.items():
+            text = text.replace(f"{told}/", f"{path}/")
+        return text
 
     def _from_files(self, found: Sequence[Launch]) -> list[Launch]:
         """Descriptions that no launch file hands on; they stand in for one that should."""
@@ -201,7 +210,7 @@ class Looking:
             if not words[0].endswith((".xacro", ".xml", ".urdf")):
                 continue
             try:
-                said = step(lambda words=words: descriptions.varied(place, words[0], []), place.own)
+                said = step(partial(descriptions.varied, place, words[0], []), place.own)
                 for each in said:
                     text = str(each["text"])
                     if len(text) > trace.LONGEST_TEXT or len(self._texts) > 100:
@@ -219,14 +228,12 @@ class Looking:
         before = self._place
         moved = self._scratch / "moved"
         before.prefix.rename(moved)
-        place = Place(
-            moved, before.stubs, before.empty, before.asked, before.judged, before.all
-        )
+        place = Place(moved, before.stubs, before.empty, before.asked, before.judged, before.all)
         for number, launch in enumerate(found):
             if launch.problem is not None:
                 continue
             try:
-                said = _cleaned(step(lambda f=launch.file: _evaluated(place, f), place.own), place)
+                said = _cleaned(step(partial(_evaluated, place, launch.file), place.own), place)
                 again = [str(each["name"]) for each in said["lacking"] if each["kind"] == "file"]
             except (Ended, KeyError, TypeError):
                 again = []
@@ -243,6 +250,10 @@ def _evaluated(place: Place, file: str) -> dict[str, Any]:
     error = said["problem"]
     said["problem"] = None if error is None else vars(problem_of(error, place.own))
     return {**said, "asked": launches.asked(place)}
+
+
+def _first(texts: Sequence[Any]) -> str:
+    return str(texts[0])[:400] if texts else ""
 
 
 def _ended(file: str, problem: dict[str, Any]) -> Launch:
@@ -269,7 +280,6 @@ def _cleaned(value: Any, place: Place) -> Any:
     if isinstance(value, list | tuple):
         return [_cleaned(each, place) for each in value]
     return value
-
 
 
 if __name__ == "__main__":

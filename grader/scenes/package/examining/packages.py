@@ -67,7 +67,7 @@ def is_launch_file(name: str) -> bool:
 
 def find(root: Path) -> list[Package]:
     """All packages, in the order of their paths."""
-    found = []
+    found: list[Package] = []
     for at, folders, files in os.walk(root):
         folders[:] = sorted(
             each for each in folders if each not in _SKIPPED and not each.startswith(".")

@@ -12,9 +12,7 @@ from typing import Any, Final
 from grader import limited
 from grader.scenes.package.trace import Problem
 
-LIMITS: Final = limited.Limits(
-    cpu_s=20.0, wall_s=40.0, memory_bytes=2**30, answer_bytes=16_000_000
-)
+LIMITS: Final = limited.Limits(cpu_s=20.0, wall_s=40.0, memory_bytes=2**30, answer_bytes=16_000_000)
 _LONGEST: Final = 400
 #: Names a file of the package's own by its path; '' for others.
 Own = Callable[[str], str]

@@ -34,7 +34,7 @@ def entities(path: str, read: str) -> list[Any]:
 
 def substitutions(text: str) -> Any:
     """A text with `$(...)` as the substitutions that it means."""
-    parts, end = _parse(text, 0, top=True)
+    parts, _ = _parse(text, 0, top=True)
     return parts if parts else ""
 
 
@@ -230,9 +230,7 @@ class _Attributes:
 
     def must_be_through(self) -> None:
         if self._left:
-            raise ValueError(
-                f"Unexpected attribute(s) found in `{self._tag}`: {set(self._left)}"
-            )
+            raise ValueError(f"Unexpected attribute(s) found in `{self._tag}`: {set(self._left)}")
 
 
 _NAME = re.compile(r"\$\(([\w-]+)")
@@ -280,7 +278,7 @@ def _parse(text: str, at: int, top: bool, quote: str = "") -> tuple[list[Any], i
 
 def _arguments(text: str, at: int) -> tuple[list[list[Any]], int]:
     """The arguments of a `$(name ...)`, and where it ends."""
-    found = []
+    found: list[list[Any]] = []
     while at < len(text):
         if text[at].isspace():
             at += 1

@@ -11,7 +11,11 @@ from ament_index_python.packages import (
 from launch._core import unknown
 
 __all__ = [
-    *("PackageNotFoundError", "get_package_prefix", "get_package_share_directory"),
-    *("get_package_share_path", "get_packages_with_prefixes", "get_search_paths"),
+    "PackageNotFoundError",
+    "get_package_prefix",
+    "get_package_share_directory",
+    "get_package_share_path",
+    "get_packages_with_prefixes",
+    "get_search_paths",
 ]
 __getattr__ = unknown("ament_index_python")

@@ -1,8 +1,8 @@
 """A double of ROS's `ament_index_python.packages`: packages below AMENT_PREFIX_PATH.
 
-What is asked for is appended to the file that the variable GRADER_ASKED names, a line each: `+ NAME`
-where it is there, `- NAME` where it is not. A package that is not there stands for the one that is
-looked at (GRADER_PACKAGE) where that is named: so the rest can be looked at as well.
+What is asked for is appended to the file that the variable GRADER_ASKED names, a line each:
+`+ NAME` where it is there, `- NAME` where it is not. A package that is not there stands for the one
+that is looked at (GRADER_PACKAGE) where that is named: so the rest can be looked at as well.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    found = {}
+    found: dict[str, str] = {}
     for prefix in reversed(get_search_paths()):
         folder = Path(prefix, _MARKS)
         if folder.is_dir():

@@ -28,10 +28,26 @@ SomeSubstitutionsType = object
 SomeActionsType = SomeEntitiesType = object
 
 __all__ = [
-    *("Action", "Condition", "Event", "EventHandler", "LaunchContext", "LaunchDescription"),
-    *("LaunchDescriptionEntity", "LaunchDescriptionSource", "Substitution"),
-    *("SomeActionsType", "SomeEntitiesType", "SomeSubstitutionsType"),
-    *("actions", "conditions", "descriptions", "event_handlers", "events"),
-    *("launch_description_sources", "logging", "substitutions", "utilities"),
+    "Action",
+    "Condition",
+    "Event",
+    "EventHandler",
+    "LaunchContext",
+    "LaunchDescription",
+    "LaunchDescriptionEntity",
+    "LaunchDescriptionSource",
+    "SomeActionsType",
+    "SomeEntitiesType",
+    "SomeSubstitutionsType",
+    "Substitution",
+    "actions",
+    "conditions",
+    "descriptions",
+    "event_handlers",
+    "events",
+    "launch_description_sources",
+    "logging",
+    "substitutions",
+    "utilities",
 ]
 __getattr__ = unknown("launch")

@@ -1,8 +1,8 @@
 """What all of these doubles stand on: entities, substitutions, the context, and what is not known.
 
-They are ROS's `launch` as far as a description package uses it (ros2/launch, branch jazzy): the same
-names, arguments and refusals. Nothing is started: what would be is taken down in `Context.record`.
-A name that ROS may have and these have not ends in `NotKnown`.
+They are ROS's `launch` as far as a description package uses it (ros2/launch, branch jazzy): the
+same names, arguments and refusals. Nothing is started: what would be is taken down in
+`LaunchContext.record`. A name that ROS may have and these have not ends in `NotKnown`.
 """
 
 from __future__ import annotations
@@ -92,9 +92,7 @@ class Substitution:
 class TextSubstitution(Substitution):
     def __init__(self, *, text: str) -> None:
         if not isinstance(text, str):
-            raise TypeError(
-                f"TextSubstitution expected str object got '{type(text)}' instead."
-            )
+            raise TypeError(f"TextSubstitution expected str object got '{type(text)}' instead.")
         self.text = text
 
     def perform(self, context: LaunchContext) -> str:

@@ -2,5 +2,7 @@
 
 from launch._core import Action, unknown
 
-__all__ = ["Action"]
+__all__ = [
+    "Action",
+]
 __getattr__ = unknown("launch.action")

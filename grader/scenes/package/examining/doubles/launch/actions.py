@@ -80,8 +80,7 @@ class IncludeLaunchDescription(Action):
     def execute(self, context: LaunchContext) -> list[Any] | None:
         source = self.launch_description_source
         given = {
-            text_of(context, name): text_of(context, value)
-            for name, value in self.launch_arguments
+            text_of(context, name): text_of(context, value) for name, value in self.launch_arguments
         }
         if source.given is not None:
             context.launch_configurations.update(given)
@@ -232,8 +231,9 @@ class ExecuteProcess(ExecuteLocal):
 class SetEnvironmentVariable(Action):
     def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._both = normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(
-            value
+        self._both = (
+            normalize_to_list_of_substitutions(name),
+            normalize_to_list_of_substitutions(value),
         )
 
     def execute(self, context: LaunchContext) -> None:
@@ -251,8 +251,9 @@ class AppendEnvironmentVariable(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self._both = normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(
-            value
+        self._both = (
+            normalize_to_list_of_substitutions(name),
+            normalize_to_list_of_substitutions(value),
         )
 
     def execute(self, context: LaunchContext) -> None:
@@ -273,8 +274,9 @@ class UnsetEnvironmentVariable(Action):
 class SetLaunchConfiguration(Action):
     def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._both = normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(
-            value
+        self._both = (
+            normalize_to_list_of_substitutions(name),
+            normalize_to_list_of_substitutions(value),
         )
 
     def execute(self, context: LaunchContext) -> None:
@@ -350,12 +352,29 @@ class OpaqueCoroutine(Action):
 
 
 __all__ = [
-    *("AppendEnvironmentVariable", "DeclareLaunchArgument", "EmitEvent", "ExecuteLocal"),
-    *("ExecuteProcess", "GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueCoroutine"),
-    *("OpaqueFunction", "PopEnvironment", "PopLaunchConfigurations", "PushEnvironment"),
-    *("PushLaunchConfigurations", "RegisterEventHandler", "ResetEnvironment"),
-    *("ResetLaunchConfigurations", "SetEnvironmentVariable", "SetLaunchConfiguration"),
-    *("Shutdown", "TimerAction", "UnregisterEventHandler", "UnsetEnvironmentVariable"),
+    "AppendEnvironmentVariable",
+    "DeclareLaunchArgument",
+    "EmitEvent",
+    "ExecuteLocal",
+    "ExecuteProcess",
+    "GroupAction",
+    "IncludeLaunchDescription",
+    "LogInfo",
+    "OpaqueCoroutine",
+    "OpaqueFunction",
+    "PopEnvironment",
+    "PopLaunchConfigurations",
+    "PushEnvironment",
+    "PushLaunchConfigurations",
+    "RegisterEventHandler",
+    "ResetEnvironment",
+    "ResetLaunchConfigurations",
+    "SetEnvironmentVariable",
+    "SetLaunchConfiguration",
+    "Shutdown",
+    "TimerAction",
+    "UnregisterEventHandler",
+    "UnsetEnvironmentVariable",
     "UnsetLaunchConfiguration",
 ]
 __getattr__ = unknown("launch.actions")

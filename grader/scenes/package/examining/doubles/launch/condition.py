@@ -2,5 +2,7 @@
 
 from launch._core import Condition, unknown
 
-__all__ = ["Condition"]
+__all__ = [
+    "Condition",
+]
 __getattr__ = unknown("launch.condition")

@@ -18,8 +18,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
     if expanded in ("false", "0"):
         return False
     raise InvalidConditionExpressionError(
-        f"invalid condition expression '{expanded}', expected one of "
-        "['true', '1', 'false', '0']"
+        f"invalid condition expression '{expanded}', expected one of ['true', '1', 'false', '0']"
     )
 
 
@@ -37,9 +36,7 @@ class UnlessCondition(Condition):
 
 class LaunchConfigurationEquals(Condition):
     def __init__(self, launch_configuration_name: str, expected_value: Any) -> None:
-        super().__init__(
-            predicate=lambda c: _equals(c, launch_configuration_name, expected_value)
-        )
+        super().__init__(predicate=lambda c: _equals(c, launch_configuration_name, expected_value))
 
 
 class LaunchConfigurationNotEquals(Condition):
@@ -55,8 +52,12 @@ def _equals(context: LaunchContext, name: str, expected: Any) -> bool:
 
 
 __all__ = [
-    *("Condition", "IfCondition", "InvalidConditionExpressionError", "UnlessCondition"),
-    *("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"),
+    "Condition",
+    "IfCondition",
+    "InvalidConditionExpressionError",
+    "LaunchConfigurationEquals",
+    "LaunchConfigurationNotEquals",
+    "UnlessCondition",
     "evaluate_condition_expression",
 ]
 __getattr__ = unknown("launch.conditions")

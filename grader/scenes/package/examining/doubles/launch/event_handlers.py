@@ -18,7 +18,9 @@ class _OfAction(EventHandler):
 
 
 class OnProcessExit(_OfAction):
-    def __init__(self, *, target_action: Any = None, on_exit: Any, handle_once: Any = False) -> None:
+    def __init__(
+        self, *, target_action: Any = None, on_exit: Any, handle_once: Any = False
+    ) -> None:
         super().__init__(on_exit, handle_once)
 
 
@@ -55,7 +57,11 @@ class OnProcessIO(_OfAction):
 
 
 __all__ = [
-    *("EventHandler", "OnExecutionComplete", "OnProcessExit", "OnProcessIO", "OnProcessStart"),
+    "EventHandler",
+    "OnExecutionComplete",
+    "OnProcessExit",
+    "OnProcessIO",
+    "OnProcessStart",
     "OnShutdown",
 ]
 __getattr__ = unknown("launch.event_handlers")

@@ -2,5 +2,7 @@
 
 from launch._core import LaunchContext, unknown
 
-__all__ = ["LaunchContext"]
+__all__ = [
+    "LaunchContext",
+]
 __getattr__ = unknown("launch.launch_context")

@@ -2,5 +2,7 @@
 
 from launch._core import LaunchDescription, unknown
 
-__all__ = ["LaunchDescription"]
+__all__ = [
+    "LaunchDescription",
+]
 __getattr__ = unknown("launch.launch_description")

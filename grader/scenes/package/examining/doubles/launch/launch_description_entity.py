@@ -2,5 +2,7 @@
 
 from launch._core import LaunchDescriptionEntity, unknown
 
-__all__ = ["LaunchDescriptionEntity"]
+__all__ = [
+    "LaunchDescriptionEntity",
+]
 __getattr__ = unknown("launch.launch_description_entity")

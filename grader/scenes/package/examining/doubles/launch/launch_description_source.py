@@ -2,5 +2,7 @@
 
 from launch._core import LaunchDescriptionSource, unknown
 
-__all__ = ["LaunchDescriptionSource"]
+__all__ = [
+    "LaunchDescriptionSource",
+]
 __getattr__ = unknown("launch.launch_description_source")

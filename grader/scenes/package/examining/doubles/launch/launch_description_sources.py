@@ -27,7 +27,9 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
 
 
 __all__ = [
-    *("AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource"),
-    *("InvalidPythonLaunchFileError", "PythonLaunchDescriptionSource"),
+    "AnyLaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource",
+    "InvalidPythonLaunchFileError",
+    "PythonLaunchDescriptionSource",
 ]
 __getattr__ = unknown("launch.launch_description_sources")

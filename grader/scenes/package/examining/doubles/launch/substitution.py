@@ -2,5 +2,7 @@
 
 from launch._core import Substitution, unknown
 
-__all__ = ["Substitution"]
+__all__ = [
+    "Substitution",
+]
 __getattr__ = unknown("launch.substitution")

@@ -3,5 +3,10 @@
 from launch._core import unknown
 from launch_ros import actions, descriptions, parameter_descriptions, substitutions
 
-__all__ = ["actions", "descriptions", "parameter_descriptions", "substitutions"]
+__all__ = [
+    "actions",
+    "descriptions",
+    "parameter_descriptions",
+    "substitutions",
+]
 __getattr__ = unknown("launch_ros")

@@ -232,8 +232,18 @@ class ROSTimer(TimerAction):
 RosTimer = ROSTimer
 
 __all__ = [
-    *("ComposableNodeContainer", "LifecycleNode", "LoadComposableNodes", "Node"),
-    *("PushROSNamespace", "PushRosNamespace", "ROSTimer", "RosTimer", "SetParameter"),
-    *("SetParametersFromFile", "SetROSLogDir", "SetRemap", "SetUseSimTime"),
+    "ComposableNodeContainer",
+    "LifecycleNode",
+    "LoadComposableNodes",
+    "Node",
+    "PushROSNamespace",
+    "PushRosNamespace",
+    "ROSTimer",
+    "RosTimer",
+    "SetParameter",
+    "SetParametersFromFile",
+    "SetROSLogDir",
+    "SetRemap",
+    "SetUseSimTime",
 ]
 __getattr__ = unknown("launch_ros.actions")

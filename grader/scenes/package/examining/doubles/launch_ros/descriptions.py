@@ -27,5 +27,10 @@ class ComposableNode:
         self.parameters = parameters
 
 
-__all__ = ["ComposableNode", "Parameter", "ParameterFile", "ParameterValue"]
+__all__ = [
+    "ComposableNode",
+    "Parameter",
+    "ParameterFile",
+    "ParameterValue",
+]
 __getattr__ = unknown("launch_ros.descriptions")

@@ -97,5 +97,9 @@ def _from_yaml(text: str, kind: Any) -> Any:
     return value
 
 
-__all__ = ["Parameter", "ParameterFile", "ParameterValue"]
+__all__ = [
+    "Parameter",
+    "ParameterFile",
+    "ParameterValue",
+]
 __getattr__ = unknown("launch_ros.parameter_descriptions")

@@ -48,5 +48,10 @@ class ExecutableInPackage(Substitution):
         return os.path.join(get_package_prefix(package), "lib", package, executable)
 
 
-__all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPackageShare"]
+__all__ = [
+    "ExecutableInPackage",
+    "FindPackage",
+    "FindPackagePrefix",
+    "FindPackageShare",
+]
 __getattr__ = unknown("launch_ros.substitutions")

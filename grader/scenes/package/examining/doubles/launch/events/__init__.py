@@ -22,5 +22,10 @@ def matches_action(action: Any) -> Any:
 
 from launch.events import process  # noqa: E402
 
-__all__ = ["Event", "Shutdown", "matches_action", "process"]
+__all__ = [
+    "Event",
+    "Shutdown",
+    "matches_action",
+    "process",
+]
 __getattr__ = unknown("launch.events")
