@@ -42,6 +42,7 @@ class RobotScene:
     )
     thing: Final = "robot"
     finished: Final = "the robot was watched to the end"
+    examiner: Final = ""
     plane: Final = view.PLANE
     farthest_start_m: Final = 0.0
 
