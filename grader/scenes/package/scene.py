@@ -32,7 +32,12 @@ class Package:
     introduction: Final = Introduction((), (), ())
     thing: Final = "package"
     plane: Final = view.PLANE
+    finished: Final = "the package was looked at"
     farthest_start_m: Final = 0.0
+
+    def wrong_setting(self, setting: str) -> str:
+        """Nothing is set up."""
+        return "package takes none" if setting else ""
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """None: a package is looked at once, and its variations are in that."""
@@ -63,7 +68,7 @@ class Package:
         """Nothing is needed: there is no simulator."""
 
     def simulate(
-        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str
+        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
     ) -> Simulation:
         """There is none."""
         _refuse()

@@ -28,7 +28,8 @@ def test_there_is_a_name_for_every_folder_with_a_scene():
 def test_a_name_that_no_scene_has_is_told_which_there_are(name):
     with pytest.raises(KeyError) as error:
         load_scene(name)
-    assert error.value.args[0] == f"there is no scene {name!r}; there are: turtlesim, robot"
+    known = "turtlesim, robot, package"
+    assert error.value.args[0] == f"there is no scene {name!r}; there are: {known}"
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -25,6 +25,8 @@ from grader.scenes.package.trace import EMPTY, PREFIX, ROS
 
 DOUBLES: Final = Path(__file__).parent / "doubles"
 CODE: Final = Path(__file__).resolve().parents[4]
+#: Packages of ROS that have doubles.
+DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
 _MOST: Final = 200
@@ -372,6 +374,8 @@ def prepare(place: Place) -> None:
     source = str(place.judged.package.folder)
     in_folder(str(place.empty), [str(DOUBLES), source], place.environment())
     place.asked.write_text("")
+    for name in [name for name in sys.modules if name.partition(".")[0] in DOUBLED]:
+        del sys.modules[name]  # ROS's own, that somebody has imported before
     sys.meta_path.insert(0, _Unknown(place))
 
 
@@ -444,8 +448,11 @@ class _Unknown:
         import importlib.machinery
 
         top = name.partition(".")[0]
-        ours = top in ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
-        if not ours and top not in self._declared | known.KNOWN and not top.startswith("launch_"):
+        if (
+            top not in DOUBLED
+            and top not in self._declared | known.KNOWN
+            and not top.startswith("launch_")
+        ):
             return None
         if importlib.machinery.PathFinder.find_spec(name, path) is None:
             raise NotKnown(f"it imports {name}, which the grader does not have")

@@ -1,0 +1,167 @@
+"""Packages lose what they should, and the first line names why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.exercise.loading import load_exercise
+from grader.grading import judge
+from grader.result.result import Result
+from tests.submissions.packages import (
+    EXERCISE,
+    FOLDER,
+    HANDED_IN,
+    REFERENCE,
+    SOLUTIONS,
+    looked_at,
+    recorded,
+    written,
+)
+
+DISPLAY = "launch/display.launch.py"
+#: Mutant -> words of the first line. What each loses stands in mutants.yaml.
+FIRST_LINES = {
+    "urdf_not_installed": "urdf/walker.urdf.xacro is in the package, and nothing installs it",
+    "meshes_not_installed": "meshes/camera.stl is in the package, and nothing installs it",
+    "installed_beside": "(but as share/walker_description/walker.urdf.xacro)",
+    "launch_files_not_installed": "display.launch.py is not installed",
+    "lists_what_is_not_there": "installs 'urdf/walker.urdf', and there is no such file",
+    "no_resource": "installs 'resource/walker_description', and there is no such file",
+    "lists_a_folder": "data_files lists 'meshes', which is a folder",
+    "setup_ends_with_an_error": "NameError: name 'package_name' is not defined (setup.py, line 10)",
+    "absolute_path": "a path of one machine",
+    "relative_path": "a path from the current folder",
+    "package_of_another": "the package 'strider_description', which is neither yours",
+    "misspelt_program": "starts 'rviz' of the package rviz2",
+    "console_script_without_main": "walker_description/walk.py has no main",
+    "programs_in_bin": "expected lib/walker_description",
+    "names_of_foxy": "keyword-only argument: 'executable' (launch/display.launch.py, line 2",
+    "no_blank_after_xacro": "No such file or directory: 'xacro/prefix/share",
+    "path_instead_of_text": "has no robot_description",
+    "no_joint_source": "nothing publishes /joint_states",
+    "rviz_without_its_file": "rviz2 starts without a file",
+    "no_xacro_run": "xacro has not been run on it",
+    "two_roots": "Two root links found: [base_link] and [lost]",
+    "no_limit": "does not specify limits",
+    "not_closed": "XML parsing error: mismatched tag",
+    "cylinder_without_length": "the rest of that part is dropped",
+    "limits_the_wrong_way_round": "lower is above upper",
+    "mesh_by_path": "expected package://PACKAGE/PATH",
+    "mesh_in_other_letters": "letters count",
+    "mesh_of_another_package": "there is no package 'strider_description'",
+    "dependency_not_declared": "does not declare joint_state_publisher_gui",
+    "spawns_from_two_origins": "exactly one of -file, -param, -string, -topic",
+}
+
+
+def graded(path: Path, exercise: object = EXERCISE) -> Result:
+    return judge(recorded(looked_at(path)), exercise)  # type: ignore[arg-type]
+
+
+def lost(result: Result) -> dict[str, float]:
+    return {v.check: v.share for v in result.verdicts if not v.passed}
+
+
+@pytest.mark.parametrize("name", FIRST_LINES)
+def test_the_first_line_of_a_mutant_names_its_mistake(name, tmp_path):
+    solution = SOLUTIONS[name]
+    result = graded(solution.lay_out(tmp_path))
+    assert FIRST_LINES[name] in result.diagnosis.cause
+    left = lost(result)
+    assert left.keys() == solution.leaves.keys()
+    for check, share in solution.leaves.items():
+        assert share == "some" or left[check] == pytest.approx(share, abs=0.001)
+
+
+@pytest.mark.parametrize("name", [name for name, each in SOLUTIONS.items() if each.is_right])
+def test_a_right_solution_keeps_all_points(name, tmp_path):
+    assert lost(graded(SOLUTIONS[name].lay_out(tmp_path))) == {}
+
+
+@pytest.mark.parametrize("name", HANDED_IN)
+def test_a_tutorial_that_is_followed_keeps_all_points(name):
+    assert lost(graded(FOLDER / name)) == {}
+
+
+def test_there_are_six_right_solutions_and_twenty_mutants_at_least():
+    right = [solution for solution in SOLUTIONS.values() if solution.is_right]
+    assert len(right) >= 6
+    assert len(SOLUTIONS) - len(right) >= 20
+
+
+def test_the_starter_is_told_what_to_begin_with():
+    result = graded(EXERCISE.starter)
+    assert lost(result)["launch"] == 0
+    assert "starts no robot_state_publisher" in result.diagnosis.cause
+
+
+def test_a_name_of_launch_that_nobody_knows_is_not_judged_and_never_failed(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    text = text.replace("import Command, Launch", "import Wondrous, Command, Launch")
+    spawn = {"launch/spawn.launch.py": None}
+    result = graded(written(tmp_path, {DISPLAY: text, **spawn}))
+    status = {verdict.check: verdict.status for verdict in result.verdicts}
+    assert status["launch"] == "not_judged"
+    assert "failed" not in status.values()
+    rationale = next(v.rationale for v in result.verdicts if v.check == "launch")
+    assert "launch.substitutions.Wondrous, which the grader does not know" in rationale
+
+
+def test_a_file_of_another_package_is_nobody_s_fault(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    text = text.replace('share, "urdf", "walker.urdf.xacro"', 'other, "urdf", "ur.urdf.xacro"')
+    text = text.replace(
+        "    model =", '    other = get_package_share_directory("ur_description")\n    model ='
+    )
+    result = graded(written(tmp_path, {DISPLAY: text, "launch/spawn.launch.py": None}))
+    status = {verdict.check: verdict.status for verdict in result.verdicts}
+    assert status["launch"] == "not_judged"
+    assert status["installed"] == "passed"
+
+
+def test_what_a_description_does_not_say_is_found_where_urdfdom_is_silent(tmp_path):
+    file = "urdf/walker.urdf.xacro"
+    text = (REFERENCE / file).read_text()
+    joint = (
+        '<joint name="again" type="fixed"><parent link="base_link"/><child link="camera"/></joint>'
+    )
+    result = graded(written(tmp_path, {file: text.replace("</robot>", f"{joint}</robot>")}))
+    assert lost(result) == {"urdf": 0.5}
+    assert "'camera' hangs on 2 joints" in result.diagnosis.cause
+
+
+class TestThymio:
+    EXERCISE = load_exercise(EXERCISE.folder / "thymio.yaml")
+    PACKAGE = FOLDER / "thymio" / "thymio_description"
+    XACRO = "urdf/thymio.urdf.xacro"
+
+    def changed(self, folder: Path, file: str, old: str, new: str) -> Result:
+        text = (self.PACKAGE / file).read_text()
+        assert old in text
+        path = written(folder, {file: text.replace(old, new)}, self.PACKAGE)
+        return graded(path, self.EXERCISE)
+
+    def test_a_right_one_keeps_all_points(self):
+        assert lost(graded(self.PACKAGE, self.EXERCISE)) == {}
+
+    def test_an_origin_as_a_number_does_not_move_along(self, tmp_path):
+        moving = "${side * (base_width - wheel_width) / 2}"
+        result = self.changed(tmp_path, self.XACRO, moving, "${side * 0.0485}")
+        assert lost(result) == {"parameters": 0.5}
+        assert "doubling base_width changes the size of a part" in result.diagnosis.cause
+
+    def test_masses_are_added_up(self, tmp_path):
+        result = self.changed(
+            tmp_path, self.XACRO, 'name="mass" value="0.27"', 'name="mass" value="27"'
+        )
+        assert lost(result) == {"masses": 0.5}
+        assert "weighs 27000 g" in result.diagnosis.cause
+
+    def test_a_second_source_of_joints_beside_gazebo_is_told(self, tmp_path):
+        node = "Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui'),"
+        old = "        model_arg,\n"
+        result = self.changed(tmp_path, "launch/spawn.launch.py", old, f"{old}        {node}\n")
+        assert lost(result) == {"one_source": 0}
+        assert "joint_state_publisher_gui beside Gazebo" in result.diagnosis.cause

@@ -1,0 +1,120 @@
+"""A submission that is looked at: one confined process, the same findings every time."""
+
+from __future__ import annotations
+
+import zipfile
+
+import pytest
+
+import grader
+from grader import scratch
+from grader.errors import ExerciseError, SubmissionError
+from grader.exercise.loading import load_exercise
+from grader.run.processes import isolation, levels
+from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, written
+
+NEVER_ENDS = "while True:\n    pass\n"
+FORGES = """
+import os
+for number in range(3, 64):
+    try:
+        os.write(number, b'{"setup": null}')
+    except OSError:
+        pass
+for process in os.listdir("/proc"):
+    for number in range(3, 64):
+        try:
+            with open(f"/proc/{process}/fd/{number}", "wb") as file:
+                file.write(b"[]")
+        except OSError:
+            pass
+"""
+
+
+def shares(result):
+    return {verdict.check: verdict.share for verdict in result.verdicts}
+
+
+def test_two_looks_are_equal_and_are_what_is_found_without_confinement():
+    once, again = (grader.grade(REFERENCE, EXERCISE) for _ in range(2))
+    assert once.score == once.max_score == 100
+    assert once.run.trace_sha256 == again.run.trace_sha256 == looked_at(REFERENCE).sha256()
+    assert (once.run.outcome, once.run.ticks, once.run.simulated_s) == ("finished", 0, 0)
+
+
+def test_it_is_confined_as_a_submission_s_process_is():
+    run = grader.record(REFERENCE, EXERCISE).nominal.run
+    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        assert run.isolation.startswith(levels.best(isolated).name())
+
+
+def test_a_zip_is_looked_at_as_its_folder_is(tmp_path):
+    path = tmp_path / "walker.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for file in REFERENCE.rglob("*"):
+            if "__pycache__" not in file.parts:
+                archive.write(file, file.relative_to(REFERENCE.parent))
+    assert grader.grade(path, EXERCISE).score == 100
+
+
+def test_of_several_packages_one_can_be_asked_for(tmp_path):
+    for name in ("a_description", "b_description"):
+        manifest = (REFERENCE / "package.xml").read_text()
+        files = {"package.xml": manifest.replace("walker_description", name)}
+        written(tmp_path / name, files)
+    for name in ("a_description", "b_description"):
+        trace = grader.record(tmp_path, EXERCISE, executable=name).nominal.trace
+        assert trace.setup.name == name
+    with pytest.raises(SubmissionError, match="has no package c_description; there is"):
+        grader.record(tmp_path, EXERCISE, executable="c_description")
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [({"a.txt": ""}, "holds no ROS 2 package"), ({}, "holds no ROS 2 package")],
+)
+def test_what_holds_no_package_is_refused(files, words, tmp_path):
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    with pytest.raises(SubmissionError, match=words):
+        grader.grade(tmp_path, EXERCISE)
+
+
+def test_a_single_file_is_refused(tmp_path):
+    file = tmp_path / "walker.urdf"
+    file.write_text("<robot name='a'/>")
+    with pytest.raises(SubmissionError, match=r"neither a folder nor a \.zip"):
+        grader.grade(file, EXERCISE)
+
+
+def test_a_set_up_that_writes_wherever_it_can_spoils_its_own_answer_alone(tmp_path):
+    text = (REFERENCE / "setup.py").read_text()
+    path = written(tmp_path, {"setup.py": f'"""Forges."""\n{FORGES}\n{text}'})
+    result = grader.grade(path, EXERCISE)
+    assert shares(result) == {**dict.fromkeys(EXERCISE.points, 1.0), "installed": 0.0}
+    assert result.run.outcome == "finished"
+
+
+def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
+    path = written(tmp_path, {"launch/spawn.launch.py": NEVER_ENDS})
+    result = grader.grade(path, EXERCISE)
+    assert shares(result)["launch"] == 0.5
+    assert "did not come to an end" in result.diagnosis.cause
+
+
+def test_a_set_up_that_kills_who_looks_is_judged_and_gets_nothing(tmp_path):
+    kill = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
+    result = grader.grade(written(tmp_path, {"setup.py": kill}), EXERCISE)
+    assert result.score == 0
+    assert result.run.outcome == "killed"
+    assert "killed by the signal SIGKILL" in result.diagnosis.cause
+
+
+def test_an_exercise_without_nodes_has_no_limits(tmp_path):
+    (tmp_path / "exercise.yaml").write_text(
+        "{exercise: mine, title: Mine, scene: package, limits: {total_s: 5}, points: {a: 1}}"
+    )
+    (tmp_path / "checks.py").write_text("from grader import Checks\n\nchecks = Checks()\n")
+    with pytest.raises(ExerciseError, match="nothing is started in the scene 'package'"):
+        load_exercise(tmp_path)
+    assert EXERCISE.conditions == {}

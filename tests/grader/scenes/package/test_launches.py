@@ -1,0 +1,185 @@
+"""Launch files are taken as ROS takes them, and what they start is taken down."""
+
+from __future__ import annotations
+
+import textwrap
+
+import pytest
+
+from grader.scenes.package.trace import Launch
+from tests.submissions.packages import looked_at, written
+
+FILE = "launch/display.launch.py"
+HEAD = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import *
+from launch.substitutions import *
+from launch_ros.actions import *
+from launch_ros.substitutions import *
+"""
+
+
+def launched(folder, body: str, file: str = FILE) -> Launch:
+    if file.endswith(".py"):
+        inner = textwrap.indent(textwrap.dedent(body).strip(), "    ")
+        body = f"{HEAD}\ndef generate_launch_description():\n{inner}\n"
+    files = {FILE: None, "launch/spawn.launch.py": None, file: body}
+    return looked_at(written(folder, files)).launches[0]
+
+
+@pytest.mark.parametrize(
+    ("action", "says"),
+    [
+        ("Node('rviz2', 'rviz2')", "takes 1 positional argument"),
+        ("Node(package='rviz2')", "missing 1 required keyword-only argument: 'executable'"),
+        ("Node(package='rviz2', executable='rviz2', node_name='a')", "unexpected keyword"),
+        ("Node(package='rviz2', executable='rviz2', parameters={})", "Expected 'parameters'"),
+        ("Node(package='rviz2', executable='rviz2', arguments='-d a')", "a list of arguments"),
+        ("Node(package='rviz2', executable='rviz2', remappings=['a'])", "two-tuples"),
+        ("Node(package='rviz2', executable='rviz2', parameters=[{'a': None}])", "Allowed value"),
+        ("Node(package=2, executable='rviz2')", "Failed to normalize"),
+        ("TimerAction(2.0, [])", "positional argument"),
+        ("IncludeLaunchDescription('a', arguments={})", "unexpected keyword"),
+        ("DeclareLaunchArgument('a', default='b')", "unexpected keyword"),
+        ("DeclareLaunchArgument('a', default_value='b', choices=['c'])", "is not in provided"),
+        ("LogInfo(msg=LaunchConfiguration('none'))", "'none' does not exist"),
+        ("LogInfo(msg='a', condition=IfCondition('yes'))", "invalid condition expression 'yes'"),
+        ("LogInfo(msg=EnvironmentVariable('NOWHERE'))", "'NOWHERE' does not exist"),
+        ("'rviz2'", "expected an action"),
+        ("LogInfo(msg=Command('false'))", "executed command failed"),
+        ("LogInfo(msg=Command(['xacro', '/a']))", "file not found"),
+    ],
+)
+def test_what_the_original_refuses_is_refused(action, says, tmp_path):
+    launch = launched(tmp_path, f"return LaunchDescription([{action}])")
+    assert launch.problem is not None and launch.problem.kind == "error"
+    assert says in launch.problem.text
+
+
+@pytest.mark.parametrize(
+    ("body", "kind", "says"),
+    [
+        ("import launch\nlaunch.Wonder", "unknown", "launch.Wonder"),
+        ("from launch.actions import Wonder", "unknown", "launch.actions.Wonder"),
+        ("import launch_ros.wonder", "unknown", "launch_ros.wonder"),
+        ("import launch_testing", "unknown", "launch_testing"),
+        ("import moveit_configs_utils", "unknown", "moveit_configs_utils"),
+        ("import numpyy", "error", "No module named 'numpyy'"),
+        ("import os; os._exit(3)", "limit", "ended the process that it ran in (exit code 3)"),
+        ("raise SystemExit", "error", "SystemExit"),
+        ("return None", "error", "returned NoneType; expected a LaunchDescription"),
+        (
+            "return LaunchDescription([DeclareLaunchArgument('a')])",
+            "argument",
+            'Required launch argument "a"',
+        ),
+    ],
+)
+def test_how_a_launch_file_ends_is_told_apart(body, kind, says, tmp_path):
+    problem = launched(tmp_path, body).problem
+    assert problem is not None
+    assert (problem.kind, says in problem.text) == (kind, True), problem
+
+
+def test_conditions_groups_and_includes_are_followed(tmp_path):
+    launch = launched(
+        tmp_path,
+        """
+        go = LaunchConfiguration('go')
+        rviz = dict(package='rviz2', executable='rviz2')
+        return LaunchDescription([
+            DeclareLaunchArgument('go', default_value='True'),
+            GroupAction([SetLaunchConfiguration('go', '0'), PushRosNamespace('in'),
+                         Node(name='no', condition=IfCondition(go), **rviz),
+                         Node(name='group', condition=UnlessCondition(go), **rviz)]),
+            Node(name='yes', condition=IfCondition(go), **rviz),
+            OpaqueFunction(function=lambda context: [Node(name=go.perform(context), **rviz)]),
+            RegisterEventHandler(__import__('launch').event_handlers.OnProcessExit(
+                on_exit=[Node(name='after', **rviz)])),
+            ExecuteProcess(cmd=['ros2', 'topic', 'list']),
+        ])
+        """,
+    )
+    assert launch.problem is None
+    told = [(node.name, node.namespace, node.later) for node in launch.nodes]
+    assert told == [
+        ("group", "in", False),
+        ("yes", "", False),
+        ("True", "", False),
+        ("after", "", True),
+    ]
+    assert launch.processes == ("ros2 topic list",)
+    assert launch.declared == ("go",)
+
+
+def test_values_of_parameters_go_through_yaml_where_the_original_does_so(tmp_path):
+    launch = launched(
+        tmp_path,
+        """
+        text = TextSubstitution
+        return LaunchDescription([Node(package='rviz2', executable='rviz2', parameters=[{
+            'a': text(text='false'), 'b': 'false', 'c': [1, 2], 'd': {'e': 1.5}}])])
+        """,
+    )
+    values = {each.name: each.value for each in launch.nodes[0].parameters}
+    assert values == {"a": "false", "b": "false", "c": "[1, 2]", "d.e": "1.5"}
+    fragile = launched(
+        tmp_path / "more",
+        """
+        text = TextSubstitution(text='<a> <!-- b: c --> </a>: {')
+        return LaunchDescription([Node(package='rviz2', executable='rviz2',
+                                       parameters=[{'a': text}])])
+        """,
+    )
+    assert fragile.problem is not None and "as yaml" in fragile.problem.text
+
+
+@pytest.mark.parametrize(
+    ("element", "says"),
+    [
+        ("<node pkg='rviz2'/>", "Attribute 'exec' of Entity 'node' not found"),
+        ("<node package='rviz2' exec='rviz2'/>", "Attribute 'pkg'"),
+        ("<node pkg='rviz2' exec='rviz2' typ='a'/>", "Unexpected attribute(s)"),
+        ("<node pkg='rviz2' exec='$(find rviz2)'/>", "Unknown substitution: find"),
+        ("<node", "ParseError"),
+        ("<arg name='a'/><let name='b'/>", "Attribute 'value'"),
+    ],
+)
+def test_a_launch_file_in_xml_is_refused_where_the_original_does_so(element, says, tmp_path):
+    launch = launched(tmp_path, f"<launch>{element}</launch>", "launch/display.launch.xml")
+    assert launch.problem is not None
+    assert says in launch.problem.text
+
+
+def test_a_launch_file_in_xml_starts_what_it_says(tmp_path):
+    launch = launched(
+        tmp_path,
+        """<launch>
+        <arg name="rviz" default="true"/>
+        <let name="file" value="$(find-pkg-share rviz2)/a.rviz"/>
+        <group if="$(var rviz)">
+          <push_ros_namespace namespace="in"/>
+          <node pkg="rviz2" exec="rviz2" name="$(var rviz)" args="-d '$(var file)' --x">
+            <param name="a" value="1.5"/><param name="b" value="1" type="str"/>
+            <remap from="c" to="d"/>
+          </node>
+        </group>
+        <include file="$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py">
+          <arg name="pause" value="true"/>
+        </include>
+        </launch>""",
+        "launch/display.launch.xml",
+    )
+    assert launch.problem is None
+    node = launch.nodes[0]
+    assert (node.name, node.namespace, node.remappings) == ("true", "in", ("c:=d",))
+    assert node.arguments == ("-d", "/opt/ros/jazzy/share/rviz2/a.rviz", "--x")
+    assert [each.value for each in node.parameters] == ["1.5", "1"]
+    include = launch.includes[0]
+    assert (include.package, include.arguments) == ("gazebo_ros", ("pause:=true",))
+
+
+def test_a_launch_file_in_yaml_is_not_judged(tmp_path):
+    launch = launched(tmp_path, "launch: []", "launch/display.launch.yaml")
+    assert launch.problem is not None and launch.problem.kind == "unknown"

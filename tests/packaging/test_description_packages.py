@@ -1,0 +1,67 @@
+"""What a recording setup() says is installed is what `colcon build` installs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.submissions.packages import FOLDER, REFERENCE, looked_at
+
+#: What colcon adds by itself.
+OF_COLCON = ("hook", "package.bash", "package.ps1", "package.sh", "package.zsh", "package.dsv")
+PACKAGES = {
+    "reference": REFERENCE,
+    "r2d2_tutorial": FOLDER / "r2d2_tutorial",
+    "urdf_to_package": FOLDER / "urdf_to_package",
+}
+
+
+def built(package: Path, folder: Path) -> subprocess.CompletedProcess[str]:
+    shutil.copytree(package, folder / "src")
+    colcon = shutil.which("colcon", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
+    colcon = colcon or shutil.which("colcon", path=str(Path(os.__file__).parents[2] / "bin"))
+    assert colcon, "colcon is one of the `test` requirements"
+    env = os.environ | {"COLCON_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    return subprocess.run(
+        [colcon, "build", "--merge-install", "--base-paths", "src"],
+        cwd=folder,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_the_same_files_are_installed_as_by_colcon(name, tmp_path):
+    setup = looked_at(PACKAGES[name]).setup
+    assert setup is not None
+    build = built(PACKAGES[name], tmp_path)
+    assert build.returncode == 0, build.stdout + build.stderr
+    share = tmp_path / "install" / "share" / setup.name
+    found = {
+        path.relative_to(tmp_path / "install").as_posix()
+        for path in share.rglob("*")
+        if path.is_file() and path.relative_to(share).parts[0] not in OF_COLCON
+    }
+    marker = f"share/ament_index/resource_index/packages/{setup.name}"
+    assert found | {marker} == set(setup.installed)
+    assert (tmp_path / "install" / marker).is_file()
+    programs = tmp_path / "install" / setup.scripts_folder
+    assert {each.name for each in setup.scripts} == {path.name for path in programs.glob("*")}
+
+
+def test_what_stops_colcon_is_told(tmp_path):
+    package = tmp_path / "package"
+    shutil.copytree(REFERENCE, package)
+    (package / "resource" / "walker_description").unlink()
+    setup = looked_at(package).setup
+    assert setup is not None and setup.absent == ("resource/walker_description",)
+    build = built(package, tmp_path / "workspace")
+    assert build.returncode != 0
+    assert "resource/walker_description" in build.stdout + build.stderr
