@@ -12,6 +12,7 @@ from grader.scenes.turtlesim.driving import Controller, pen, twist
 from grader.scenes.turtlesim.trace import FIRST_TURTLE
 from grader.testing import robot_oddities
 from grader.testing.driving import drive
+from grader.testing.odd_packages import odd_packages
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import Pose
 
@@ -133,6 +134,8 @@ def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
             f"a node that {what}": Recordings(robot_oddities.recorded(odd, exercise.setting))
             for what, odd in robot_oddities.ODDITIES.items()
         }
+    if exercise.scene == "package":
+        return odd_packages()
     if exercise.scene != "turtlesim":
         return {}
     return {

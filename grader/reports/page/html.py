@@ -136,6 +136,13 @@ def _faulty_runs(report: Report) -> set[int]:
 
 def _outcomes(scene: Scene) -> dict[str, str]:
     thing = scene.thing
+    if scene.examiner:
+        return {
+            "finished": f"the {thing} was looked at",
+            "time limit": f"looking at the {thing} did not come to an end",
+            "crashed": f"the {thing} ended the process that looked at it",
+            "killed": f"the {thing} ended the process that looked at it",
+        }
     return {
         "finished": scene.finished,
         "exited": "the node ended by itself, without an error",

@@ -131,7 +131,7 @@ def test_a_mistake_in_its_code_is_told_with_file_and_line(tmp_path, files, words
         ({"varied_runs": [1]}, "varied_runs: expected names with numbers"),
         ({"tolerances": [1]}, "tolerances: expected names with values"),
         ({"points": {"fly": 1}}, "points: no check is named 'fly'; there are moves"),
-        ({"scene": "moon"}, "scene: expected one of turtlesim, robot, found 'moon'"),
+        ({"scene": "moon"}, "scene: expected one of turtlesim, robot, package, found 'moon'"),
         ({"starter": "begin"}, "there is no 'begin'"),
     ],
 )

@@ -9,6 +9,8 @@ import pytest
 from grader.exercise.loading import load_exercise
 from grader.grading import judge
 from grader.result.result import Result
+from grader.testing.odd_packages import odd_packages
+from grader.testing.sanity import examine
 from tests.submissions.packages import (
     EXERCISE,
     FOLDER,
@@ -165,3 +167,7 @@ class TestThymio:
         result = self.changed(tmp_path, "launch/spawn.launch.py", old, f"{old}        {node}\n")
         assert lost(result) == {"one_source": 0}
         assert "joint_state_publisher_gui beside Gazebo" in result.diagnosis.cause
+
+    def test_its_checks_survive_whatever_a_package_is(self):
+        for what, recordings in odd_packages().items():
+            assert examine(self.EXERCISE, recordings)[1] == [], what
