@@ -128,14 +128,14 @@ def _file(looked: Looked, name: str, source: str, by: str) -> Missing:
             f"{by} is not installed: `ros2 launch {looked.name}` does not find it.",
             "data_files in setup.py (or install() in CMakeLists.txt) has to list the launch files.",
         )
-    if not name.startswith("/") or name.startswith(_EMPTY):
+    if not name.startswith(("/", "~")) or name.startswith(_EMPTY):
         return Missing(
             name,
             f"{by} asks for {shown(name.removeprefix(_EMPTY))}, a path from the current folder: it "
             "is there only for who stands in the right one.",
             "Join it to the package's share folder: get_package_share_directory(NAME).",
         )
-    if not name.startswith(("/prefix/", "/opt/ros/")):
+    if name.startswith("~") or not name.startswith(("/prefix/", "/opt/ros/")):
         return Missing(
             name,
             f"{by} asks for {shown(name)}: a path of one machine, which no other has.",

@@ -147,12 +147,7 @@ def _includes_simulator(launch: Launch) -> bool:
 
 def _no_description(node: Node) -> Part:
     names = [each.name for each in node.parameters]
-    if node.arguments and not names:
-        found = "it gets only arguments, which robot_state_publisher reads no more."
-    elif names:
-        found = f"its parameters are {shown(', '.join(names))}."
-    else:
-        found = "it gets no parameter."
+    found = f"its parameters are {shown(', '.join(names))}." if names else "it gets no parameter."
     return Part(
         DESCRIPTION,
         f"robot_state_publisher has no robot_description: {found}",

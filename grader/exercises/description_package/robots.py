@@ -52,6 +52,12 @@ def _of(looked: Looked, description: Description) -> Finding:
         )
     if not text.strip():
         return Finding(0, f"{where}: the description is empty.", "Which file does it come from?")
+    if "<" not in text:
+        return Finding(
+            0,
+            f"{where}: robot_description is {shown(text)!r}, which is no URDF.",
+            "Hand on what is in the file, not its path.",
+        )
     if raw := _XACRO.search(text):
         return Finding(
             0,

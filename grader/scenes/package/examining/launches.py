@@ -31,6 +31,7 @@ DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_in
 LONG: Final = 300
 _MOST: Final = 200
 _COMMAND_S: Final = 20.0
+_FILE_OPTIONS: Final = ("-d", "--display-config", "-file", "--file")
 _SUFFIXES: Final = (
     *(".rviz", ".urdf", ".xacro", ".xml", ".yaml", ".yml", ".sdf", ".world", ".py", ".dae", ".stl"),
     *(".launch", ".config", ".json", ".vcg"),
@@ -127,7 +128,8 @@ class Taken:
 
     def node(self, node: dict[str, Any]) -> None:
         """A node that would start."""
-        parameters = [self._parameter(each) for each in node["parameters"]]
+        given = [*node["parameters"], *self._by_argument(node)]
+        parameters = [self._parameter(each) for each in given]
         self._look_for_paths(node["arguments"])
         self._add("nodes", {**node, "parameters": parameters})
 
@@ -280,6 +282,23 @@ class Taken:
             raise SubstitutionFailure(f"{words[0]} did not come to an end") from None
         return ended.returncode, ended.stdout, ended.stderr
 
+    def _by_argument(self, node: dict[str, Any]) -> list[dict[str, Any]]:
+        """The file that a robot_state_publisher reads where it has no parameter, with a warning."""
+        has_one = any(each["name"] == "robot_description" for each in node["parameters"])
+        files = [each for each in node["arguments"] if each.endswith((".urdf", ".xml", ".xacro"))]
+        if has_one or not files or node["executable"] != "robot_state_publisher":
+            return []
+        self.remark(
+            "robot_state_publisher gets the description as a file, which it still reads, with a "
+            "warning: give it the parameter robot_description"
+        )
+        try:
+            with open(os.path.abspath(files[0]), encoding="utf-8") as file:
+                text = file.read()
+        except OSError:
+            return []
+        return [{"name": "robot_description", "value": text, "wrapped": True}]
+
     def _parameter(self, given: dict[str, Any]) -> dict[str, Any]:
         value, name = given["value"], str(given["name"])[:LONG]
         if isinstance(value, str) and (len(value) > LONG or name == "robot_description"):
@@ -294,8 +313,10 @@ class Taken:
 
     def _look_for_paths(self, words: list[str]) -> None:
         """Files that a node is told to read have to be there."""
-        for word in words:
+        for before, word in zip(("", *words), words, strict=False):
             path = word.removeprefix("file://")
+            if before in _FILE_OPTIONS and not path.startswith("/"):
+                path = os.path.abspath(path)  # from where the launch file is started
             if path.startswith("/") and path.endswith(_SUFFIXES) and " " not in path:
                 if path.startswith(f"{self._place.stubs}/"):
                     continue

@@ -69,6 +69,8 @@ def problem_of(error: BaseException, own: Own) -> Problem:
             kind = "unknown"
         kind = getattr(chained, "kind_of_problem", kind)
         chained = chained.__cause__ or chained.__context__  # type: ignore[assignment]
+    if _is_of_environment(error):
+        return Problem("unknown", f"it needs the environment variable {error.args[0]!s:.100}")
     frames = [(own(f.filename), f.lineno or 0) for f in traceback.extract_tb(error.__traceback__)]
     file, line = next((each for each in reversed(frames) if each[0]), ("", 0))
     if isinstance(error, SyntaxError) and error.filename and own(error.filename):
@@ -76,6 +78,12 @@ def problem_of(error: BaseException, own: Own) -> Problem:
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     name = "" if isinstance(error, NotKnown) else f"{type(error).__name__}: "
     return Problem(kind, f"{name}{' '.join(words.split())}"[:_LONGEST].rstrip(": "), file, line)
+
+
+def _is_of_environment(error: BaseException) -> bool:
+    """Whether it is what `os.environ[NAME]` raises: the user's shell may have it."""
+    last = traceback.extract_tb(error.__traceback__)[-1:]
+    return isinstance(error, KeyError) and bool(last) and last[0].filename == os.__file__
 
 
 def in_folder(folder: str, path: list[str], env: dict[str, str]) -> None:

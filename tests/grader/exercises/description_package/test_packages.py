@@ -41,7 +41,9 @@ FIRST_LINES = {
     "programs_in_bin": "expected lib/walker_description",
     "names_of_foxy": "keyword-only argument: 'executable' (launch/display.launch.py, line 2",
     "no_blank_after_xacro": "No such file or directory: 'xacro/prefix/share",
-    "path_instead_of_text": "has no robot_description",
+    "path_instead_of_text": "urdf/walker.urdf.xacro', which is no URDF",
+    "no_description": "has no robot_description: its parameters are description",
+    "path_of_the_current_folder": "asks for rviz/walker.rviz, a path from the current folder",
     "no_joint_source": "nothing publishes /joint_states",
     "rviz_without_its_file": "rviz2 starts without a file",
     "no_xacro_run": "xacro has not been run on it",
@@ -91,6 +93,16 @@ def test_there_are_six_right_solutions_and_twenty_mutants_at_least():
     right = [solution for solution in SOLUTIONS.values() if solution.is_right]
     assert len(right) >= 6
     assert len(SOLUTIONS) - len(right) >= 20
+
+
+def test_a_description_as_an_argument_is_read_with_a_remark(tmp_path):
+    files = {"urdf/plain.urdf": "<robot name='r'><link name='a'/></robot>"}
+    text = (REFERENCE / DISPLAY).read_text()
+    text = text.replace('parameters=[{"robot_description": description}]', "arguments=[model]")
+    files[DISPLAY] = text.replace("walker.urdf.xacro", "plain.urdf")
+    trace = looked_at(written(tmp_path, files))
+    assert lost(judge(recorded(trace), EXERCISE)) == {}
+    assert "as a file, which it still reads" in trace.launches[0].remarks[0]
 
 
 def test_the_starter_is_told_what_to_begin_with():

@@ -65,6 +65,7 @@ def test_what_the_original_refuses_is_refused(action, says, tmp_path):
         ("import launch_ros.wonder", "unknown", "launch_ros.wonder"),
         ("import launch_testing", "unknown", "launch_testing"),
         ("import moveit_configs_utils", "unknown", "moveit_configs_utils"),
+        ("import os; os.environ['ROBOT']", "unknown", "environment variable ROBOT"),
         ("import numpyy", "error", "No module named 'numpyy'"),
         ("import os; os._exit(3)", "limit", "ended the process that it ran in (exit code 3)"),
         ("raise SystemExit", "error", "SystemExit"),
