@@ -24,6 +24,7 @@ KEYS = {
     "rich": "python3-rich",
     "rosbags": "python3-rosbags-pip",
     "watchdog": "python3-watchdog",
+    "xacro": "xacro",
 }
 
 #: Hides packages from every Python that finds it on its path.
@@ -59,7 +60,8 @@ def depends(manifest: str, release: str) -> set[str]:
 
 def keys(manifest: str) -> set[str]:
     """The Python packages that a package.xml wants from rosdep."""
-    return {key for key in depends(manifest, "jazzy") if key.startswith("python3-")}
+    wanted = depends(manifest, "jazzy")
+    return {key for key in wanted if key.startswith("python3-") or key in KEYS.values()}
 
 
 def hide_all_but(folder: Path, names: Iterable[str]) -> Path:

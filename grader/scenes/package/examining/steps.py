@@ -83,7 +83,11 @@ def problem_of(error: BaseException, own: Own) -> Problem:
 def _is_of_environment(error: BaseException) -> bool:
     """Whether it is what `os.environ[NAME]` raises: the user's shell may have it."""
     last = traceback.extract_tb(error.__traceback__)[-1:]
-    return isinstance(error, KeyError) and bool(last) and last[0].filename == os.__file__
+    return (
+        isinstance(error, KeyError)
+        and bool(last)
+        and last[0].filename in (os.__file__, "<frozen os>")
+    )
 
 
 def in_folder(folder: str, path: list[str], env: dict[str, str]) -> None:
