@@ -107,7 +107,7 @@ def spawn(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """What puts the robot into Gazebo has the right arguments.
 
     spawn_entity.py of gazebo_ros, or create of ros_gz_sim: exactly one origin (-topic, -file, ...),
-    a name where one is needed, numbers as places, and a topic that the same launch file publishes.
+    a name where one is needed, numbers as places, and a topic that a launch file publishes.
     All or nothing; a package that puts nothing into Gazebo gets the points.
     """
     return _of(recordings, lambda looked: spawning.judge(looked, False))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, not_judged, placed, shown
+from grader.scenes.package.examining.known import KNOWN, SIMULATORS
 from grader.scenes.package.trace import Launch, Node
 from robot_py.urdf import parse
 
@@ -16,6 +17,7 @@ JOINT_SOURCES = ("joint_state_publisher", "joint_state_publisher_gui")
 DESCRIPTION, JOINTS, RVIZ = 0.5, 0.25, 0.25
 #: A launch file of the package that ends with an error leaves no more than this.
 BROKEN = 0.5
+_SIMULATORS = ("gz sim", "gazebo", "gzserver", "ign gazebo", "webots")
 _MOVES = re.compile(r'type\s*=\s*["\'](?:revolute|continuous|prismatic)["\']')
 
 
@@ -137,12 +139,14 @@ def is_joint_source(looked: Looked, node: Node) -> bool:
     if node.package == looked.name:
         scripts = {each.name: each for each in looked.setup.scripts}
         return node.executable not in scripts or scripts[node.executable].says
-    return node.package in looked.trace.others
+    is_another_s = node.package in looked.setup.depends and node.package not in KNOWN
+    return is_another_s or node.package in looked.trace.others
 
 
 def _includes_simulator(launch: Launch) -> bool:
     """A simulator publishes the joints of what it simulates."""
-    return any(each.package in ("gazebo_ros", "ros_gz_sim") for each in launch.includes)
+    included = any(each.package in SIMULATORS for each in launch.includes)
+    return included or any(each.startswith(_SIMULATORS) for each in launch.processes)
 
 
 def _no_description(node: Node) -> Part:
@@ -157,7 +161,7 @@ def _no_description(node: Node) -> Part:
 
 def _rviz(looked: Looked, launch: Launch) -> Part | None:
     started = [node for node in launch.nodes if is_rviz(node)]
-    if any(_has_file(node) for node in started) or any("rviz2 -d" in p for p in launch.processes):
+    if any(_has_file(node) for node in started):
         return None
     if started:
         return Part(

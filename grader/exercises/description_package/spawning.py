@@ -49,7 +49,7 @@ def judge(looked: Looked, is_asked: bool) -> Finding:
             )
         return Finding(1, "No launch file puts the robot into Gazebo, and none need.")
     for launch, node in found:
-        fault = next(_faults(launch, node), "")
+        fault = next(_faults(looked, launch, node), "")
         if fault:
             return Finding(
                 0,
@@ -60,7 +60,7 @@ def judge(looked: Looked, is_asked: bool) -> Finding:
     return Finding(1, f"{launches[0].file} puts the robot into Gazebo.")
 
 
-def _faults(launch: Launch, node: Node) -> Iterator[str]:
+def _faults(looked: Looked, launch: Launch, node: Node) -> Iterator[str]:
     sources, needed = PROGRAMS[node.executable]
     given = _given(node)
     if None in given:
@@ -77,11 +77,8 @@ def _faults(launch: Launch, node: Node) -> Iterator[str]:
             yield f"gets {name} {shown(given[name])!r}; expected a number."
     if "-topic" in given:
         topic = given["-topic"].rsplit("/", 1)[-1]
-        if topic == "robot_description" and not _is_published(launch):
-            yield (
-                "waits for the topic robot_description, and the launch file starts nothing that "
-                "publishes it."
-            )
+        if topic == "robot_description" and not any(map(_is_published, looked.launches)):
+            yield "waits for the topic robot_description, and no launch file publishes it."
         elif topic != "robot_description" and not _is_remapped(launch, topic):
             yield (
                 f"waits for the topic {shown(given['-topic'])!r}, which nobody publishes; "

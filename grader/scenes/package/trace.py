@@ -87,7 +87,8 @@ class Setup:
         folder: where it lies in what was handed in; '' for its top.
         build_type: "ament_python", "ament_cmake", ...; '' where none is told.
         manifest: what is wrong with package.xml; '' for nothing.
-        depends: all packages that it names as dependencies, of whatever kind.
+        depends: all packages that it names as dependencies, of whatever kind; with those of the
+            packages beside it, where these have the launch files and it has none.
         problem: what ended its setup.py; None where it came to its end.
         absent: what it lists to be installed, and is not there.
         folders: folders that it lists as if they were files.
@@ -162,7 +163,7 @@ class Launch:
     """A launch file, evaluated.
 
     Attributes:
-        file: its source in the package.
+        file: its source in the package; 'NAME/FILE' for one of a package beside it.
         problem: what ended it; None where it came to its end.
         nodes, processes, includes: what it starts, with its default arguments.
         declared: the names of its arguments.

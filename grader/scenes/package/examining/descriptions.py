@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any, Final
 from xml.etree import ElementTree
 
-from grader.scenes.package.examining.launches import Place, Taken, prepare, watch_files
+from grader.scenes.package.examining.launches import prepare, watch_files
 from grader.scenes.package.examining.packages import is_description
+from grader.scenes.package.examining.place import Place
+from grader.scenes.package.examining.taken import Taken
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].

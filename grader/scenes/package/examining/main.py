@@ -23,7 +23,8 @@ if __name__ == "__main__":
 
 from grader.scenes.package import strict, trace  # noqa: E402
 from grader.scenes.package.examining import descriptions, launches, layout, packages  # noqa: E402
-from grader.scenes.package.examining.launches import Place  # noqa: E402
+from grader.scenes.package.examining.layout import Installed  # noqa: E402
+from grader.scenes.package.examining.place import Place  # noqa: E402
 from grader.scenes.package.examining.steps import Ended, problem_of, step  # noqa: E402
 from grader.scenes.package.trace import (  # noqa: E402
     Description,
@@ -75,19 +76,19 @@ class Looking:
         self._texts: list[str] = []
         self._descriptions: list[Description] = []
         self._commands: dict[int, list[str]] = {}
+        self._files: dict[str, tuple[Installed, str]] = {}
 
     def trace(self) -> PackageTrace:
         """All of it."""
         place = self._place
-        found = [self._launch(file) for file in place.judged.package.launch_files[:_MOST_LAUNCHES]]
+        self._files = _launch_files(place)
+        found = [self._launch(told) for told in self._files]
         if not any(each.text >= 0 for each in self._descriptions):
             found += self._from_files(found)
         varied = self._varied()
         self._elsewhere(found)
         return PackageTrace(
-            setup=strict.from_json(
-                trace.Setup, _cleaned(strict.to_json(place.judged.setup), place)
-            ),
+            setup=strict.from_json(trace.Setup, _cleaned(self._setup(), place)),
             others=tuple(each.name[:200] for each in place.all if each is not place.judged)[:100],
             launches=tuple(found),
             descriptions=tuple(self._descriptions),
@@ -95,10 +96,16 @@ class Looking:
             texts=tuple(self._texts),
         )
 
+    def _setup(self) -> dict[str, Any]:
+        """The judged package's; with the dependencies of those whose launch files count."""
+        setups = [of.setup for of, _ in self._files.values()]
+        names = [n for each in (self._place.judged.setup, *setups) for n in each.depends]
+        return {**strict.to_json(self._place.judged.setup), "depends": list(dict.fromkeys(names))}
+
     def _launch(self, file: str) -> Launch:
-        place = self._place
+        place, (of, name) = self._place, self._files[file]
         try:
-            said = step(lambda: _evaluated(place, file), place.own)
+            said = step(lambda: _evaluated(place, of, name), place.own)
         except Ended as ended:
             return _ended(file, _cleaned(vars(ended.problem), place))
         said = _cleaned(said, place)
@@ -233,7 +240,9 @@ class Looking:
             if launch.problem is not None:
                 continue
             try:
-                said = _cleaned(step(partial(_evaluated, place, launch.file), place.own), place)
+                said = _cleaned(
+                    step(partial(_evaluated, place, *self._files[launch.file]), place.own), place
+                )
                 again = [str(each["name"]) for each in said["lacking"] if each["kind"] == "file"]
             except (Ended, KeyError, TypeError):
                 again = []
@@ -244,9 +253,21 @@ class Looking:
         moved.rename(before.prefix)
 
 
-def _evaluated(place: Place, file: str) -> dict[str, Any]:
+def _launch_files(place: Place) -> dict[str, tuple[Installed, str]]:
+    """As it is told of -> a launch file; of the packages beside the judged one if it has none."""
+    own = {file: (place.judged, file) for file in place.judged.package.launch_files}
+    beside = {
+        f"{each.name}/{file}": (each, file)
+        for each in place.all
+        if each is not place.judged
+        for file in each.package.launch_files
+    }
+    return dict(list((own or beside).items())[:_MOST_LAUNCHES])
+
+
+def _evaluated(place: Place, of: Installed, file: str) -> dict[str, Any]:
     """In a copy: a launch file evaluated, as JSON."""
-    said = launches.evaluate(place, file)
+    said = launches.evaluate(place, of, file)
     error = said["problem"]
     said["problem"] = None if error is None else vars(problem_of(error, place.own))
     return {**said, "asked": launches.asked(place)}

@@ -48,8 +48,14 @@ class Package:
 
     @property
     def launch_files(self) -> list[str]:
-        """Its files that `ros2 launch` would take."""
-        return [each for each in self.files if is_launch_file(each)]
+        """Its files that `ros2 launch` takes, whatever they are called."""
+        return [each for each in self.files if is_launch_file(each) or self._is_one(each)]
+
+    def _is_one(self, name: str) -> bool:
+        if not name.startswith("launch/") or not name.endswith(".py"):
+            return False
+        text = (self.folder / name).read_bytes()[:_MOST_BYTES]
+        return b"def generate_launch_description" in text
 
 
 def is_description(name: str) -> bool:

@@ -105,6 +105,33 @@ def test_a_description_as_an_argument_is_read_with_a_remark(tmp_path):
     assert "as a file, which it still reads" in trace.launches[0].remarks[0]
 
 
+def test_launch_files_may_lie_in_a_package_beside(tmp_path):
+    folder = tmp_path / "workspace"
+    written(folder / "a", {DISPLAY: None, "launch/spawn.launch.py": None})
+    manifest = (REFERENCE / "package.xml").read_text()
+    for word in ("walker_description", "<exec_depend>rviz2</exec_depend>"):
+        manifest = manifest.replace(word, word.replace("description", "bringup"))
+    cmake = "project(walker_bringup)\ninstall(DIRECTORY launch DESTINATION share/walker_bringup)\n"
+    bringup = folder / "walker_bringup"
+    (bringup / "launch").mkdir(parents=True)
+    (bringup / "package.xml").write_text(manifest.replace("ament_python", "ament_cmake"))
+    (bringup / "CMakeLists.txt").write_text(cmake)
+    (bringup / "launch" / "show.py").write_text((REFERENCE / DISPLAY).read_text())
+    trace = looked_at(folder)
+    assert trace.setup is not None and trace.setup.name == "walker_description"
+    assert [launch.file for launch in trace.launches] == ["walker_bringup/launch/show.py"]
+    assert lost(judge(recorded(trace), EXERCISE)) == {}
+
+
+def test_rviz_as_a_plain_program_is_rviz(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    node = 'Node(package="rviz2", executable="rviz2", arguments=["-d", settings])'
+    head = "from launch.actions import ExecuteProcess\n"
+    for words, left in (('["rviz2", "-d", settings]', {}), ('["rviz2"]', {"launch": 0.75})):
+        changed = head + text.replace(node, f"ExecuteProcess(cmd={words})")
+        assert lost(graded(written(tmp_path / str(len(words)), {DISPLAY: changed}))) == left
+
+
 def test_the_starter_is_told_what_to_begin_with():
     result = graded(EXERCISE.starter)
     assert lost(result)["launch"] == 0

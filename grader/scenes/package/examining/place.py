@@ -1,0 +1,77 @@
+"""Where the packages are laid out, and what is there called by everybody else."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from grader.scenes.package.examining.layout import Installed
+from grader.scenes.package.trace import EMPTY, PREFIX, ROS
+
+DOUBLES: Final = Path(__file__).parent / "doubles"
+CODE: Final = Path(__file__).resolve().parents[4]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where packages are laid out.
+
+    Attributes:
+        prefix: where the submission's packages are installed.
+        stubs: where those of ROS are said to be.
+        empty: an empty folder, to stand in; `asked` is the file that takes down packages.
+        judged: the package that is looked at.
+        all: all packages of the submission.
+    """
+
+    prefix: Path
+    stubs: Path
+    empty: Path
+    asked: Path
+    judged: Installed
+    all: tuple[Installed, ...]
+
+    def told(self, text: str) -> str:
+        """A text with the places as everybody knows them."""
+        for path, shown in ((self.prefix, PREFIX), (self.stubs, ROS)):
+            text = text.replace(str(path), shown)
+        for each in self.all:
+            text = text.replace(str(each.package.folder), f"/source/{each.name}")
+        return text.replace(str(self.empty), EMPTY)
+
+    def own(self, path: str) -> str:
+        """A file of any package of the submission; '' for others."""
+        return next((f for each in self.all if (f := each.own(path, self.prefix))), "")
+
+    def meant(self, wanted: str) -> str:
+        """The file of the package that was meant by a path that is not there; '' for none."""
+        name = os.path.basename(wanted)
+        parts = wanted.split("/")[::-1]
+
+        def likeness(file: str) -> int:
+            same = zip(file.split("/")[::-1], parts, strict=False)
+            return next((n for n, (a, b) in enumerate(same) if a != b), len(parts))
+
+        everything = [
+            str(each.package.folder / file)
+            for each in (self.judged, *(e for e in self.all if e is not self.judged))
+            for file in each.package.files
+            if os.path.basename(file) == name
+        ]
+        return max(everything, key=likeness, default="")
+
+    def environment(self) -> dict[str, str]:
+        """Variables of a process that evaluates."""
+        return {
+            "AMENT_PREFIX_PATH": f"{self.prefix}:{self.stubs}",
+            "PYTHONPATH": f"{DOUBLES}:{CODE}",
+            "PATH": f"{self.stubs}/bin:{os.environ.get('PATH', '')}",
+            "GRADER_ASKED": str(self.asked),
+            "GRADER_PACKAGE": self.judged.name,
+            "ROS_DISTRO": os.environ.get("ROS_DISTRO", "jazzy"),
+            "ROS_VERSION": "2",
+            "HOME": str(self.empty),
+            "USER": "student",
+        }

@@ -1,0 +1,326 @@
+"""What a launch file would start, asks for and lacks: the other side of the doubles."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import subprocess
+import sys
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import Any, Final
+
+from grader.scenes.package.examining import known
+from grader.scenes.package.examining.place import Place
+from grader.scenes.package.examining.steps import NotKnown
+
+#: A text that is longer is no name or number, but a description.
+LONG: Final = 300
+_MOST: Final = 200
+_COMMAND_S: Final = 20.0
+_FILE_OPTIONS: Final = ("-d", "--display-config", "-file", "--file")
+#: How the names of files end that a node may be told to read.
+SUFFIXES: Final = (
+    *(".rviz", ".urdf", ".xacro", ".xml", ".yaml", ".yml", ".sdf", ".world", ".py", ".dae", ".stl"),
+    *(".launch", ".config", ".json", ".vcg"),
+)
+
+
+class Taken:
+    """What is taken down of a launch file; the `record` of a double's context."""
+
+    def __init__(self, place: Place) -> None:
+        self._place = place
+        self.context: Any = None
+        self.found: dict[str, list[Any]] = {
+            key: []
+            for key in (
+                "nodes",
+                "processes",
+                "includes",
+                "declared",
+                "lacking",
+                "remarks",
+                "refused",
+            )
+        }
+        self.texts: list[str] = []
+        self._depth = 0
+        #: descriptions that were read, in their order
+        self.sources: list[str] = []
+
+    # Called by the doubles ----------------------------------------------------------------------
+
+    def node(self, node: dict[str, Any]) -> None:
+        """A node that would start."""
+        given = [*node["parameters"], *self._by_argument(node)]
+        parameters = [self._parameter(each) for each in given]
+        self._look_for_paths(node["arguments"])
+        self._add("nodes", {**node, "parameters": parameters})
+
+    def process(self, words: list[str]) -> None:
+        """Another program that would start; a node, where it is plainly one."""
+        program = os.path.basename(words[0]) if words else ""
+        if words[:2] == ["ros2", "run"] and len(words) > 3:
+            package, executable, *arguments = words[2:]
+        elif program == "rviz2":
+            package, executable, arguments = program, program, words[1:]
+        else:
+            package, executable, arguments = "", "", []
+        if package:
+            self.executable(package, executable)
+            told = {"package": package, "executable": executable, "arguments": arguments}
+            told |= {"name": "", "namespace": "", "parameters": [], "remappings": []}
+            self.node({**told, "later": self.context.is_later})
+            return
+        self._look_for_paths(words)
+        self._add("processes", " ".join(words)[:1000])
+
+    def declared(self, name: str) -> None:
+        """An argument."""
+        self._add("declared", name)
+
+    def remark(self, text: str) -> None:
+        """What works, and need not."""
+        if text not in self.found["remarks"]:
+            self._add("remarks", text)
+
+    def executable(self, package: str, name: str) -> None:
+        """A program of a package is wanted."""
+        from ament_index_python.packages import PackageNotFoundError, get_package_prefix
+
+        try:
+            prefix = get_package_prefix(package)
+        except PackageNotFoundError:
+            return
+        ours = any(each.name == package for each in self._place.all)
+        if ours:
+            there = (Path(prefix) / "lib" / package / name).exists()
+        else:
+            programs = known.PROGRAMS.get(package)
+            there = programs is None or name in programs
+        if not there:
+            self._lack("executable", f"{package} {name}", "")
+
+    def path(self, wanted: str) -> str:
+        """Where a file is, or the one that was meant.
+
+        Raises:
+            NotKnown: it is of another package, of which nobody knows the files here.
+        """
+        if os.path.exists(wanted):
+            return wanted
+        if wanted.startswith(f"{self._place.stubs}/"):
+            raise NotKnown(f"it needs {self._place.told(wanted)}, a file of another package")
+        meant = self._place.meant(wanted)
+        self._lack("file", wanted, meant)
+        return meant or wanted
+
+    def include(self, path: str, arguments: dict[str, str]) -> bool:
+        """Another launch file: followed where it is the submission's own."""
+        if path.startswith(f"{self._place.stubs}/share/"):
+            package, _, file = path.removeprefix(f"{self._place.stubs}/share/").partition("/")
+            given = [f"{name}:={value}"[:1000] for name, value in arguments.items()]
+            if file not in known.FILES.get(package, (file,)):
+                self._lack("file", path, "")
+            self._add("includes", {"package": package, "file": file, "arguments": given})
+            if package == "urdf_launch":
+                self._urdf_launch(file, arguments)
+            return True
+        self._depth += 1
+        if self._depth > 20:
+            raise RecursionError("launch files that include each other")
+        self.context.launch_configurations.update(arguments)
+        self.run(path)
+        self._depth -= 1
+        return True
+
+    def command(self, words: list[str], on_stderr: str) -> str:
+        """What a `Command` prints.
+
+        Raises:
+            SubstitutionFailure: as the original does: it is not there, fails, or complains.
+        """
+        from launch.substitutions import SubstitutionFailure
+
+        if words[:2] == ["ros2", "run"] and len(words) > 3:
+            words = words[3:]
+        shown = self._place.told(" ".join(words))
+        if words and os.path.basename(words[0]) == "xacro":
+            code, out, errors = self.xacro(words[1:])
+            if code:  # the launch file has done what it should
+                self._add("refused", f"xacro: {_end(errors)}")
+                return ""
+        else:
+            code, out, errors = self._other(words)
+        if code:
+            raise SubstitutionFailure(
+                f"executed command failed. Command: {shown}. It says: {_end(errors)}"
+            )
+        if errors.strip() and on_stderr == "fail":
+            raise SubstitutionFailure(
+                f"executed command showed stderr output. Command: {shown}. It says: {_end(errors)}"
+            )
+        return out
+
+    # Files ----------------------------------------------------------------------------------------
+
+    def run(self, path: str) -> None:
+        """Evaluate a launch file."""
+        from launch._core import walk
+
+        read = self.path(path)
+        before = self.context.locals_.get("current_launch_file_path")
+        self.context.locals_["current_launch_file_path"] = path
+        if path.endswith((".yaml", ".yml")):
+            raise NotKnown("it is a launch file in YAML, which the grader does not evaluate")
+        if path.endswith(".py"):
+            walk(_python(path, read), self.context)
+        else:
+            from grader.scenes.package.examining.xml_launch import entities
+
+            walk(entities(path, read), self.context)
+        self.context.locals_["current_launch_file_path"] = before
+
+    def xacro(self, words: list[str]) -> tuple[int, str, str]:
+        """What xacro does: its exit code, and what it prints to either side."""
+        try:
+            import xacro
+        except ImportError:
+            raise NotKnown("xacro is not installed where this was graded") from None
+        words = [self._given(word) for word in words]
+        out, errors, before = io.StringIO(), io.StringIO(), sys.argv
+        sys.argv = ["xacro", *words]
+        try:
+            with redirect_stdout(out), redirect_stderr(errors):
+                xacro.main()
+            code = 0
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else 1
+        finally:
+            sys.argv = before
+        return code, out.getvalue(), errors.getvalue()
+
+    def _given(self, word: str) -> str:
+        return word if word.startswith("-") or ":=" in word else self.path(word)
+
+    def _other(self, words: list[str]) -> tuple[int, str, str]:
+        from launch.substitutions import SubstitutionFailure
+
+        if words and os.path.basename(words[0]) == "cat":
+            paths = [self.path(word) for word in words[1:]]
+            return 0, "".join(Path(path).read_text(encoding="utf-8") for path in paths), ""
+        try:
+            ended = subprocess.run(
+                words, capture_output=True, text=True, timeout=_COMMAND_S, check=False
+            )
+        except (OSError, IndexError) as error:
+            raise SubstitutionFailure(f"file not found: {error}") from error
+        except subprocess.TimeoutExpired:
+            raise SubstitutionFailure(f"{words[0]} did not come to an end") from None
+        return ended.returncode, ended.stdout, ended.stderr
+
+    def _by_argument(self, node: dict[str, Any]) -> list[dict[str, Any]]:
+        """The file that a robot_state_publisher reads where it has no parameter, with a warning."""
+        has_one = any(each["name"] == "robot_description" for each in node["parameters"])
+        files = [each for each in node["arguments"] if each.endswith((".urdf", ".xml", ".xacro"))]
+        if has_one or not files or node["executable"] != "robot_state_publisher":
+            return []
+        self.remark(
+            "robot_state_publisher gets the description as a file, which it still reads, with a "
+            "warning: give it the parameter robot_description"
+        )
+        try:
+            with open(os.path.abspath(files[0]), encoding="utf-8") as file:
+                text = file.read()
+        except OSError:
+            return []
+        return [{"name": "robot_description", "value": text, "wrapped": True}]
+
+    def _parameter(self, given: dict[str, Any]) -> dict[str, Any]:
+        value, name = given["value"], str(given["name"])[:LONG]
+        if isinstance(value, str) and (len(value) > LONG or name == "robot_description"):
+            if value not in self.texts:
+                self.texts.append(value)
+            number = self.texts.index(value)
+            return {"name": name, "value": "", "text": number, "wrapped": given["wrapped"]}
+        if isinstance(value, str):
+            self._look_for_paths([value])
+        told = value if isinstance(value, str) else json.dumps(value, default=str)
+        return {"name": name, "value": told[:1000], "text": -1, "wrapped": given["wrapped"]}
+
+    def _look_for_paths(self, words: list[str]) -> None:
+        """Files that a node is told to read have to be there."""
+        for before, word in zip(("", *words), words, strict=False):
+            path = word.removeprefix("file://")
+            if before in _FILE_OPTIONS and not path.startswith("/"):
+                path = os.path.abspath(path)  # from where the launch file is started
+            if path.startswith("/") and path.endswith(SUFFIXES) and " " not in path:
+                if path.startswith(f"{self._place.stubs}/"):
+                    continue
+                self.path(path)
+
+    def _lack(self, kind: str, name: str, source: str) -> None:
+        self._add(
+            "lacking",
+            {
+                "kind": kind,
+                "name": name[:1000],
+                "source": self._place.own(source) if source else "",
+                "by": "",
+            },
+        )
+
+    def _add(self, what: str, entry: Any) -> None:
+        if entry not in self.found[what] and len(self.found[what]) < _MOST:
+            self.found[what].append(entry)
+
+    def _urdf_launch(self, file: str, arguments: dict[str, str]) -> None:
+        """What ros/urdf_launch starts, of which description packages make use."""
+        from ament_index_python.packages import get_package_share_directory
+
+        share = get_package_share_directory(arguments.get("urdf_package", ""))
+        path = os.path.join(share, arguments.get("urdf_package_path", ""))
+        text = self.command(["xacro", path], "fail")
+        told = {"name": "", "namespace": "", "arguments": [], "remappings": [], "later": False}
+        description = {"name": "robot_description", "value": text, "wrapped": True}
+        publisher = "robot_state_publisher"
+        one = {**told, "package": publisher, "executable": publisher, "parameters": [description]}
+        self.node(one)
+        if file.endswith("display.launch.py"):
+            gui = arguments.get("jsp_gui", "true").lower() in ("true", "1")
+            source = "joint_state_publisher_gui" if gui else "joint_state_publisher"
+            self.node({**told, "package": source, "executable": source, "parameters": []})
+            config = arguments.get("rviz_config", f"{self._place.stubs}/share/urdf_launch/a.rviz")
+            rviz = {**told, "package": "rviz2", "executable": "rviz2", "parameters": []}
+            self.node({**rviz, "arguments": ["-d", config]})
+
+
+def _python(path: str, read: str) -> Any:
+    """The launch description of a launch file in Python."""
+    from launch.launch_description_sources import InvalidPythonLaunchFileError
+
+    with open(read, encoding="utf-8") as file:
+        code = compile(file.read(), read, "exec")
+    names: dict[str, Any] = {"__name__": "python_launch_file", "__file__": path}
+    exec(code, names)
+    function = names.get("generate_launch_description")
+    if function is None:
+        raise InvalidPythonLaunchFileError(
+            f"launch file at '{os.path.basename(path)}' does not contain the required function "
+            "'generate_launch_description()'"
+        )
+    made = function()
+    from launch import LaunchDescription
+
+    if not isinstance(made, LaunchDescription):
+        raise TypeError(
+            f"generate_launch_description() returned {type(made).__name__}; expected a "
+            "LaunchDescription"
+        )
+    return made
+
+
+def _end(text: str) -> str:
+    return " ".join(text.split())[-300:]
