@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import SimpleNamespace
-from typing import Final
+from typing import Any, Final
 
+from grader.scenes.channel import Channel
 from grader.scenes.message_types import types_of
 from grader.scenes.package.trace import PackageTrace, decode, encode
 from grader.scenes.scene import Message
@@ -21,13 +21,15 @@ def to_messages(trace: PackageTrace) -> list[Message]:
     return [Message(0, TOPIC, TYPE, types_of(DEFINITIONS).types[TYPE](data=text))]
 
 
-def from_messages(found: Sequence[Message]) -> PackageTrace:
-    """The trace of a bag's messages.
+def from_channels(channels: Sequence[Channel]) -> PackageTrace:
+    """The trace of a bag's channels.
 
     Raises:
-        ValueError, AttributeError: they are not from `to_messages`.
+        ValueError: they are not from `to_messages`.
+        rosbags.serde.SerdeError: the message cannot be read.
     """
-    if [(each.tick, each.topic, each.msgtype) for each in found] != [(0, TOPIC, TYPE)]:
-        raise ValueError(f"expected one message on {TOPIC}, found {len(found)} messages")
-    message: SimpleNamespace = found[0].message
+    found = [(each.topic, each.msgtype, each.ticks.tolist()) for each in channels]
+    if found != [(TOPIC, TYPE, [0])]:
+        raise ValueError(f"expected one message on {TOPIC}, found {found!r:.80}")
+    message: Any = types_of(DEFINITIONS).deserialize_cdr(next(channels[0].messages()), TYPE)
     return decode(str(message.data).encode("ascii"))

@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NoReturn
 
+import numpy as np
+
+from grader.scenes.channel import Channel
 from grader.scenes.package import messages, trace, view
 from grader.scenes.package.trace import PackageTrace
 from grader.scenes.scene import (
+    Behaviour,
     Endpoint,
     Hooks,
     Introduction,
@@ -97,15 +101,17 @@ class Package:
         """The trace as a text, in JSON."""
         return messages.to_messages(PackageTrace.of(made))
 
-    def from_messages(
-        self, found: Sequence[Message], topics: Mapping[str, str], ticks: int
-    ) -> Trace:
+    def from_channels(self, channels: Sequence[Channel], ticks: int) -> Trace:
         """The trace of the one message."""
-        return messages.from_messages(found)
+        return messages.from_channels(channels)
 
     def scenario(self, made: Trace) -> dict[str, Any]:
         """Nothing that could be replayed."""
         return {}
+
+    def behaviour(self, made: Trace) -> Behaviour:
+        """None: a package that is looked at does nothing; its files are compared."""
+        return Behaviour((), np.empty((0, 2)))
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
         """None."""
