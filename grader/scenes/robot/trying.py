@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
+from grader.scenes.by_hand import command
+
 _RUN = """\
 In one terminal `robot_state_publisher` with the robot's description, in another your node:
 
     ros2 run robot_state_publisher robot_state_publisher \
 --ros-args -p robot_description:="$(cat FILE.urdf)"
-    python3 {program}
+    {command}
 """
 _WITH_PACKAGE = """\
 The same from your package, in a workspace that has this folder in its `src`:
@@ -32,4 +34,5 @@ def how_to_try(program: str, package: str) -> str:
     """See `grader.scenes.scene.Scene`."""
     name = PurePath(program).stem
     with_package = _WITH_PACKAGE.format(package=package, name=name) if package else ""
-    return "\n".join(part for part in (_RUN.format(program=program), with_package, _SEE) if part)
+    run = _RUN.format(command=command(program, package))
+    return "\n".join(part for part in (run, with_package, _SEE) if part)

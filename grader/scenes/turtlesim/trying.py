@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
+from grader.scenes.by_hand import command
+
 _RUN = """\
 In one terminal the simulator, in another your node:
 
@@ -32,10 +34,7 @@ To see the turtle:
 
 def how_to_try(program: str, package: str) -> str:
     """See `grader.scenes.scene.Scene`."""
-    path = PurePath(program)
-    in_package = bool(package) and len(path.parts) > 1
-    module = ".".join(path.with_suffix("").parts)
-    # as it is graded: a package's own modules are found by the package's name
-    command = f"python3 -m {module}" if in_package else f"python3 {program}"
-    with_ros2 = _WITH_ROS2.format(package=package, name=path.stem) if package else ""
-    return "\n".join(part for part in (_RUN.format(command=command), with_ros2, _SEE) if part)
+    name = PurePath(program).stem
+    with_ros2 = _WITH_ROS2.format(package=package, name=name) if package else ""
+    run = _RUN.format(command=command(program, package))
+    return "\n".join(part for part in (run, with_ros2, _SEE) if part)
