@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -30,6 +30,7 @@ from grader.run.lost import SimulatorLost, judged_all_the_same
 from grader.run.plan import Plan
 from grader.run.processes import cores
 from grader.scenes import load_scene
+from grader.scenes.scene import Trace
 from grader.submission.opening import Submission, open_submission
 from grader.submission.private_copy import not_handed_in
 
@@ -183,9 +184,12 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         seed=used if starts else None,
         interfaces=scene.interfaces_for(imports.surely, imports.perhaps),
         setting=exercise.setting,
+        looks_at_package=exercise.looks_at_package and submission.package is not None,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
     missing = not_handed_in(submission.name, submission.copy, (*imports.surely, *imports.perhaps))
+    if nominal.looks_at_package:
+        submission = replace(submission, unlaunched=())  # looking tells more
     return [replace(nominal, flags=(*submission.remarks, *missing)), *varied]
 
 
@@ -243,22 +247,34 @@ def start(
         except GraderFailure:
             return run(submission, again, show)
 
-    at_once = min(len(plans), max(LEAST_AT_ONCE, math.ceil(cores.share())))
+    looks = plans[0].looks_at_package
+    at_once = min(len(plans) + looks, max(LEAST_AT_ONCE, math.ceil(cores.share())))
     pool = ThreadPoolExecutor(max_workers=at_once)
     try:
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
+        looked = pool.submit(_look_twice_at_most, submission) if looks else None
         over = ((numbers[future], future.result()) for future in as_completed(numbers))
-        yield (
-            (
-                n,
-                recording
-                if n
-                else replace(recording, packaged=submission.packaged, provenance=origin),
-            )
-            for n, recording in over
-        )
+        yield ((n, r if n else _nominal(r, origin, looked)) for n, r in over)
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _look_twice_at_most(submission: Submission) -> tuple[Trace, tuple[str, ...]]:
+    try:
+        return static.look_beside(submission)
+    except GraderFailure:
+        return static.look_beside(submission)
+
+
+def _nominal(
+    recording: Recording,
+    origin: Provenance | None,
+    looked: Future[tuple[Trace, tuple[str, ...]]] | None,
+) -> Recording:
+    """The nominal run with all that was found out beside it."""
+    package, remarks = looked.result() if looked else (None, ())
+    run = replace(recording.run, flags=(*remarks, *recording.run.flags))
+    return replace(recording, run=run, package=package, provenance=origin)
 
 
 def gather(runs: Iterable[Finished]) -> Recordings:

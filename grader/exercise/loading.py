@@ -30,7 +30,7 @@ from grader.scenes.scene import Limits, Scene, Start
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
-    *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs"),
+    *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", "looks_at_package"),
     *("points", "visible", "late", "tolerances", "starter"),
 )
 #: Where nothing is started, no time passes that could be limited.
@@ -38,6 +38,8 @@ NO_LIMITS = Limits(0.0, 0.0, 0.0)
 LIMITS = ("first_motion_s", "rest_s", "total_s")
 #: Each is a whole run of every submission.
 MOST_RUNS = 100
+#: Whether setup.py and launch files are evaluated beside the run.
+LOOKS = "looks_at_package"
 #: What of them is for people and judges nothing.
 WORDS = ("title", "task", "starter")
 SETTING = "setting"
@@ -80,6 +82,7 @@ class Exercise:
         late: what it costs to hand in late; None where nothing is said of that.
         scene: the name of what runs beside the submission.
         setting: the text of the file that it is set up with; '' for none.
+        looks_at_package: whether the package around what is started is looked at as well.
         folder: where its files are.
         starter: the folder that `grader new` copies; None where there is none.
         sha256: of all that it judges by: the values of exercise.yaml, as they are in force, the
@@ -95,6 +98,7 @@ class Exercise:
     checks: Checks
     scene: str = "turtlesim"
     setting: str = ""
+    looks_at_package: bool = False
     folder: Path = Path()
     starter: Path | None = None
     sha256: str = ""
@@ -115,7 +119,9 @@ class Exercise:
         parts = {"limits": asdict(self.limits), "varied_runs": asdict(self.varied)}
         if parts["varied_runs"].pop(PER_STUDENT):
             parts["varied_runs"][PER_STUDENT] = 1
-        return {f"{part}.{key}": v for part, values in parts.items() for key, v in values.items()}
+        looks = {LOOKS: 1.0} if self.looks_at_package else {}
+        each = {f"{part}.{key}": v for part, values in parts.items() for key, v in values.items()}
+        return {**each, **looks}
 
     @property
     def max_score(self) -> float:
@@ -314,6 +320,7 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         checks=checks,
         scene=scene,
         setting=setting,
+        looks_at_package=_looks(data.get(LOOKS, False), scene),
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, setting, place.folder),
@@ -368,6 +375,14 @@ def _setting(where: object, scene: Scene, place: Place) -> str:
     if why := scene.wrong_setting(setting):
         raise Mistake((SETTING,), why)
     return setting
+
+
+def _looks(given: object, scene: str) -> bool:
+    if not isinstance(given, bool):
+        raise Mistake((LOOKS,), f"expected true or false, found {given!r}")
+    if given and load_scene(scene).examiner:
+        raise Mistake((LOOKS,), f"the scene {scene!r} does nothing else: leave it out")
+    return given
 
 
 def _task(task: object) -> str:

@@ -35,7 +35,6 @@ from typing import TYPE_CHECKING, Any
 from grader import limited, strict_json
 from grader.errors import RecordingError
 from grader.limited import Limits
-from grader.packaged import Packaged
 from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
@@ -50,21 +49,21 @@ SCHEMA = "turtlesim-grader/recording/v2"
 NAME = "recording"
 BAG, METADATA, RUN, OUTPUT = f"{NAME}.mcap", "metadata.yaml", "run.json", "output.txt"
 CIRCUMSTANCES_FILE, SCENARIO = "circumstances.json", "scenario.json"
-CONDUCT = "conduct.json"
+CONDUCT, PACKAGE = "conduct.json", "package.json"
 PATH_PICTURE, WINDOW_PICTURE = "path.png", "window.png"
 #: The scene of a recording that names none.
 FIRST_SCENE = "turtlesim"
+#: The one whose traces tell of packages.
+PACKAGE_SCENE = "package"
 #: In the order in which they come into the folder.
 FILES = (
-    *(BAG, RUN, OUTPUT, CONDUCT, CIRCUMSTANCES_FILE, SCENARIO),
+    *(BAG, RUN, OUTPUT, CONDUCT, PACKAGE, CIRCUMSTANCES_FILE, SCENARIO),
     *(PATH_PICTURE, WINDOW_PICTURE, METADATA),
 )
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
 #: Stands beside them.
 PROVENANCE = "provenance"
-#: What of a submission's package stands in run.json.
-PACKAGED = "packaged"
 #: What is read back, and its most bytes. A minute's usual run is 0.2 MB.
 SIZES = {
     BAG: 2**28,
@@ -73,6 +72,7 @@ SIZES = {
     OUTPUT: 2**26,
     CIRCUMSTANCES_FILE: 2**20,
     CONDUCT: 2**20,
+    PACKAGE: 2**24,
 }
 #: An exercise has no more.
 MOST_VARIED_RUNS = 100
@@ -257,8 +257,6 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
         "topics": [asdict(topic) for topic in recording.topics],
         "run": run,
     }
-    if recording.packaged is not None:
-        facts[PACKAGED] = recording.packaged.to_json()
     if recording.scene != FIRST_SCENE:
         facts["scene"] = recording.scene
     _write_json(folder / RUN, facts)
@@ -267,6 +265,9 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     (folder / OUTPUT).write_bytes(recording.output.encode("utf-8", "surrogatepass"))
     if recording.conduct.is_told:
         _write_json(folder / CONDUCT, recording.conduct.to_json())
+    if recording.package is not None:
+        told = load_scene(PACKAGE_SCENE).encode(recording.package)
+        (folder / PACKAGE).write_bytes(told + b"\n")
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)
     # a scenario begins in the usual place
@@ -418,15 +419,19 @@ def _recording(told: _Told, trace: Trace) -> Recording:
         scene=told.scene.name,
         provenance=Provenance.from_json(facts[PROVENANCE]) if facts[PROVENANCE] else None,
         conduct=_conduct(told.folder / CONDUCT),
-        packaged=_packaged(told.folder, facts),
+        package=_package(told.folder / PACKAGE),
     )
 
 
-def _packaged(folder: Path, facts: dict[str, Any]) -> Packaged | None:
+def _package(path: Path) -> Trace | None:
+    if not path.exists():
+        return None
     try:
-        return Packaged.from_json(facts[PACKAGED]) if PACKAGED in facts else None
+        return load_scene(PACKAGE_SCENE).decode(path.read_bytes())
+    except OSError as error:
+        raise RecordingError(f"cannot read the recording: {error}") from None
     except ValueError as error:
-        raise RecordingError(f"{folder / RUN} is damaged: {PACKAGED}: {error}") from None
+        raise RecordingError(f"{path} is damaged: {error}") from None
 
 
 def _conduct(path: Path) -> Conduct:

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
-from grader.packaged import Packaged
 from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.scenes import load_scene
@@ -74,8 +73,8 @@ class Recording:
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
         conduct: what its process has told of itself; for words, not for points.
-        packaged: what the submission's package says of itself, in the nominal run's; None where it
-            is in none, or its recording is older than that.
+        package: what was found by looking at the submission's package, in the nominal run's: a
+            trace of the scene `package`; None where it is in none, or the exercise does not look.
         provenance: when and with what it was made; the nominal run's tells it of all.
     """
 
@@ -86,7 +85,7 @@ class Recording:
     start: Start | None = None
     scene: str = "turtlesim"
     conduct: Conduct = field(default_factory=Conduct)
-    packaged: Packaged | None = None
+    package: Trace | None = None
     provenance: Provenance | None = field(default=None, compare=False)
 
     @cached_property

@@ -22,6 +22,7 @@ class Plan:
         interfaces: those that the submission was written for, where the scene has several; '' for
             its usual ones.
         setting: what the exercise sets the scene up with; '' for nothing.
+        looks_at_package: whether the package around the submission's program is looked at as well.
     """
 
     limits: Limits
@@ -31,6 +32,7 @@ class Plan:
     flags: tuple[str, ...] = ()
     interfaces: str = ""
     setting: str = ""
+    looks_at_package: bool = False
 
     def to_json(self) -> str:
         """As an argument of the simulator's process."""

@@ -1,7 +1,9 @@
-"""A run without a clock: one process looks at a submission of which nothing is started.
+"""A run without a clock: one process looks at a submission, of which nothing is started by that.
 
-That process is the submission's, and confined like one, since looking runs a stranger's set-up and
-launch files. What it leaves is decoded by its scene as strictly as anything that a submission says.
+It is the only run where a scene has no nodes (`run`), and goes beside another one where an exercise
+has the package looked at around what is started (`look_beside`). That process is the submission's,
+and confined like one, since looking runs a stranger's set-up and launch files. What it leaves is
+decoded by its scene as strictly as anything that a submission says.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -20,11 +23,15 @@ from grader.run.finish import Ending, limits_struck, record
 from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
 from grader.scenes import load_scene
+from grader.scenes.package.launched import unlike_launched
+from grader.scenes.package.trace import PackageTrace
 from grader.scenes.scene import Scene, Trace
-from grader.submission.opening import Submission, Whole
+from grader.submission.opening import EntryPoint, Submission, Whole
 
 #: Told the simulated time [s], of which none passes here.
 Progress = Callable[[float], None]
+#: The scene of what is looked at beside a run.
+SCENE: Final = "package"
 #: So long may all of it take [s]; each step within has limits of its own.
 PATIENCE_S: Final = 300.0
 #: The process leaves no more [bytes].
@@ -41,7 +48,57 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
         GraderFailure: the process could not be started.
     """
     started = time.monotonic()
-    scene = load_scene(plan.scene)
+    looked = _look(submission, load_scene(plan.scene))
+    ending = Ending(
+        time="virtual",
+        outcome=_outcome(looked.exit_code, looked.lost),
+        exit_code=looked.exit_code,
+        wall_s=time.monotonic() - started,
+        isolation=looked.isolation,
+        output=looked.output,
+        flags=looked.flags,
+    )
+    return record(plan, looked.trace, (), ending)
+
+
+def look_beside(submission: Submission) -> tuple[Trace, tuple[str, ...]]:
+    """Look at the package in which a submission's program is, and at those beside it.
+
+    Returns:
+        What was found, and remarks for the result: what kept it from being found, and what launch
+        files would have started otherwise.
+
+    Raises:
+        GraderFailure: the process could not be started.
+    """
+    assert submission.copy is not None
+    whole = replace(submission, root=submission.copy.folder, start=Whole())
+    looked = _look(whole, load_scene(SCENE))
+    unlike: list[str] = []
+    if isinstance(submission.start, EntryPoint):
+        started = (submission.start.module, submission.start.function)
+        unlike = unlike_launched(PackageTrace.of(looked.trace), *started)
+    return looked.trace, (*looked.flags, *unlike)
+
+
+@dataclass(frozen=True)
+class _Looked:
+    """What a process that has looked leaves.
+
+    Attributes:
+        exit_code: None where it had to be stopped.
+        lost: why its trace is nothing; '' where it is something.
+    """
+
+    trace: Trace
+    exit_code: int | None
+    lost: str
+    isolation: str
+    output: str
+    flags: tuple[str, ...]
+
+
+def _look(submission: Submission, scene: Scene) -> _Looked:
     with stage.open_stage() as place:
         submission = place.own(submission)
         student = place.student(
@@ -56,23 +113,17 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
             student.end(gently=False)
         trace, lost = _fetch(place.recording, scene)
         output = submission.as_handed_in(student.output())
-        ending = Ending(
-            time="virtual",
-            outcome=_outcome(exit_code, lost),
-            exit_code=exit_code,
-            wall_s=time.monotonic() - started,
-            isolation=place.isolation,
-            output=output,
-            flags=_flags(exit_code, lost, output, student),
-        )
-    return record(plan, trace, (), ending)
+        flags = _flags(exit_code, lost, output, student)
+        return _Looked(trace, exit_code, lost, place.isolation, output, flags)
 
 
 def command(submission: Submission, scene: Scene, leaves: int) -> list[str]:
     """How the process is started; `leaves` is where it leaves what it has found."""
     package = submission.start.package if isinstance(submission.start, Whole) else ""
-    words = json.dumps({"root": str(submission.root), "package": package, "leaves": leaves})
-    return [sys.executable, str(ROOT / scene.examiner), words]
+    words = {"root": str(submission.root), "package": package, "leaves": leaves}
+    if submission.package:
+        words["folder"] = str(submission.package)
+    return [sys.executable, str(ROOT / scene.examiner), json.dumps(words)]
 
 
 def _fetch(file: int, scene: Scene) -> tuple[Trace, str]:

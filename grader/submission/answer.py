@@ -12,7 +12,6 @@ from typing import Any, Final
 
 from grader import strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
-from grader.packaged import Packaged
 from grader.submission.start import (
     EntryPoint,
     Imports,
@@ -54,7 +53,8 @@ def found(submission: Submission) -> bytes:
             "surely": _some(submission.imports.surely),
             "perhaps": _some(submission.imports.perhaps),
             "notes": [clip(note, _MAX_NOTE) for note in submission.notes[:_MAX_NOTES]],
-            "packaged": submission.packaged.to_json() if submission.packaged else None,
+            "unlaunched": [clip(note, _MAX_NOTE) for note in submission.unlaunched[:_MAX_NOTES]],
+            "in_package": str(submission.package) if submission.package else None,
         }
     )
 
@@ -133,21 +133,16 @@ def decoded(said: dict[str, Any]) -> Submission:
             "surely": dict(surely),
             "perhaps": dict(perhaps),
             "notes": list(notes),
-            "packaged": dict() | None as packaged,
-        } if all(isinstance(note, str) for note in notes):
+            "unlaunched": list(unlaunched),
+            "in_package": str() | None as package,
+        } if all(isinstance(note, str) for note in (*notes, *unlaunched)):
             imports = Imports(_texts(surely), _texts(perhaps))
             return Submission(
                 *(name, Path(root), _start(start), sentence, imports, tuple(notes)),
-                packaged=_packaged(packaged),
+                unlaunched=tuple(unlaunched),
+                package=Path(package) if package else None,
             )
     raise _nonsense()
-
-
-def _packaged(said: dict[str, Any] | None) -> Packaged | None:
-    try:
-        return None if said is None else Packaged.from_json(said)
-    except ValueError:
-        raise _nonsense() from None
 
 
 def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch | Whole:

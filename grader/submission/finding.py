@@ -52,7 +52,6 @@ from grader.submission.python_source import Source, read_source
 from grader.submission.refusals import CPP, advice, missing, no_python, unreadable
 from grader.submission.setup_files import SETUP_FILES, Package
 from grader.submission.start import EntryPoint, Script, Submission
-from grader.submission.survey import survey
 from grader.submission.unpacking import Unpacking, is_archive
 
 _UNREADABLE: Final = (
@@ -122,7 +121,7 @@ def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking
     if choice := packages.choose(executable):
         found = _from_script(handed_in, packages, choice, unpacking.scratch)
         launches = launch_files(handed_in, choice[0], files)
-        return replace(found, notes=(*found.notes, *not_run(handed_in, launches, *choice)))
+        return replace(found, unlaunched=tuple(not_run(handed_in, launches, *choice)))
     candidates = [file for file in files if _may_be_node(file)]
     if not candidates:
         raise no_python(handed_in, files)
@@ -164,11 +163,10 @@ def _from_script(
     start = EntryPoint(script.module, script.function)
     found = f"console script {shown(script.name)} in {handed_in.called(script.file)}"
     others = not_started("console script", packages.others(script))
-    short = tuple(shortcomings(handed_in, package, script))
-    packaged = survey(handed_in, package, script.name, short)
-    notes = (*short, *others)
+    notes = (*shortcomings(handed_in, package, script), *others)
+    folder = package.folder
     if not module.bare:
-        return Submission(handed_in.name, module.root, start, found, notes=notes, packaged=packaged)
+        return Submission(handed_in.name, module.root, start, found, notes=notes, package=folder)
     # without its __init__.py, Python prefers any installed package of the same name
     mended = scratch / "with_init"
     copy(module.root, mended)
@@ -176,20 +174,22 @@ def _from_script(
         (mended / folder / "__init__.py").touch()
     missing = listed(str(folder / "__init__.py") for folder in module.bare)
     found += f", with the missing {missing} added"
-    return Submission(handed_in.name, mended, start, found, notes=notes, packaged=packaged)
+    inside = folder.is_relative_to(module.root)
+    folder = mended / folder.relative_to(module.root) if inside else mended
+    return Submission(handed_in.name, mended, start, found, notes=notes, package=folder)
 
 
 def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submission:
     """Start a file of a package that names no console script, as one would that named it."""
     source = read_source(file)
     short = (*shortcomings(handed_in, package, None), _no_script(handed_in, package, [file]))
-    packaged = survey(handed_in, package, "", short)
     inside = file.relative_to(package.folder).with_suffix("").parts
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
-        return replace(_from_file(handed_in, file), notes=short, packaged=packaged)
+        return replace(_from_file(handed_in, file), notes=short, package=package.folder)
     start = EntryPoint(".".join(inside), "main")
     found = f"function main of {handed_in.called(file)}"
-    return Submission(handed_in.name, package.folder, start, found, notes=short, packaged=packaged)
+    folder = package.folder
+    return Submission(handed_in.name, folder, start, found, notes=short, package=folder)
 
 
 def _unbuilt(handed_in: HandedIn, file: Path) -> list[str]:

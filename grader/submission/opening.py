@@ -58,4 +58,5 @@ def _in_private(submission: Submission, path: Path, scratch: Path) -> Submission
     start = submission.start
     if isinstance(start, Script):
         start = replace(start, path=copy.of(start.path))
-    return replace(submission, root=copy.of(submission.root), start=start, copy=copy)
+    root, package = copy.of(submission.root), submission.package and copy.of(submission.package)
+    return replace(submission, root=root, start=start, package=package, copy=copy)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from grader.packaged import Packaged
 from grader.submission.private_copy import PrivateCopy
 
 
@@ -84,15 +83,17 @@ class Submission:
     imports: Imports = field(default_factory=Imports, compare=False)
     #: for the result: what is wrong with it that a run does not show, and what was not started
     notes: tuple[str, ...] = field(default=(), compare=False)
-    #: what its package says of itself; None where it is in none
-    packaged: Packaged | None = field(default=None, compare=False)
+    #: the same of launch files that were read, and not run
+    unlaunched: tuple[str, ...] = field(default=(), compare=False)
+    #: the folder of the package that its program is in, absolute; None where it is in none
+    package: Path | None = field(default=None, compare=False)
     #: where its runs find it; None where it lies in place
     copy: PrivateCopy | None = field(default=None, compare=False)
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """For the result: its notes, and what of it was left out."""
-        return (*self.notes, *(self.copy.remarks if self.copy else ()))
+        return (*self.notes, *self.unlaunched, *(self.copy.remarks if self.copy else ()))
 
     def again(self, place: Path) -> Submission:
         """The same for one run, which may write into it: copied below an empty folder."""
@@ -102,7 +103,8 @@ class Submission:
         if isinstance(start, Script):
             start = replace(start, path=copy.folder / start.path.relative_to(self.copy.folder))
         root = copy.folder / self.root.relative_to(self.copy.folder)
-        return replace(self, root=root, start=start, copy=copy)
+        package = self.package and copy.folder / self.package.relative_to(self.copy.folder)
+        return replace(self, root=root, start=start, package=package, copy=copy)
 
     def as_handed_in(self, text: str) -> str:
         """What a run of it has printed, with paths as if it had run where it was handed in."""

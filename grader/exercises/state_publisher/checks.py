@@ -24,8 +24,9 @@ def package(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
     A console script in setup.py starts the node, and nothing keeps `colcon build` or `ros2 run`
     from doing so. Half of the points where something does. A single file has none of them.
+    setup.py is run with a `setup()` that only takes down what it gets.
     """
-    return judge_package(recordings.nominal.packaged)
+    return judge_package(recordings.nominal)
 
 
 @checks()
@@ -34,11 +35,12 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
 
     A launch file of the package starts robot_state_publisher with the parameter robot_description
     (2/5), and the package's own node, without another source of joint states beside it (2/5);
-    setup.py installs it and the URDF files of the package, and no path in it leads to somebody's
-    home (1/5). It is read and not run: what it computes is taken to be right. Of several launch
-    files the best counts.
+    setup.py installs it and all files that it reads, and none of them is looked for in somebody's
+    home (1/5). It is evaluated with its default arguments, where the package is laid out as if
+    installed, and starts nothing. If it ends with an error: 0. Of several launch files the best
+    counts.
     """
-    return judge_launch(recordings.nominal.packaged)
+    return judge_launch(recordings.nominal)
 
 
 @checks()

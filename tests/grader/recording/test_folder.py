@@ -20,6 +20,7 @@ from grader.recording import folder as storage
 from grader.recording.conduct import Conduct, End, Place, Stop
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.package.trace import PackageTrace
 from grader.scenes.turtlesim.trace import Log
 from tests.grader.driving import Spiral, drive
 from turtlesim_py.world.events import RotateAbsolute, SetParameter, SetPen
@@ -31,11 +32,12 @@ CONDUCT = Conduct(
     ends=(End("publisher", "/pose", "turtlesim/msg/Pose", False, 3, Place("a.py", 7)),),
     stop=Stop("callback", 1.5, "Client.call", Place("a.py", 9, "on_pose", "self.pen.call(red)")),
 )
+PACKAGE = PackageTrace(others=("beside",))
 
 
 @pytest.fixture(scope="module")
 def recorded() -> Recording:
-    return replace(drive(Spiral(), ticks=600), conduct=CONDUCT)
+    return replace(drive(Spiral(), ticks=600), conduct=CONDUCT, package=PACKAGE)
 
 
 @pytest.fixture
@@ -71,7 +73,7 @@ def test_two_saves_of_a_recording_are_the_same_byte_for_byte(recorded, tmp_path)
 
 
 def test_equal_runs_make_equal_files(recorded, folder, tmp_path):
-    again = replace(drive(Spiral(), ticks=600), conduct=CONDUCT)
+    again = replace(drive(Spiral(), ticks=600), conduct=CONDUCT, package=PACKAGE)
     storage.save(again, tmp_path / "again")
     assert contents(tmp_path / "again") == contents(folder)
 
@@ -487,6 +489,15 @@ def test_a_recording_of_which_nothing_was_told_has_no_file_for_it(recorded, fold
     storage.save(replace(recorded, conduct=Conduct()), folder)
     assert not (folder / "conduct.json").exists()
     assert storage.load(folder).conduct == Conduct()
+
+
+def test_what_was_found_of_a_package_is_read_back_and_nothing_else_taken_for_it(folder):
+    assert storage.load(folder).package == PACKAGE
+    change(folder / "package.json", others=[1])
+    with pytest.raises(RecordingError, match=r"package\.json is damaged"):
+        storage.load(folder)
+    (folder / "package.json").unlink()
+    assert storage.load(folder).package is None
 
 
 def test_a_conduct_of_another_form_is_refused_by_name(folder):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import pytest
 
 from grader import grading
@@ -50,13 +52,27 @@ def test_a_recording_is_read_back_as_it_was(recorded, tmp_path):
     assert verdicts[0] == verdicts[1]
 
 
-def test_what_a_package_says_of_itself_is_read_back_too(tmp_path):
+def test_what_is_found_of_its_package_is_read_back_too(tmp_path):
     reference = read_solutions(EXERCISE)[0].path
     recorded = grading.record(reference, EXERCISE)
     grading.save_recordings(recorded, tmp_path / "recording")
     read = grading.load_recordings(tmp_path / "recording")
-    assert read.nominal.packaged == recorded.nominal.packaged
-    assert read.nominal.packaged.started == "state_publisher"
+    assert read.nominal.package == recorded.nominal.package
+    assert [each.name for each in read.nominal.package.setup.scripts] == ["state_publisher"]
+    assert recorded.nominal.run.flags == ()
+
+
+def test_what_a_launch_file_would_have_started_otherwise_is_told(tmp_path):
+    package = tmp_path / "walker"
+    shutil.copytree(read_solutions(EXERCISE)[0].path, package)
+    launch = package / "launch" / "walker.launch.py"
+    launch.write_text(launch.read_text().replace('output="screen"', 'parameters=[{"r": 1.0}]'))
+    (remark,) = grading.record(package, EXERCISE).nominal.run.flags
+    assert remark.startswith("launch/walker.launch.py was evaluated and not run: state_publisher ")
+
+
+def test_a_single_file_is_in_no_package(recorded):
+    assert recorded.nominal.package is None
 
 
 def test_two_questions_for_the_time_in_one_step_get_two_answers(tmp_path):

@@ -147,7 +147,7 @@ def test_it_settles_what_to_start_where_no_script_has_the_usual_name(tmp_path: P
 def test_who_asks_for_one_program_gets_that_alone(tmp_path: Path) -> None:
     submission = opened(lay(tmp_path, TWO | {"launch/both.launch.py": BOTH}), "pen_node")
     assert submission.start == EntryPoint("spiral.pens", "main")
-    assert submission.notes[-1] == (
+    assert submission.remarks[-1] == (
         "launch/both.launch.py was not run: judged is pen_node alone, without turtle_controller"
     )
 
@@ -187,7 +187,7 @@ def test_a_launch_file_that_is_not_run_is_told_where_it_matters(
 ) -> None:
     submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
     assert submission.start == EntryPoint("spiral.node", "main")
-    assert submission.notes[-1].startswith(note)
+    assert submission.remarks[-1].startswith(note)
 
 
 def test_two_launch_files_that_differ_settle_nothing(tmp_path: Path) -> None:

@@ -54,7 +54,7 @@ class Installed:
 def lay_out(package: Package, root: Path, prefix: Path) -> Installed:
     """Find out what a package installs, and copy that."""
     said, problem, absent, files, programs = _said(package, prefix)
-    scripts = [_script(line, package) for line in said.get("scripts", [])]
+    scripts = [_script(line, package, said.get("packages")) for line in said.get("scripts", [])]
     name = package.name or said.get("name", "") or package.folder.name
     folders: list[str] = []
     found: dict[str, str] = {}
@@ -168,7 +168,8 @@ def _left(package: Package, installed: set[str]) -> tuple[str, ...]:
     )[:200]
 
 
-def _script(line: str, package: Package) -> Script:
+def _script(line: str, package: Package, installed: list[str] | None) -> Script:
+    """A console script; `installed` are the Python packages that setup.py names, if it does."""
     found = _SCRIPT.match(line)
     if found is None:
         return Script(
@@ -179,7 +180,11 @@ def _script(line: str, package: Package) -> Script:
     for folder in ("", "src/"):
         for file in (f"{folder}{base}.py", f"{folder}{base}/__init__.py"):
             if (package.folder / file).is_file():
-                return Script(name, module, function, *_of(package.folder / file, file, function))
+                fault, source, says = _of(package.folder / file, file, function)
+                parent = module.rpartition(".")[0]
+                if not fault and parent and installed is not None and parent not in installed:
+                    fault = f"setup.py does not list the package {parent}, so nothing installs it"
+                return Script(name, module, function, fault, source, says)
     return Script(name, module, function, f"there is no module {module}", "", False)
 
 

@@ -1,6 +1,6 @@
 """The process that looks at a package: finds it, lays it out, evaluates it, leaves what it found.
 
-    python main.py {"root": ..., "package": ..., "leaves": ...}
+    python main.py {"root": ..., "package": ..., "folder": ..., "leaves": ...}
 
 It is a submission's process, confined as such: what is in it may be anything. It leaves a trace as
 JSON in the open file `leaves`. Each step that runs a stranger's code is a copy of it, and cannot
@@ -45,15 +45,22 @@ def main() -> None:
     order = json.loads(sys.argv[1])
     CDLL(None).prctl(4, 0)  # PR_SET_DUMPABLE: no copy opens our descriptors by /proc
     with tempfile.TemporaryDirectory(prefix="package-") as scratch:
-        data = trace.encode(look(Path(order["root"]), order["package"], Path(scratch).resolve()))
+        folder = Path(order["folder"]) if "folder" in order else None
+        found = look(Path(order["root"]), order["package"], Path(scratch).resolve(), folder)
+        data = trace.encode(found)
     with open(order["leaves"], "wb") as left:
         left.write(data)
 
 
-def look(root: Path, asked: str, scratch: Path) -> PackageTrace:
-    """What there is to be found in a folder with packages."""
+def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> PackageTrace:
+    """What there is to be found in a folder with packages.
+
+    Args:
+        asked, folder: which of them counts, by its name or by where it lies; '' and None for the
+            one that describes a robot.
+    """
     found = packages.find(root.resolve())
-    one = packages.judged(found, asked)
+    one = packages.judged(found, asked, folder and folder.resolve())
     if one is None:
         return PackageTrace()
     prefix = scratch / "prefix"

@@ -113,8 +113,10 @@ def read(folder: Path) -> Package:
     )
 
 
-def judged(found: list[Package], asked: str) -> Package | None:
-    """The package that describes a robot; the one that is asked for."""
+def judged(found: list[Package], asked: str, folder: Path | None = None) -> Package | None:
+    """The package that describes a robot; the one that is asked for, by its name or its folder."""
+    if folder is not None:
+        return next((each for each in found if each.folder == folder), None)
     if asked:
         return next((each for each in found if each.name == asked), None)
 

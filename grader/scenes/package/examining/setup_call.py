@@ -66,9 +66,16 @@ def told(arguments: dict[str, Any], folder: Path) -> dict[str, Any]:
         "data_files": files,
         "scripts": _scripts(arguments.get("entry_points"), folder),
         "plain_scripts": [os.fspath(each) for each in arguments.get("scripts") or []],
-        "packages": [str(each) for each in arguments.get("packages") or []],
+        "packages": _packages(arguments.get("packages")),
         "scripts_folder": _scripts_folder(folder),
     }
+
+
+def _packages(given: Any) -> list[str] | None:
+    """The names of those that are listed; None where others may say them (setup.cfg)."""
+    if not isinstance(given, list | tuple):
+        return None
+    return [str(each) for each in given]
 
 
 def _scripts(given: Any, folder: Path) -> list[str]:

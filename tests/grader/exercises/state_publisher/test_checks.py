@@ -9,16 +9,42 @@ import pytest
 
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
-from grader.packaged import LaunchDescription, LaunchedNode, Packaged
 from grader.recording.recording import Recording, Recordings
+from grader.scenes.package.trace import (
+    Include,
+    Lacking,
+    Launch,
+    Node,
+    PackageTrace,
+    Parameter,
+    Problem,
+    Script,
+    Setup,
+)
 from grader.scenes.robot.driving import drive, joint_state, tf
 from robot_py.robot_state import Placed
 
 EXERCISE = load_exercise("state_publisher")
-ROBOT = LaunchedNode("robot_state_publisher", "robot_state_publisher", ("robot_description",))
-OWN = LaunchedNode("walker", "state_publisher", ())
-LAUNCH = LaunchDescription("walker.launch.py", nodes=(ROBOT, OWN))
-PACKAGED = Packaged("walker", ("state_publisher",), "state_publisher", launches=(LAUNCH,))
+URDF = EXERCISE.setting
+
+
+def described(text):
+    return Parameter("robot_description", "", text, True)
+
+
+def node(package, executable, *parameters):
+    return Node(package, executable, "", "", (), parameters, (), False)
+
+
+ROBOT = node("robot_state_publisher", "robot_state_publisher", described(0))
+OWN = node("walker", "state_publisher")
+LAUNCH = Launch("a.launch.py", None, (ROBOT, OWN), (), (), (), (), (), (), "")
+SCRIPT = Script("state_publisher", "walker.state_publisher", "main", "", "walker/a.py", True)
+SETUP = Setup(
+    *("walker", "walker", "", "ament_python", "", (), None, (), (), (SCRIPT,)),
+    *("lib/walker", (), (), ()),
+)
+PACKAGE = PackageTrace(SETUP, launches=(LAUNCH,), texts=(URDF,))
 
 
 def walker(every=2, radius=2.0, speed=0.5, height=0.7, look=math.pi / 2, joints=lambda t: {}):
@@ -46,10 +72,10 @@ def walker(every=2, radius=2.0, speed=0.5, height=0.7, look=math.pi / 2, joints=
     return controller
 
 
-def lost(controller, packaged=PACKAGED, ticks=1000):
+def lost(controller, package=PACKAGE, ticks=1000):
     """The checks that lose points, with the share that is left."""
     trace = drive(controller, ticks, EXERCISE.setting)
-    recording = Recording(trace, scene="robot", packaged=packaged)
+    recording = Recording(trace, scene="robot", package=package)
     found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
     return {v.check: round(v.share, 2) for v in found if not v.passed}
 
@@ -88,41 +114,60 @@ def test_each_mistake_loses_what_it_should(controller, losses):
 
 
 @pytest.mark.parametrize(
-    ("packaged", "losses"),
+    ("setup", "losses"),
     [
         (None, {"package": 0, "launch": 0}),
-        (replace(PACKAGED, launches=()), {"launch": 0}),
-        (replace(PACKAGED, shortcomings=("no setup.cfg",)), {"package": 0.5}),
-        (replace(PACKAGED, started="", shortcomings=("no console script",)), {"package": 0}),
-        (replace(PACKAGED, not_installed=("urdf/a.urdf",)), {"launch": 0.8}),
+        (replace(SETUP, manifest="there is none"), {"package": 0.5}),
+        (replace(SETUP, absent=("urdf/a.urdf",)), {"package": 0.5}),
+        (replace(SETUP, folders=("meshes/a",)), {"package": 0.5}),
+        (replace(SETUP, scripts_folder=""), {"package": 0.5}),
+        (
+            replace(SETUP, scripts=(replace(SCRIPT, fault="there is no module walker.x"),)),
+            {"package": 0},
+        ),
+        (replace(SETUP, scripts=(SCRIPT, replace(SCRIPT, name="b", fault="no"))), {"package": 0.5}),
+        (replace(SETUP, scripts=()), {"package": 0, "launch": 0.6}),
+        (replace(SETUP, problem=Problem("error", "NameError: x")), {"package": 0.5}),
     ],
 )
-def test_a_package_is_judged_by_what_it_says_of_itself(packaged, losses):
-    assert lost(walker(), packaged) == losses
+def test_a_package_is_judged_by_what_it_installs(setup, losses):
+    assert lost(walker(), PackageTrace(setup, launches=(LAUNCH,), texts=(URDF,))) == losses
 
 
 @pytest.mark.parametrize(
     ("launch", "losses"),
     [
-        (LaunchDescription("a.launch.py", fault="it does not parse"), {"launch": 0}),
+        (replace(LAUNCH, problem=Problem("error", "it does not parse")), {"launch": 0}),
+        (replace(LAUNCH, problem=Problem("argument", "it needs an argument")), {"launch": 0}),
         (replace(LAUNCH, nodes=(OWN,)), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(OWN,), includes=True), {}),
+        (replace(LAUNCH, nodes=(OWN,), includes=(Include("a", "b.launch.py", ()),)), {}),
         (replace(LAUNCH, nodes=(ROBOT,)), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(replace(ROBOT, parameters=None), OWN)), {}),
         (replace(LAUNCH, nodes=(replace(ROBOT, parameters=()), OWN)), {"launch": 0.6}),
-        (replace(LAUNCH, nodes=(ROBOT, replace(OWN, package=None))), {}),
+        (replace(LAUNCH, nodes=(replace(ROBOT, parameters=(described(1),)), OWN)), {"launch": 0.6}),
         (replace(LAUNCH, nodes=(ROBOT, replace(OWN, package="other"))), {"launch": 0.6}),
+        (replace(LAUNCH, nodes=(ROBOT, replace(OWN, executable="x"))), {"launch": 0.6}),
         (
-            replace(LAUNCH, nodes=(ROBOT, OWN, LaunchedNode("j", "joint_state_publisher_gui"))),
+            replace(LAUNCH, nodes=(ROBOT, OWN, node("j", "joint_state_publisher_gui"))),
             {"launch": 0.6},
         ),
-        (replace(LAUNCH, absolute=("/home/me/a.urdf",)), {"launch": 0.8}),
+        (replace(LAUNCH, lacking=(Lacking("file", "/home/me/a.urdf", "", ""),)), {"launch": 0.8}),
+        (replace(LAUNCH, moved="/prefix/share/walker/a.urdf"), {"launch": 0.8}),
+        (replace(LAUNCH, lacking=(Lacking("package", "rviz2", "", ""),)), {}),
     ],
 )
-def test_a_launch_file_starts_robot_and_node_and_what_is_computed_is_right(launch, losses):
-    assert lost(walker(), replace(PACKAGED, launches=(launch,))) == losses
+def test_a_launch_file_starts_robot_and_node_and_finds_what_it_reads(launch, losses):
+    trace = PackageTrace(SETUP, launches=(launch,), texts=(URDF, "urdf/walker.urdf"))
+    assert lost(walker(), trace) == losses
 
 
 def test_of_several_launch_files_the_best_counts():
-    bad = LaunchDescription("a.launch.py", fault="it does not parse")
-    assert lost(walker(), replace(PACKAGED, launches=(bad, LAUNCH))) == {}
+    bad = replace(LAUNCH, problem=Problem("error", "it does not parse"))
+    assert lost(walker(), PackageTrace(SETUP, launches=(bad, LAUNCH), texts=(URDF,))) == {}
+
+
+def test_what_the_grader_does_not_know_is_not_judged():
+    unknown = replace(LAUNCH, problem=Problem("unknown", "it imports launch_x"))
+    trace = PackageTrace(SETUP, launches=(unknown,), texts=(URDF,))
+    recording = Recording(drive(walker(), 1000, EXERCISE.setting), scene="robot", package=trace)
+    found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
+    assert [verdict.check for verdict in found if verdict.status == "not_judged"] == ["launch"]
