@@ -98,6 +98,10 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
             f"{wrong}Give it one from {low} to {high}: min() and max() keep what is calculated "
             "within.",
         )
+    if "sequence" in what and "'float'" in what:
+        return "a list of floats", "Give it numbers in brackets, as [0.0, 1.5]."
+    if "sequence" in what and "'str'" in what:
+        return "a list of texts", "Give it texts in brackets, as ['one', 'two']."
     if "'float'" in what:
         instead = f"Write {number}.0 instead of {number}" if number else "Write 2.0 instead of 2"
         return "a float", f"{instead}, and float(...) around what may be an int."
@@ -108,6 +112,8 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
     if "sub message" in what:
         kind = re.search(r"'(\w+)'", what)
         name = kind[1] if kind else "message"
+        if name in ("Time", "Duration"):
+            return f"a {name} message", "Write .to_msg() behind it: a clock's now().to_msg()."
         return f"a {name}", f"Set the parts of {field} one by one, as in msg.{field}.x = 2.0."
     return what.rstrip("."), "`ros2 interface show TYPE` lists the fields of a message."
 

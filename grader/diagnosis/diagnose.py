@@ -8,6 +8,7 @@ whether any could come. A rule is silent when it is not sure.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
@@ -134,9 +135,11 @@ def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
     first, place = len(text), found.place
     for end in case.conduct.ends:
         words = [end.name.rpartition("/")[2], end.type.rpartition("/")[2]]
+        patterns = [rf"\b{re.escape(word)}\b" for word in words if word]
         if end.kind == "publisher" and (end.name, end.type) in driven_by:
-            words += ["command"]
-        at = min((text.find(word) for word in words if word in text), default=len(text))
+            patterns += ["command"]
+        spoken = (re.search(pattern, text) for pattern in patterns)
+        at = min((found.start() for found in spoken if found), default=len(text))
         if at < first and end.used_at is not None:
             first, place = at, end.used_at
     return replace(found, place=place)

@@ -109,6 +109,11 @@ def stays_in_init(case: Case) -> Diagnosis | None:
         "Let __init__ only make the publisher, the subscription and a timer, and return; main() "
         "then calls rclpy.spin(node), and create_timer() lets you act again and again."
     )
+    if "spin(" in stop.place.text:
+        help_ = (
+            "spin() comes back only when the program ends. A loop of your own calls "
+            f"rclpy.spin_once(self, timeout_sec=0.01) each time instead. Or: {help_}"
+        )
     return Diagnosis("stays_in_init", cause, help_, place=stop.place)
 
 

@@ -262,5 +262,5 @@ def _no_script(handed_in: HandedIn, package: Package, starting: list[Path]) -> s
     called = handed_in.called(package.folder / "setup.py")
     return (
         f"{called} names no console script, so that `ros2 run` finds nothing to start. "
-        f"Expected in its entry_points: {example(module)}"
+        f"Expected in its entry_points: {example(module, module.rpartition('.')[2])}"
     )

@@ -43,7 +43,10 @@ def judge_odometry(seen: Seen, tolerances: Tolerances) -> Finding:
         where: tuple[Evidence, ...] = (seen.moment(int(way.ticks[-1]), faults[0].text),)
         share = 1 - sum(fault.costs for fault in faults)
         return Finding(
-            max(share, 0.0), sentence([fault.text for fault in faults]), faults[0].help, where
+            max(share, 0.0),
+            sentence([fault.text for fault in faults]),
+            f"{faults[0].help} Look at the transform that you send on /tf.",
+            where,
         )
     _, _, radius, _ = fitted(way.places[:, :2])
     height = float(np.median(way.places[:, 2]))
@@ -58,7 +61,7 @@ def _absent(seen: Seen) -> Finding:
     wanted = f"from {ODOM!r} to {seen.root!r}"
     others = list(dict.fromkeys((t.topic, bare(t.parent), bare(t.child)) for t in seen.sent))
     if (swapped := ("/tf", seen.root, ODOM)) in others:
-        told = f"Your transform goes from {swapped[1]!r} to {ODOM!r}: the frames are swapped"
+        told = f"Your transform on /tf goes from {swapped[1]!r} to {ODOM!r}: the frames are swapped"
         help = f"The parent, {ODOM!r}, stands in header.frame_id; the child in child_frame_id."
     elif any(each == ("/tf_static", ODOM, seen.root) for each in others):
         told = f"The transform {wanted} came on /tf_static, and what is static never moves"
@@ -133,7 +136,7 @@ def _turned(way: Way, tolerances: Tolerances) -> list[Fault]:
         upright = np.degrees(np.arccos(np.clip((w * w - x * x - y * y + z * z) / squares, -1, 1)))
     if not float(np.quantile(upright, 0.95)) <= tolerances["upright_deg"]:
         text = f"it does not stand upright, but leans by {np.median(upright):.0f} degrees"
-        order = "A Quaternion has the order x, y, z, w; is yours w first?"
+        order = "A Quaternion has the order x, y, z, w: is yours w first, or turned about x or y?"
         cost = 0.0 if faults else QUATERNION
         return [*faults, Fault(text, cost + HEADING, order)]
     off = heading_error(way)
@@ -142,23 +145,48 @@ def _turned(way: Way, tolerances: Tolerances) -> list[Fault]:
             Fault(
                 f"it looks {abs(off):.0f} degrees beside the direction in which it goes",
                 HEADING,
-                "On a circle one goes at a right angle to the radius. Half an angle stands in a "
-                "quaternion.",
+                _why_beside(off, is_steady=_is_steady(heading_errors(way))),
             )
         )
     return faults
 
 
+def _is_steady(off: Floats) -> bool:
+    """Whether angles are nearly the same [rad]."""
+    return bool(abs(np.exp(1j * off).mean()) > 0.9)
+
+
+def _why_beside(off: float, *, is_steady: bool) -> str:
+    """What it may be that one looks so many degrees beside one's direction, all the way or not."""
+    if is_steady and abs(abs(off) - 180) < 20:
+        return "It goes backwards: turn its heading by pi, or go round the other way."
+    if is_steady and abs(abs(off) - 90) < 20:
+        return (
+            "It looks along the radius, and on a circle one goes at a right angle to that: the "
+            "heading is the angle on the circle plus pi / 2, or minus where one goes clockwise."
+        )
+    return (
+        "Its heading has to grow as the angle on the circle does, in radians, a quarter turn ahead "
+        "of that; half of it stands in a quaternion: z = sin(heading / 2), w = cos(heading / 2)."
+    )
+
+
 def heading_error(way: Way) -> float | None:
     """By how much it usually looks beside its direction [degrees]; None where it does not move."""
+    off = heading_errors(way)
+    if not len(off):
+        return None
+    return math.degrees(float(off[int(np.argsort(np.abs(off))[int(0.9 * (len(off) - 1))])]))
+
+
+def heading_errors(way: Way) -> Floats:
+    """By how much it looks beside its direction, wherever it moves [rad], -pi to pi."""
     points, yaw = way.places[:, :2], way.yaw
     steps = points[2:] - points[:-2]  # about the point between
     moves = np.linalg.norm(steps, axis=1) > 1e-6
-    if not moves.any():
-        return None
     goes = np.arctan2(steps[moves, 1], steps[moves, 0])
-    off = (yaw[1:-1][moves] - goes + math.pi) % (2 * math.pi) - math.pi
-    return math.degrees(float(off[int(np.argsort(np.abs(off))[int(0.9 * (len(off) - 1))])]))
+    off: Floats = (yaw[1:-1][moves] - goes + math.pi) % (2 * math.pi) - math.pi
+    return off
 
 
 def fitted(points: Floats) -> tuple[float, float, float, float]:

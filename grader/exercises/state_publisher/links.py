@@ -29,10 +29,11 @@ def judge_links(seen: Seen) -> Finding:
         if len(several) > 1 or len(senders.get(child, ())) > 1:
             first = next(t for t in kept if bare(t.child) == child and t.publisher != "scene")
             told = (
-                f"has two parents, {listed(sorted(several))}"
+                f"has two parents on /tf, {listed(sorted(several))}"
                 if len(several) > 1
                 else (
-                    "is sent by your node and by robot_state_publisher, and jumps between the two"
+                    "is sent on /tf by your node and by robot_state_publisher, and jumps between "
+                    "the two"
                 )
             )
             where = (seen.moment(first.tick, f"{child} has two places"),)

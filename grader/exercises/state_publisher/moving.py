@@ -14,8 +14,9 @@ from grader.scenes.robot.motion import Floats, Joint
 from robot_py.model import JointType
 
 HELP = (
-    "Angles are in radians and lengths in metres. A joint that turns on has a position that grows "
-    "each time; one that goes to and fro changes its direction where it has gone far enough."
+    "Angles in a JointState are in radians, lengths in metres. A joint that turns on has a "
+    "position that grows each time; one that goes to and fro changes its direction where it has "
+    "gone far enough."
 )
 
 
@@ -69,7 +70,7 @@ def _turns(positions: Floats, duration_s: float, tolerances: Tolerances) -> tupl
     speed = float(np.abs(steps[~jumps]).sum() / duration_s) if (~jumps).any() else math.inf
     if jumps.mean() > 0.2 or speed > tolerances["turn_most"]:
         spin = float(np.median(np.abs(raw)) * len(raw) / duration_s)
-        return f"turns by {spin:.0f} rad/s: are these degrees?", ""
+        return f"turns by {spin:.0f} rad/s, as if in degrees", ""
     moved = steps[np.abs(steps) > 1e-9]
     one_way = max((moved > 0).mean(), (moved < 0).mean()) if len(moved) else 0.0
     total = abs(float(steps.sum()))
@@ -89,7 +90,7 @@ def _swings(
     seen = f"goes from {number(low)} to {number(high)} {unit}"
     if wide > span[1]:
         what = "degrees" if unit == "rad" else "centimetres"
-        return f"{seen}, {wide:.3g} {unit} wide: are these {what}?", ""
+        return f"{seen}, {wide:.3g} {unit} wide, as if in {what}", ""
     if wide < span[0]:
         return f"{seen}: that is hardly seen", ""
     returns = turning_points(positions, wide / 4)

@@ -18,7 +18,7 @@ def judge_names(seen: Seen) -> Finding:
         bad = next(state for state in states if not state.is_taken)
         return Finding(
             0.5 * len(taken) / len(states),
-            f"A joint state has {len(bad.names)} names and {len(bad.positions)} positions: "
+            f"A JointState has {len(bad.names)} names and {len(bad.positions)} positions: "
             "robot_state_publisher ignores it as invalid.",
             "`name` and `position` belong together, one number for each name, in the same order.",
             (seen.moment(bad.tick, "names and positions are not as many"),),
@@ -29,12 +29,13 @@ def judge_names(seen: Seen) -> Finding:
     missing, foreign = sorted(wanted - found), sorted(found - wanted)
     parts = []
     if foreign:
-        parts.append(f"name {listed(foreign)}, which the robot's description does not have to move")
+        are = "is" if len(foreign) == 1 else "are"
+        parts.append(f"{listed(foreign)}, which {are} none of the robot's moving joints")
     if missing:
-        parts.append(f"never name {listed(missing)}")
+        parts.append(f"never {listed(missing)}")
     return Finding(
         len(wanted & found) / len(wanted | found),
-        f"The joint states {' and '.join(parts)}.",
+        f"The messages on /joint_states name {', and '.join(parts)}.",
         "Compare your names letter by letter with the <joint name=...> of the URDF: those of "
         "joints, not of links, and none of a fixed joint. robot_state_publisher skips what it "
         "does not know without a word, and the links behind it have no place.",

@@ -7,7 +7,15 @@ from collections.abc import Iterator
 from grader.exercise.verdict import Finding
 from grader.exercises.state_publisher.seen import sentence
 from grader.recording.recording import Recording
-from grader.scenes.package.trace import PREFIX, Launch, Node, PackageTrace, Problem, Setup
+from grader.scenes.package.trace import (
+    PREFIX,
+    Lacking,
+    Launch,
+    Node,
+    PackageTrace,
+    Problem,
+    Setup,
+)
 from grader.text import clip_inside, without_controls
 
 STATE_PUBLISHER = "robot_state_publisher"
@@ -58,7 +66,12 @@ def _wrong(setup: Setup) -> Iterator[str]:
         if script.fault:
             yield f"`ros2 run` cannot start {_shown(script.name)}: {script.fault}"
     folder, expected = setup.scripts_folder, f"lib/{setup.name}"
-    if setup.scripts and folder.rstrip("/") != expected:
+    if setup.told and setup.told != setup.name:
+        yield (
+            f"package.xml calls the package {_shown(setup.name)!r}, and setup.py calls it "
+            f"{_shown(setup.told)!r}"
+        )
+    elif setup.scripts and folder.rstrip("/") != expected:
         yield (
             f"programs are installed in {_shown(folder) or 'bin'}, and `ros2 run` looks in "
             f"{expected}: setup.cfg needs install_scripts=$base/{expected}"
@@ -97,24 +110,36 @@ def _judge(launch: Launch, setup: Setup, trace: PackageTrace) -> Finding:
             0,
             f"`ros2 launch` starts nothing of {launch.file}: "
             f"{_shown(launch.problem.text)}{_placed(launch.problem)}.",
-            "`ros2 launch` says the same, with all lines of the traceback.",
+            _advice(launch.problem.text),
         )
-    faults: list[tuple[float, str]] = []
-    if why := _robot(launch, trace):
-        faults.append((ROBOT, why))
-    if why := _own(launch, setup):
-        faults.append((OWN, why))
-    if why := _places(launch):
-        faults.append((PLACES, why))
-    if not faults:
+    asked = ((ROBOT, _robot(launch, trace)), (OWN, _own(launch, setup)))
+    faults = [*asked, (PLACES, _places(launch, setup))]
+    told = [why for _, why in faults if why]
+    if not told:
         return Finding(1, f"{launch.file} starts {STATE_PUBLISHER} and your node.")
-    return Finding(
-        1 - sum(cost for cost, _ in faults),
-        f"{launch.file}: {'; '.join(why for _, why in faults)}.",
+    nodes = (
         f"It takes two nodes: {STATE_PUBLISHER} with the parameter {DESCRIPTION}, and yours, "
-        "by the names of your package and of its console script. What they need is installed by "
-        "data_files in setup.py.",
+        "by the names of your package and of its console script."
     )
+    places = (
+        "What a launch file reads is found below get_package_share_directory(your package), "
+        "where data_files in setup.py puts it."
+    )
+    return Finding(
+        1 - sum(cost for cost, why in faults if why),
+        f"{launch.file}: {'; '.join(told)}.",
+        nodes if any(why for _, why in asked) else places,
+    )
+
+
+def _advice(problem: str) -> str:
+    """What to do about an error that a launch file ends with."""
+    if "argument" in problem and ("unexpected" in problem or "'executable'" in problem):
+        return (
+            "Compare the names of the arguments with those of your ROS release: node_executable "
+            "and node_name are called executable and name since Foxy."
+        )
+    return "`ros2 launch` says the same, with all lines of the traceback."
 
 
 def _robot(launch: Launch, trace: PackageTrace) -> str:
@@ -130,9 +155,9 @@ def _robot(launch: Launch, trace: PackageTrace) -> str:
     if why := next((each for each in refused if each is not None), None):
         return f"{STATE_PUBLISHER} gets no description: {_shown(why.text)}"
     if given:
-        found = next((text for text in texts if text.strip()), "")
-        told = repr(_shown(found)[:60]) if found else "nothing"
-        return f"{DESCRIPTION} is to be the text of the URDF, and is {told}"
+        found = next((text.strip() for text in texts if text.strip()), "")
+        told = repr(_shown(found.removeprefix(f"{PREFIX}/"))[:60]) if found else "empty"
+        return f"{DESCRIPTION} has to be the text of the URDF, and is {told}"
     return f"{STATE_PUBLISHER} gets no parameter {DESCRIPTION}, and ends at once"
 
 
@@ -160,20 +185,29 @@ def _meant(node: Node, setup: Setup, scripts: set[str]) -> str:
     return ""
 
 
-def _places(launch: Launch) -> str:
+def _places(launch: Launch, setup: Setup) -> str:
     """What it asks for, and does not find where the package is installed."""
+    started = {node.package for node in launch.nodes}
     for each in launch.lacking:
-        if each.kind != "file":
-            continue
-        name = each.name.removeprefix(f"{PREFIX}/")
-        if name == each.name:
-            return f"the path {_shown(name)!r} is there on one computer only"
-        if each.source:
-            return f"setup.py does not install {each.source} as {_shown(name)}"
-        return f"there is no {_shown(name)}"
+        if each.kind == "package" and each.name not in started:
+            return f"there is no package {_shown(each.name)!r}; yours is called {setup.name!r}"
+        if each.kind == "file":
+            return _absent(each, setup)
     if launch.moved:
         return f"the path {_shown(launch.moved)!r} is there on one computer only"
     return ""
+
+
+def _absent(file: Lacking, setup: Setup) -> str:
+    name = file.name.removeprefix(f"{PREFIX}/")
+    if name == file.name:
+        return f"the path {_shown(name)!r} is there on one computer only"
+    if not file.source:
+        return f"there is no {_shown(name)}"
+    pairs = zip(setup.installed, setup.sources, strict=True)
+    if elsewhere := next((path for path, source in pairs if source == file.source), ""):
+        return f"it reads {_shown(name)}, and setup.py installs that file as {_shown(elsewhere)}"
+    return f"setup.py does not install {_shown(file.source)}"
 
 
 def _not_looked_at() -> Finding:

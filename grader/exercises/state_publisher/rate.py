@@ -106,5 +106,5 @@ def _flood(seen: Seen, tolerances: Tolerances) -> str:
     repeated = [key for key, number in per_message.items() if number > 1]
     if repeated:
         most = max(per_message.values())
-        return f"a message on tf holds the transform of {repeated[0][1]!r:.60} {most} times"
+        return f"a message on /tf holds the transform of {repeated[0][1]!r:.60} {most} times"
     return ""

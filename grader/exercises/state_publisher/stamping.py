@@ -18,8 +18,8 @@ def judge_stamps(seen: Seen, tolerances: Tolerances) -> Finding:
     states, way = seen.trace.joint_states, seen.way
     if not states:
         return seen.no_joint_states()
-    unset = [(s.tick, "a joint state") for s in states if s.stamp_ns == 0]
-    unset += [(t.tick, "a transform") for t in seen.sent if t.stamp_ns == 0]
+    unset = [(s.tick, "a JointState") for s in states if s.stamp_ns == 0]
+    unset += [(t.tick, f"a transform on {t.topic}") for t in seen.sent if t.stamp_ns == 0]
     if unset:
         tick, what = unset[0]
         return Finding(
@@ -41,7 +41,7 @@ def judge_stamps(seen: Seen, tolerances: Tolerances) -> Finding:
     if len(way) and len(alone) > (1 - tolerances["same_share"]) * len(way):
         share -= SAME
         wrong.append(
-            f"{len(alone)} of {len(way)} transforms have a stamp that no joint state has: "
+            f"{len(alone)} of {len(way)} transforms on /tf have a stamp that no joint state has: "
             "what belongs to one moment should say so"
         )
         where.append(seen.moment(alone[0].tick, "a stamp of its own"))

@@ -7,6 +7,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
+from grader.run.student import lists
 from grader.run.student.witness import End, Witness, quietly
 
 
@@ -40,6 +41,7 @@ def _install(witness: Witness) -> None:
     publisher, client = rclpy.publisher.Publisher, rclpy.client.Client
     subscription, executor = rclpy.subscription.Subscription, rclpy.executors.Executor
 
+    _after(publisher, "__init__", lambda self, _: lists.accept_numbers(self.msg_type))
     _after(publisher, "__init__", lambda self, _: witness.made(
         "publisher", self, self.topic_name, self.msg_type))  # fmt: skip
     _after(subscription, "__init__", lambda self, _: witness.made(

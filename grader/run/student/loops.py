@@ -57,6 +57,8 @@ def standing(frames: Sequence[Seen]) -> Standing | None:
     inits = (at for at, frame in enumerate(frames) if frame.source is not None)
     init = max((at for at in inits if frames[at].function == "__init__"), default=-1)
     if init >= 0 and not in_callback:
+        if any(frame.function == "spin" and frame.file.endswith(SPINS) for frame in frames[:own]):
+            return Standing("init", own, frames[own].line)  # no chance: there it stays
         found = head(frames[own : init + 1])
         at, line = (own + found[0], found[1]) if found else (init, frames[init].line)
         return Standing("init", at, line)

@@ -15,9 +15,10 @@ def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[str
     if setup is None:
         return []
     started = [s.name for s in setup.scripts if (s.module, s.function) == (module, function)]
+    scripts = {script.name for script in setup.scripts}
     found = []
     for launch in trace.launches:
-        own = [node for node in launch.nodes if node.package == setup.name]
+        own = [n for n in launch.nodes if n.package == setup.name and n.executable in scripts]
         if started and launch.problem is None and (why := _why(own, started[0])):
             found.append(_sentence(launch, started[0], why))
     return found
@@ -32,10 +33,16 @@ def _why(own: list[Node], started: str) -> str:
     others = sorted({node.executable for node in own} - {started})
     if others:
         return ", ".join(others)
-    given = next((node for node in own if _is_changed(node)), None)
-    return "its namespace, remappings, arguments or parameters" if given else ""
+    return next(filter(None, map(_given, own)), "")
 
 
-def _is_changed(node: Node) -> bool:
-    parameters = [each for each in node.parameters if each.name != "use_sim_time"]
-    return bool(parameters or node.remappings or node.arguments or node.namespace.strip("/"))
+def _given(node: Node) -> str:
+    """What a launch file gives a program that makes a difference; '' for nothing."""
+    parameters = [each.name for each in node.parameters if each.name != "use_sim_time"]
+    parts = {
+        "its namespace": bool(node.namespace.strip("/")),
+        "its remappings": bool(node.remappings),
+        "its arguments": bool(node.arguments),
+        f"its parameters ({', '.join(parameters)[:200]})": bool(parameters),
+    }
+    return " and ".join(part for part, is_given in parts.items() if is_given)

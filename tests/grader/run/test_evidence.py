@@ -179,6 +179,7 @@ def test_the_loops_round_a_line_are_found_by_indentation(line: int, found: list[
 
 
 SPIN = loops.Seen("/x/rclpy/executors.py", "spin_once", 9, None)
+FOR_EVER = loops.Seen("/x/rclpy/__init__.py", "spin", 9, None)
 CALLBACK = loops.Seen("/x/rclpy/task.py", "__call__", 9, None)
 SLEEP = loops.Seen("/x/time.py", "sleep", 9, None)
 
@@ -197,6 +198,7 @@ def at(line: int, function: str = "drive") -> loops.Seen:
         ([SLEEP, at(8)], None),
         ([SPIN, at(8, "__init__"), at(10, "<module>")], loops.Standing("init", 1, 8)),
         ([SLEEP, at(8), at(7, "__init__")], loops.Standing("init", 2, 3)),
+        ([FOR_EVER, at(7, "__init__")], loops.Standing("init", 1, 7)),
         ([SLEEP], None),
     ],
 )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 
 import pytest
 
 from grader import grading
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
+from grader.scenes.robot import motion
 from grader.scenes.robot.trace import RobotTrace
 from grader.testing.solutions import read_solutions
 
@@ -68,7 +70,21 @@ def test_what_a_launch_file_would_have_started_otherwise_is_told(tmp_path):
     launch = package / "launch" / "walker.launch.py"
     launch.write_text(launch.read_text().replace('output="screen"', 'parameters=[{"r": 1.0}]'))
     (remark,) = grading.record(package, EXERCISE).nominal.run.flags
-    assert remark.startswith("launch/walker.launch.py was evaluated and not run: state_publisher ")
+    assert remark == (
+        "launch/walker.launch.py was evaluated and not run: state_publisher was started by itself, "
+        "without its parameters (r)"
+    )
+
+
+def test_the_same_in_real_time():
+    short = replace(EXERCISE, limits=replace(EXERCISE.limits, total_s=4.0))
+    recorded = grading.record(LOOP, short, time="real").nominal
+    assert recorded.run.time == "real"
+    trace = RobotTrace.of(recorded.trace)
+    states, own = trace.joint_states, [t for t in trace.transforms if t.publisher == "scene"]
+    assert {name for state in states for name in state.names} == {"swivel", "tilt", "periscope"}
+    assert {t.child for t in own} > {"head", "body", "rod"}
+    assert len(motion.odometry(trace)) == pytest.approx(len(states), abs=1)
 
 
 def test_a_single_file_is_in_no_package(recorded):

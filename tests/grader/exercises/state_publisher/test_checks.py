@@ -152,7 +152,7 @@ def test_a_package_is_judged_by_what_it_installs(setup, losses):
         ),
         (replace(LAUNCH, lacking=(Lacking("file", "/home/me/a.urdf", "", ""),)), {"launch": 0.8}),
         (replace(LAUNCH, moved="/prefix/share/walker/a.urdf"), {"launch": 0.8}),
-        (replace(LAUNCH, lacking=(Lacking("package", "rviz2", "", ""),)), {}),
+        (replace(LAUNCH, lacking=(Lacking("package", "rviz2", "", ""),)), {"launch": 0.8}),
     ],
 )
 def test_a_launch_file_starts_robot_and_node_and_finds_what_it_reads(launch, losses):
