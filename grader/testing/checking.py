@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 
+from grader.diagnosis.diagnose import diagnose
 from grader.exercise.loading import Exercise, load_exercise
 from grader.grading import AnyPath, run_all, runner
 from grader.recording.recording import Recordings
@@ -53,7 +54,7 @@ def check_exercise(
         recordings = recorded[solution.name]
         verdicts, wrong = examine(asked, recordings)
         trial = Trial(solution, tuple(verdicts), _remarks(recordings))
-        wrong += _unexpected(trial)
+        wrong += [*_unexpected(trial), *_unsaid(trial, recordings)]
         if solution is solutions[0]:
             wrong += _twice(asked, trial, recordings, recorded[AGAIN])
         trials.append(trial)
@@ -115,6 +116,19 @@ def _unexpected(trial: Trial) -> Iterator[Fault]:
                 f"{FILE_NAME} says {_said(expected)}"
             )
             yield Fault(verdict.check, text)
+
+
+def _unsaid(trial: Trial, recordings: Recordings) -> Iterator[Fault]:
+    """Where the first line of a mutant's report does not say what it should."""
+    says = trial.solution.says
+    if not says:
+        return
+    found = diagnose(recordings, trial.verdicts)
+    told = "" if found is None else found.cause
+    if found is not None and found.place is not None:
+        told += f" ({found.place.file}, line {found.place.line})"
+    if says not in told:
+        yield Fault("", f"its first line is {told!r}; {FILE_NAME} says {says!r}")
 
 
 def _fits(score: float, max_score: float, expected: Left) -> bool:

@@ -14,7 +14,8 @@
 A path is one beside the file, or PACKAGE/FILE of an installed package. `replace` names passages of
 the first right solution, each standing there exactly once when its turn comes. `leaves` says what
 is left of some checks' points, a share below 1 or `some`, and that all others stay whole; without
-it, it is enough that some check fails.
+it, it is enough that some check fails. `says` are words of its report's first line, which names the
+cause, or of the place behind it, as "(stands.py, line 7)".
 
 Where the first right solution is a folder, as a package is, `program` says in which of its files
 passages are replaced, and `in` says so of one passage. `files` holds whole files, or null for one
@@ -58,6 +59,7 @@ class Solution:
         is_right: whether it must get every point; else it is a mutant.
         changes: what makes it of `path`.
         leaves: check -> what is left of its points, where that is less than all; None: not said.
+        says: words of the first line of its report.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Solution:
     is_right: bool
     changes: tuple[Change, ...] = ()
     leaves: Mapping[str, Left] | None = None
+    says: str = ""
 
     def text(self) -> str:
         """The source of one that is a file, with its changes.
@@ -166,15 +169,17 @@ def _mutant(name: str, words: Any, made: _Made, exercise: Exercise) -> Solution:
     keys: Keys = ("mutants", name)
     if not isinstance(words, dict) or ("file" in words) != MADE.isdisjoint(words):
         raise Mistake(keys, "expected either `replace` or `file`")
-    unknown = words.keys() - {"file", "leaves", *MADE}
+    unknown = words.keys() - {"file", "leaves", "says", *MADE}
     if unknown:
         raise Mistake(keys, f"unknown {min(map(str, unknown))!r}")
-    leaves = _leaves(name, words.get("leaves"), exercise)
+    leaves, says = _leaves(name, words.get("leaves"), exercise), words.get("says", "")
+    if not isinstance(says, str):
+        raise Mistake((*keys, "says"), f"expected words of a first line, found {says!r}")
     if "file" in words:
         path = places.locate(made.folder, str(words["file"]))
-        return Solution(name, path, is_right=False, leaves=leaves)
+        return Solution(name, path, is_right=False, leaves=leaves, says=says)
     changes = made.changes(words, keys)
-    return Solution(name, made.of, is_right=False, changes=changes, leaves=leaves)
+    return Solution(name, made.of, is_right=False, changes=changes, leaves=leaves, says=says)
 
 
 def _leaves(name: str, words: object, exercise: Exercise) -> Mapping[str, Left] | None:

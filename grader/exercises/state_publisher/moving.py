@@ -9,6 +9,7 @@ import numpy as np
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.state_publisher.naming import judge_names
+from grader.exercises.state_publisher.rate import too_seldom
 from grader.exercises.state_publisher.seen import Seen, finite, number, sentence
 from grader.scenes.robot.motion import Floats, Joint
 from robot_py.model import JointType
@@ -41,6 +42,8 @@ def judge_moves(seen: Seen, tolerances: Tolerances) -> Finding:
         else:
             told.append(f"{name!r} {seen_of_it}")
     share = len(told) / max(len(seen.moving), 1)
+    if wrong and (seldom := too_seldom(seen, tolerances)):
+        wrong.insert(0, seldom)
     return Finding(share, sentence([*wrong, *told]), HELP, tuple(where))
 
 

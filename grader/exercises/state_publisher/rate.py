@@ -85,6 +85,15 @@ def judge_rate(seen: Seen, tolerances: Tolerances) -> Finding:
     )
 
 
+def too_seldom(seen: Seen, tolerances: Tolerances) -> str:
+    """Whether joint states come so seldom that no movement can be as it should, as a clause; ''."""
+    hertz = pace(_of_one_joint(seen.trace), seen.trace.ticks, tolerances).hertz
+    low, high = tolerances["rate_least_hz"], tolerances["rate_most_hz"]
+    if hertz >= 0.95 * low:
+        return ""
+    return f"joint states came {hertz:.0f} times a second; expected {low} to {high}"
+
+
 def _of_one_joint(trace: RobotTrace) -> list[int]:
     """The ticks of the joint that is named most often: each may have messages of its own."""
     named: dict[str, list[int]] = {}
