@@ -315,6 +315,5 @@ def _opened(
     if isinstance(submission, Submission):
         yield submission
         return
-    is_started = exercise.is_started
-    with open_submission(Path(submission), executable, is_started=is_started) as opened:
+    with open_submission(Path(submission), executable, **exercise.opening) as opened:
         yield opened

@@ -85,8 +85,9 @@ def _run(task: Task, exercise: Exercise) -> Recordings | str:
                 name = task.filename or path.name
                 path = held.enter_context(scratch.make_folder()) / name
                 shutil.copyfile(task.path, path)
-            submission = _without_place(held.enter_context(open_submission(path)))
-            runner = grading.RUNNERS[task.time]
+            opened = held.enter_context(open_submission(path, **exercise.opening))
+            submission = _without_place(opened)
+            runner = grading.runner(exercise, task.time)
             recordings = grading.run_all(submission, exercise, runner, seed=task.seed)
             _look_at(submission, recordings, place)
     except (SubmissionError, UsageError) as error:

@@ -49,8 +49,8 @@ def graded(args: argparse.Namespace) -> Result:
     _withdraw(out, args.json, error_file.inputs(args))
     exercise = load_exercise(args.exercise)
     with ExitStack() as held:
-        is_started = exercise.is_started
-        with open_submission(args.submission, args.executable, is_started=is_started) as submission:
+        opening = exercise.opening
+        with open_submission(args.submission, args.executable, **opening) as submission:
             result, recordings = _run_and_judge(args, submission, exercise, out, held)
         _report(args, result, recordings, out)
     return result

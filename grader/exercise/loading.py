@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field, replace
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 from grader import content
 from grader.errors import ExerciseError
@@ -31,7 +31,7 @@ from grader.scenes.scene import Limits, Scene, Start
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", "looks_at_package"),
-    *("points", "visible", "late", "tolerances", "starter"),
+    *("points", "visible", "late", "tolerances", "starter", "program"),
 )
 #: Where nothing is started, no time passes that could be limited.
 NO_LIMITS = Limits(0.0, 0.0, 0.0)
@@ -48,6 +48,13 @@ PER_STUDENT = "per_student"
 _NAME = re.compile(r"[A-Za-z0-9_][\w.-]*")
 
 __all__ = ["DEFAULT", "Exercise", "Limits", "VariedRuns", "load_exercise", "names"]
+
+
+class Opening(TypedDict, total=False):
+    """Arguments of `grader.submission.opening.open_submission`."""
+
+    is_started: bool
+    usual: str
 
 
 @dataclass(frozen=True)
@@ -83,6 +90,7 @@ class Exercise:
         scene: the name of what runs beside the submission.
         setting: the text of the file that it is set up with; '' for none.
         looks_at_package: whether the package around what is started is looked at as well.
+        program: what is started of several that were handed in; '' for the usual one.
         folder: where its files are.
         starter: the folder that `grader new` copies; None where there is none.
         sha256: of all that it judges by: the values of exercise.yaml, as they are in force, the
@@ -99,6 +107,7 @@ class Exercise:
     scene: str = "turtlesim"
     setting: str = ""
     looks_at_package: bool = False
+    program: str = ""
     folder: Path = Path()
     starter: Path | None = None
     sha256: str = ""
@@ -110,6 +119,14 @@ class Exercise:
     def is_started(self) -> bool:
         """Whether something of a submission is started; else it is only looked at."""
         return not load_scene(self.scene).examiner
+
+    @property
+    def opening(self) -> Opening:
+        """How a submission to it is opened."""
+        opening: Opening = {"is_started": self.is_started}
+        if self.program:
+            opening["usual"] = self.program
+        return opening
 
     @property
     def conditions(self) -> dict[str, float]:
@@ -321,6 +338,7 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         scene=scene,
         setting=setting,
         looks_at_package=_looks(data.get(LOOKS, False), scene),
+        program=_program(data.get("program", "")),
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, setting, place.folder),
@@ -375,6 +393,12 @@ def _setting(where: object, scene: Scene, place: Place) -> str:
     if why := scene.wrong_setting(setting):
         raise Mistake((SETTING,), why)
     return setting
+
+
+def _program(given: object) -> str:
+    if not isinstance(given, str) or (given and not _NAME.fullmatch(given)):
+        raise Mistake(("program",), f"expected the name of a console script, found {given!r}")
+    return given
 
 
 def _looks(given: object, scene: str) -> bool:

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
 
 from grader.errors import SubmissionError
-from grader.submission.folder import HandedIn, files_below, listed, near, shown
+from grader.submission.folder import USUAL_NAME, HandedIn, files_below, listed, near, shown
 from grader.submission.python_source import read_source
 from grader.submission.setup_files import SETUP_FILES, ConsoleScript, Package, read_package
-
-USUAL_NAME: Final = "turtle_controller"  # the challenge asks for a node of this name
 
 Choice = tuple[Package, ConsoleScript]
 
@@ -39,7 +36,7 @@ class Packages:
             SubmissionError: several or none fit, or set-up files cannot be read and might.
         """
         every = [(package, script) for package in self.readable for script in package.scripts]
-        wanted = executable or USUAL_NAME
+        wanted = executable or self.handed_in.usual
         matching = [choice for choice in every if choice[1].name == wanted]
         if len(matching) == 1:
             return matching[0]
@@ -78,7 +75,7 @@ class Packages:
     def _several(self, names: list[str]) -> SubmissionError:
         return SubmissionError(
             f"{self.handed_in.name} has several console scripts: {listed(names)}. "
-            f"Expected one called {USUAL_NAME}; choose another with --executable NAME."
+            f"Expected one called {self.handed_in.usual}; choose another with --executable NAME."
         )
 
     def _computed(self, file: Path, wanted: str, names: list[str]) -> SubmissionError:

@@ -6,9 +6,9 @@ The rules, in order:
 1. A `.py` file is itself what to start.
 2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml): the one that
    is asked for; else those that a launch file of the package starts, if it plainly starts several
-   of its programs; else `turtle_controller`, else the only one.
+   of its programs; else the usual one (`turtle_controller`), else the only one.
 3. Else a Python file that starts itself or has a function `main`: the one that is asked for, else
-   `turtle_controller.py`, else `main.py`, else the only one. So in a package whose setup.py
+   the usual one, else `main.py`, else the only one. So in a package whose setup.py
    names no console script.
 
 What these do not settle is a SubmissionError that lists the candidates.
@@ -25,7 +25,6 @@ from typing import Final
 from grader.errors import SubmissionError, UsageError
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
-    USUAL_NAME,
     Choice,
     Packages,
     example,
@@ -37,6 +36,7 @@ from grader.submission.entry_points import (
 from grader.submission.folder import (
     HAND_IN,
     MAX_ENTRIES,
+    USUAL_NAME,
     HandedIn,
     copy,
     entries_of,
@@ -60,13 +60,14 @@ _UNREADABLE: Final = (
 )
 
 
-def find(path: Path, executable: str | None, scratch: Path) -> Submission:
+def find(path: Path, executable: str | None, scratch: Path, usual: str = USUAL_NAME) -> Submission:
     """Find what to start.
 
     Args:
         executable: chooses among the console scripts or Python files of a folder or zip; a single
             .py file leaves no choice.
         scratch: an empty folder, for what has to be unpacked or mended.
+        usual: is started where there are several and none is asked for.
 
     Raises:
         SubmissionError: there is nothing to start, or no way to tell what.
@@ -74,19 +75,19 @@ def find(path: Path, executable: str | None, scratch: Path) -> Submission:
         OSError: something is wrong with the machine.
     """
     try:
-        return _find(path, executable, scratch)
+        return _find(path, executable, scratch, usual)
     except OSError as error:
         if error.errno not in _UNREADABLE:
             raise
         raise unreadable(path, error) from error
 
 
-def _find(path: Path, executable: str | None, scratch: Path) -> Submission:
+def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Submission:
     name = shown(path.name or path.resolve().name)
     if not path.exists():
         raise missing(path)
     if path.is_dir():
-        return _in_folder(HandedIn(name, path.resolve()), executable, Unpacking(scratch))
+        return _in_folder(HandedIn(name, path.resolve(), usual), executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
@@ -101,9 +102,9 @@ def _find(path: Path, executable: str | None, scratch: Path) -> Submission:
                 "started, and there is nothing to choose. Leave out --executable."
             )
         folder = path.parent.resolve()
-        return _from_file(HandedIn(name, folder), folder / path.name)
+        return _from_file(HandedIn(name, folder, usual), folder / path.name)
     unpacking = Unpacking(scratch)
-    return _in_folder(HandedIn(name, unpacking.unpack(path)), executable, unpacking)
+    return _in_folder(HandedIn(name, unpacking.unpack(path), usual), executable, unpacking)
 
 
 def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking) -> Submission:
@@ -126,7 +127,7 @@ def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking
     if not candidates:
         raise no_python(handed_in, files)
     starting = [file for file in candidates if _starts(read_source(file))] or candidates
-    several = executable is None and len(_usual(starting)) > 1
+    several = executable is None and len(_usual(handed_in, starting)) > 1
     if several and (package := packages.holding(starting[0])):
         raise SubmissionError(f"{_no_script(handed_in, package, starting)}.")
     chosen = _only(handed_in, starting, executable)
@@ -150,7 +151,7 @@ def _in_archive(
         )
     (archive,) = archives
     handed_in.must_hold(archive)
-    inside = HandedIn(handed_in.name, unpacking.unpack(archive))
+    inside = replace(handed_in, base=unpacking.unpack(archive))
     found = _in_folder(inside, executable, unpacking)
     return replace(found, found=f"{found.found}, in {handed_in.called(archive)}")
 
@@ -233,19 +234,19 @@ def _only(handed_in: HandedIn, candidates: list[Path], executable: str | None) -
             names = [handed_in.called(file) for file in candidates]
             raise no_such_executable(handed_in, "Python file", executable, names)
     else:
-        chosen = _usual(candidates)
+        chosen = _usual(handed_in, candidates)
     if len(chosen) > 1:
         raise SubmissionError(
             f"{handed_in.name} has several Python files to start: "
-            f"{listed(map(handed_in.called, chosen))}. Expected one, called {USUAL_NAME}.py; "
+            f"{listed(map(handed_in.called, chosen))}. Expected one, called {handed_in.usual}.py; "
             "choose another with --executable NAME, or hand in only that file."
         )
     return chosen[0]
 
 
-def _usual(candidates: list[Path]) -> list[Path]:
+def _usual(handed_in: HandedIn, candidates: list[Path]) -> list[Path]:
     """Those of the first usual name that any has; all of them if none has one."""
-    usual = [[file for file in candidates if file.stem == s] for s in (USUAL_NAME, "main")]
+    usual = [[file for file in candidates if file.stem == s] for s in (handed_in.usual, "main")]
     return usual[0] or usual[1] or candidates
 
 
@@ -255,7 +256,7 @@ def _starts(source: Source) -> bool:
 
 def _no_script(handed_in: HandedIn, package: Package, starting: list[Path]) -> str:
     """Say that a setup.py names no console script, with the line that it lacks."""
-    likely = [file for file in starting if file.stem == USUAL_NAME] or starting
+    likely = [file for file in starting if file.stem == handed_in.usual] or starting
     module = "my_package.turtle_controller"
     if len(likely) == 1:
         module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)

@@ -33,12 +33,17 @@ _COLCON: Final = {"build", "install", "log"}
 _NO_SOURCES: Final = {"venv", "env", "test", "tests"} | _COLCON
 
 
+#: The challenge asks for a node of this name.
+USUAL_NAME: Final = "turtle_controller"
+
+
 @dataclass(frozen=True)
 class HandedIn:
     """A folder, handed in as such or unpacked, and its words in messages."""
 
     name: str  # "alice.zip"
     base: Path  # absolute; messages name paths relative to it
+    usual: str = USUAL_NAME  # of what is started, where there are several
 
     def called(self, path: Path) -> str:
         """Name a path of the submission in a message."""

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from grader.scratch import make_folder
 from grader.submission import reader
+from grader.submission.folder import USUAL_NAME
 from grader.submission.private_copy import copy_privately
 from grader.submission.start import EntryPoint, Imports, Launch, Script, Submission, Whole
 
@@ -30,13 +31,18 @@ __all__ = [
 
 @contextmanager
 def open_submission(
-    path: Path, executable: str | None = None, *, is_started: bool = True
+    path: Path,
+    executable: str | None = None,
+    *,
+    is_started: bool = True,
+    usual: str = USUAL_NAME,
 ) -> Iterator[Submission]:
     """Find what to start, in a copy that is there until the context ends.
 
     `executable` chooses among the console scripts or Python files of a folder or zip; a single
-    .py file leaves no choice. Where nothing is started (`is_started`), all of it is taken, which
-    must be a folder or an archive with a package; `executable` then chooses among packages.
+    .py file leaves no choice. Without it, `usual` is taken where there are several. Where nothing
+    is started (`is_started`), all of it is taken, which must be a folder or an archive with a
+    package; `executable` then chooses among packages.
 
     Raises:
         SubmissionError: there is nothing to start, no way to tell what, or too much to be read.
@@ -47,9 +53,8 @@ def open_submission(
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()
-        yield _in_private(
-            reader.read(path, executable, scratch, is_started=is_started), path, scratch
-        )
+        found = reader.read(path, executable, scratch, is_started=is_started, usual=usual)
+        yield _in_private(found, path, scratch)
 
 
 def _in_private(submission: Submission, path: Path, scratch: Path) -> Submission:

@@ -22,7 +22,7 @@ from typing import Final
 from grader import strict_json
 from grader.errors import GraderFailure, SubmissionError
 from grader.submission import answer, limits
-from grader.submission.folder import shown
+from grader.submission.folder import USUAL_NAME, shown
 from grader.submission.start import Submission
 
 #: No module but Python's own and ours, nothing from the environment, no start-up code of a venv.
@@ -59,7 +59,12 @@ def warm() -> None:
 
 
 def read(
-    path: Path, executable: str | None, scratch: Path, *, is_started: bool = True
+    path: Path,
+    executable: str | None,
+    scratch: Path,
+    *,
+    is_started: bool = True,
+    usual: str = USUAL_NAME,
 ) -> Submission:
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
@@ -81,6 +86,7 @@ def read(
                 "executable": executable,
                 "scratch": str(scratch),
                 "is_started": is_started,
+                "usual": usual,
             }
         )
         end = asked.end()

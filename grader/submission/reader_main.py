@@ -38,7 +38,7 @@ def _answer(request: dict[str, Any]) -> bytes:
     try:
         if not request["is_started"]:
             return answer.found(whole.find(path, request["executable"], scratch))
-        found = find(path, request["executable"], scratch)
+        found = find(path, request["executable"], scratch, request["usual"])
         only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
         assert not isinstance(found.start, Whole)
         imports = read_imports(found.root, found.start, only)

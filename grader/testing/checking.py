@@ -76,8 +76,7 @@ def _run(
     with make_folder() as folder, ThreadPoolExecutor(jobs) as pool:
 
         def run(solution: Solution) -> Recordings:
-            path, is_started = paths[solution.name], exercise.is_started
-            with open_submission(path, is_started=is_started) as submission:
+            with open_submission(paths[solution.name], **exercise.opening) as submission:
                 return run_all(submission, exercise, runner(exercise, "virtual"))
 
         paths = {solution.name: solution.lay_out(folder) for solution in solutions}
