@@ -41,6 +41,7 @@ ALLOWED = {
     "grader/cli/__init__.py": [r"Grade the turtlesim challenge"],
     "grader/cli/grade_one.py": [r"alice/turtle_controller\.py"],
     "grader/submission/finding.py": [r"turtle_controller"],
+    "grader/submission/folder.py": [r'USUAL_NAME: Final = "turtle_controller"'],
     "grader/submission/entry_points.py": [r"turtle_controller"],
     "grader/submission/setup_files.py": [r"turtle_controller"],
     # the simulator that students' launch files start

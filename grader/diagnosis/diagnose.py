@@ -44,6 +44,7 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.endless_loop,
     slips.called_at_once,
     standstill.stays_in_init,
+    standstill.spins_in_loop,
     standstill.never_spins,
     standstill.ends_early,
     timers.waits_for_timer,

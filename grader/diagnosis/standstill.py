@@ -117,6 +117,25 @@ def stays_in_init(case: Case) -> Diagnosis | None:
     return Diagnosis("stays_in_init", cause, help_, place=stop.place)
 
 
+def spins_in_loop(case: Case) -> Diagnosis | None:
+    """A loop that would send something calls spin() first, which does not come back."""
+    stop = case.stop
+    publishers = [end for end in case.conduct.ends if end.kind == "publisher"]
+    if stop is None or stop.kind != "spin" or not publishers or any(e.used for e in publishers):
+        return None
+    cause = (
+        f"The loop round {_code(stop.place)}{line(stop.place)} never goes round: spin() comes back "
+        "only when the program ends, and nothing behind it is reached."
+        if stop.place
+        else "A loop calls spin(), which comes back only when the program ends."
+    )
+    help_ = (
+        "A loop of your own calls rclpy.spin_once(node, timeout_sec=0.01) each time. Or let "
+        "create_timer() call what the loop does, and call rclpy.spin(node) once, without a loop."
+    )
+    return Diagnosis("spins_in_loop", cause, help_, place=stop.place)
+
+
 def does_nothing(case: Case) -> Diagnosis | None:
     """It came to its end without having made anything of ROS."""
     if case.ended_s is None or case.conduct.ends or case.conduct.spun_s is not None:

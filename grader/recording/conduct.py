@@ -21,7 +21,7 @@ MOST = 100
 LONGEST = 300
 
 EndKind = Literal["subscription", "publisher", "client", "action_client"]
-StopKind = Literal["callback", "call", "loop", "init", "going"]
+StopKind = Literal["callback", "call", "loop", "init", "spin", "going"]
 SlipKind = Literal[
     "unread",
     "local",

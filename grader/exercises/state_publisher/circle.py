@@ -123,6 +123,12 @@ def _turned(way: Way, tolerances: Tolerances) -> list[Fault]:
     x, y, z, w = way.quaternions.T
     squares = x * x + y * y + z * z + w * w
     faults = []
+    if not squares.all():
+        text = "its quaternion is all zeros, which turns nothing"
+        help = (
+            "Straight ahead is w = 1.0; a turn about z is z = sin(angle / 2), w = cos(angle / 2)."
+        )
+        return [Fault(text, QUATERNION + HEADING, help)]
     if float(np.abs(squares - 1).max()) >= DENORMALIZED:
         worst = float(np.sqrt(squares[int(np.argmax(np.abs(squares - 1)))]))
         faults.append(

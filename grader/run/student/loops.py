@@ -53,15 +53,18 @@ def standing(frames: Sequence[Seen]) -> Standing | None:
     own = next((at for at, frame in enumerate(frames) if frame.source is not None), -1)
     if own < 0:
         return None
+    spins = any(frame.function == "spin" and frame.file.endswith(SPINS) for frame in frames[:own])
     in_callback = any(frame.file.endswith(CALLBACK) for frame in frames)
     inits = (at for at, frame in enumerate(frames) if frame.source is not None)
     init = max((at for at in inits if frames[at].function == "__init__"), default=-1)
     if init >= 0 and not in_callback:
-        if any(frame.function == "spin" and frame.file.endswith(SPINS) for frame in frames[:own]):
+        if spins:
             return Standing("init", own, frames[own].line)  # no chance: there it stays
         found = head(frames[own : init + 1])
         at, line = (own + found[0], found[1]) if found else (init, frames[init].line)
         return Standing("init", at, line)
+    if spins and around(frames[own].source or (), frames[own].line):
+        return Standing("spin", own, frames[own].line)
     if any("spin" in frame.function and frame.file.endswith(SPINS) for frame in frames[:own]):
         return None
     found = head(frames[own:])

@@ -199,6 +199,8 @@ def at(line: int, function: str = "drive") -> loops.Seen:
         ([SPIN, at(8, "__init__"), at(10, "<module>")], loops.Standing("init", 1, 8)),
         ([SLEEP, at(8), at(7, "__init__")], loops.Standing("init", 2, 3)),
         ([FOR_EVER, at(7, "__init__")], loops.Standing("init", 1, 7)),
+        ([FOR_EVER, at(7)], loops.Standing("spin", 1, 7)),
+        ([FOR_EVER, at(8)], None),
         ([SLEEP], None),
     ],
 )
