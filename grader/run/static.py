@@ -23,7 +23,7 @@ from grader.run.finish import Ending, limits_struck, record
 from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
 from grader.scenes import load_scene
-from grader.scenes.package.launched import unlike_launched
+from grader.scenes.package.by_itself import unlike_launched
 from grader.scenes.package.trace import PackageTrace
 from grader.scenes.scene import Scene, Trace
 from grader.submission.opening import EntryPoint, Submission, Whole
