@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+from grader import scratch
 from grader.recording.recording import Outcome, Recording
 from grader.run import stage
 from grader.run.environment import virtual_environment
@@ -71,9 +72,12 @@ def look_beside(submission: Submission) -> tuple[Trace, tuple[str, ...]]:
     Raises:
         GraderFailure: the process could not be started.
     """
-    assert submission.copy is not None
-    whole = replace(submission, root=submission.copy.folder, start=Whole())
-    looked = _look(whole, load_scene(SCENE))
+    with scratch.make_folder() as folder:
+        own = submission.again(folder.resolve())
+        assert own.copy is not None
+        for each in own.added:
+            (own.root / each).unlink()  # ros2 does not add it
+        looked = _look(replace(own, root=own.copy.folder, start=Whole()), load_scene(SCENE))
     unlike: list[str] = []
     if isinstance(submission.start, EntryPoint):
         started = (submission.start.module, submission.start.function)

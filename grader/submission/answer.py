@@ -54,6 +54,7 @@ def found(submission: Submission) -> bytes:
             "perhaps": _some(submission.imports.perhaps),
             "notes": [clip(note, _MAX_NOTE) for note in submission.notes[:_MAX_NOTES]],
             "unlaunched": [clip(note, _MAX_NOTE) for note in submission.unlaunched[:_MAX_NOTES]],
+            "added": [str(each) for each in submission.added],
             "in_package": str(submission.package) if submission.package else None,
         }
     )
@@ -134,12 +135,14 @@ def decoded(said: dict[str, Any]) -> Submission:
             "perhaps": dict(perhaps),
             "notes": list(notes),
             "unlaunched": list(unlaunched),
+            "added": list(added),
             "in_package": str() | None as package,
-        } if all(isinstance(note, str) for note in (*notes, *unlaunched)):
+        } if all(isinstance(note, str) for note in (*notes, *unlaunched, *added)):
             imports = Imports(_texts(surely), _texts(perhaps))
             return Submission(
                 *(name, Path(root), _start(start), sentence, imports, tuple(notes)),
                 unlaunched=tuple(unlaunched),
+                added=tuple(map(Path, added)),
                 package=Path(package) if package else None,
             )
     raise _nonsense()

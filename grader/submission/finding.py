@@ -177,7 +177,10 @@ def _from_script(
     found += f", with the missing {missing} added"
     inside = folder.is_relative_to(module.root)
     folder = mended / folder.relative_to(module.root) if inside else mended
-    return Submission(handed_in.name, mended, start, found, notes=notes, package=folder)
+    added = tuple(each / "__init__.py" for each in module.bare)
+    return Submission(
+        handed_in.name, mended, start, found, notes=notes, added=added, package=folder
+    )
 
 
 def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submission:

@@ -85,6 +85,8 @@ class Submission:
     notes: tuple[str, ...] = field(default=(), compare=False)
     #: the same of launch files that were read, and not run
     unlaunched: tuple[str, ...] = field(default=(), compare=False)
+    #: files that it lacked, and has been given, below `root`
+    added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none
     package: Path | None = field(default=None, compare=False)
     #: where its runs find it; None where it lies in place

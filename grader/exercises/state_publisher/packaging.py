@@ -44,7 +44,7 @@ def judge_package(recording: Recording) -> Finding:
     if runs and not wrong:
         return Finding(1, f"`ros2 run {setup.name} {runs[0]}` can start it.")
     return Finding(
-        0.5 if runs else 0,
+        0.5 if runs or setup.scripts else 0,
         sentence(wrong or ["setup.py names no console script"]),
         "What `ros2 run` starts is a console script in the entry_points of setup.py; "
         "`colcon build` in a workspace says what else is wrong.",

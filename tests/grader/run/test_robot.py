@@ -87,6 +87,17 @@ def test_the_same_in_real_time():
     assert len(motion.odometry(trace)) == pytest.approx(len(states), abs=1)
 
 
+def test_what_is_added_so_that_it_starts_here_is_not_looked_at(tmp_path):
+    package = tmp_path / "walker"
+    shutil.copytree(read_solutions(EXERCISE)[0].path, package)
+    (package / "walker" / "__init__.py").unlink()
+    setup = (package / "setup.py").read_text()
+    found = "packages=__import__('setuptools').find_packages()"
+    (package / "setup.py").write_text(setup.replace("packages=[package_name]", found))
+    (script,) = grading.record(package, EXERCISE).nominal.package.setup.scripts
+    assert script.fault == "setup.py does not list the package walker, so nothing installs it"
+
+
 def test_a_single_file_is_in_no_package(recorded):
     assert recorded.nominal.package is None
 

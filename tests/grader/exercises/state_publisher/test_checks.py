@@ -123,7 +123,7 @@ def test_each_mistake_loses_what_it_should(controller, losses):
         (replace(SETUP, scripts_folder=""), {"package": 0.5}),
         (
             replace(SETUP, scripts=(replace(SCRIPT, fault="there is no module walker.x"),)),
-            {"package": 0},
+            {"package": 0.5},
         ),
         (replace(SETUP, scripts=(SCRIPT, replace(SCRIPT, name="b", fault="no"))), {"package": 0.5}),
         (replace(SETUP, scripts=()), {"package": 0, "launch": 0.6}),
