@@ -49,7 +49,7 @@ def installed(recordings: Recordings, tolerances: Tolerances) -> Finding:
 def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """A launch file shows the robot: its description, its joints, RViz.
 
-    Each launch file, in Python or XML, is evaluated with its default arguments, and nothing is
+    Each launch file (Python, XML or YAML) is evaluated with its default arguments, and nothing is
     started. The best of them counts, of those that start RViz, where any does:
 
     - robot_state_publisher with the parameter robot_description: half of the points,

@@ -66,12 +66,25 @@ def _stops(looked: Looked) -> Finding | None:
             f"setup.py ends with {shown(problem.text)}{placed(problem)}: {_BUILD}.",
             "Run `python3 setup.py --name` in the package's folder: it shows the same.",
         )
-    if setup.absent:
+    if _is_cmake(looked) and setup.told and setup.told != looked.name:
         return Finding(
             0,
-            f"The set-up installs {shown(setup.absent[0])!r}, and there is no such file: {_BUILD}.",
-            "Compare the name in data_files with the file's, or use glob(), which lists what is "
-            "there.",
+            f"CMakeLists.txt says project({shown(setup.told)}), and package.xml calls the package "
+            f"{shown(looked.name)}: {_BUILD}.",
+            "Both have to be the same name, and the folder in share is called so.",
+        )
+    if setup.absent:
+        name, is_cmake = shown(setup.absent[0]), _is_cmake(looked)
+        said = "CMakeLists.txt" if is_cmake else "setup.py"
+        return Finding(
+            0,
+            f"{said} installs {name!r}, and there is no such {'folder or ' * is_cmake}file: "
+            f"{_BUILD}.",
+            "Compare the name with what is there; a folder without files is not in what git, or a "
+            "zip, hands on."
+            if is_cmake
+            else "Compare the name in data_files with the file's, or use glob(), which lists what "
+            "is there.",
         )
     if setup.folders:
         return Finding(
@@ -82,6 +95,10 @@ def _stops(looked: Looked) -> Finding | None:
             "they come into.",
         )
     return None
+
+
+def _is_cmake(looked: Looked) -> bool:
+    return looked.setup.build_type not in ("", "ament_python")
 
 
 def _missing(looked: Looked) -> Iterator[Missing]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, not_judged, placed, shown
-from grader.scenes.package.examining.known import KNOWN, SIMULATORS
+from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
 from grader.scenes.package.trace import Launch, Node
 from robot_py.urdf import parse
 
@@ -56,6 +56,15 @@ def judge(looked: Looked) -> Finding:
             min(share, BROKEN) if launch.file != best else 0.0,
             f"{launch.file} ends with {shown(launch.problem.text)}{placed(launch.problem)}.",
             _advice(launch.problem.text),
+        )
+    strange = next((each for each in looked.launches if each.file == best), None)
+    if share <= DESCRIPTION and strange and (include := _not_followed(strange)):
+        what = f"{best} leaves it to {include}, a file of another package, to show the robot"
+        return Finding(
+            0,
+            f"Not judged: {what}, and nobody knows here what that starts.",
+            "This is no fault of the package: tell whoever runs the course.",
+            judged=False,
         )
     if not found[best]:
         return Finding(
@@ -147,6 +156,18 @@ def _includes_simulator(launch: Launch) -> bool:
     """A simulator publishes the joints of what it simulates."""
     included = any(each.package in SIMULATORS for each in launch.includes)
     return included or any(each.startswith(_SIMULATORS) for each in launch.processes)
+
+
+def _not_followed(launch: Launch) -> str:
+    """A launch file of another package of which it is not known what it starts; '' for none."""
+    return next(
+        (
+            f"{each.package}/{each.file}"
+            for each in launch.includes
+            if each.file not in FILES.get(each.package, ()) and not each.file.endswith("()")
+        ),
+        "",
+    )
 
 
 def _no_description(node: Node) -> Part:

@@ -55,10 +55,9 @@ class Looked:
     @property
     def not_known(self) -> Launch | None:
         """The first launch file that could not be evaluated for no fault of its own."""
-        unknown = (
-            each for each in self.launches if each.problem and each.problem.kind == "unknown"
-        )
-        return next(unknown, None)
+        kinds = ("unknown", "argument")
+        problems = ((each, each.problem) for each in self.launches if each.problem)
+        return next((each for each, problem in problems if problem.kind in kinds), None)
 
 
 def nothing(recordings: Recordings) -> Finding:
@@ -88,7 +87,9 @@ def not_judged(launch: Launch, what: str) -> Finding:
     return Finding(
         0,
         f"Not judged: {what}, and {launch.file} could not be evaluated: {shown(problem.text)}.",
-        "This is no fault of the package: tell whoever runs the course.",
+        "Give the argument a default_value: then `ros2 launch` needs no more than the file."
+        if problem.kind == "argument"
+        else "This is no fault of the package: tell whoever runs the course.",
         judged=False,
     )
 

@@ -45,6 +45,8 @@ def _of(looked: Looked, description: Description) -> Finding:
     where = description.source or description.by
     text = looked.text(description.text)
     if description.problem is not None:
+        if not description.is_launched and looked.not_known is not None:
+            return not_judged(looked.not_known, f"{where} alone gives no robot")
         return Finding(
             0,
             f"{where}: {shown(description.problem.text)}.",

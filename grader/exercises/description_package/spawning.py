@@ -95,8 +95,12 @@ def _given(node: Node) -> dict[str | None, str]:
     while words:
         name = words.pop(0)
         name = name[1:] if name.startswith("--") else name
-        if not name.startswith("-") or _is_number(name):
-            found.setdefault(None, name)
+        name, is_joined, value = name.partition("=")
+        if is_joined and name.startswith("-"):
+            found[name] = value
+        elif not name.startswith("-") or _is_number(name):
+            if node.executable != "create":  # which ignores such words
+                found.setdefault(None, name)
         elif name in _TAKES_NOTHING:
             found[name] = ""
         else:

@@ -83,7 +83,7 @@ class Setup:
 
     Attributes:
         name: of the package, by package.xml; by its set-up where that says none.
-        told: the name that the set-up gives; '' where it gives none.
+        told: the name that the set-up gives, setup() or project(); '' where it gives none.
         folder: where it lies in what was handed in; '' for its top.
         build_type: "ament_python", "ament_cmake", ...; '' where none is told.
         manifest: what is wrong with package.xml; '' for nothing.

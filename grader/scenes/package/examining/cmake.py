@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
 _COMMAND = re.compile(r"\b(project|set|install|ament_python_install_package)\s*\(([^()]*)\)", re.I)
@@ -21,11 +22,24 @@ _OPTIONS = (
 )
 
 
-def installs(folder: Path) -> tuple[list[tuple[str, str]], list[str], list[str]]:
-    """(folder below the prefix, file of the package) of each file; what is absent; programs.
+class Read(NamedTuple):
+    """What a CMakeLists.txt says.
 
-    Programs are the names of what is compiled and installed: 'lib/NAME/PROGRAM'.
+    Attributes:
+        project: its name; '' where it tells none.
+        files: (folder below the prefix, file of the package).
+        absent: what it installs, and is not there.
+        programs: what is compiled and installed: 'lib/NAME/PROGRAM'.
     """
+
+    project: str
+    files: list[tuple[str, str]]
+    absent: list[str]
+    programs: list[str]
+
+
+def read(folder: Path) -> Read:
+    """What the CMakeLists.txt of a package says."""
     text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
     variables: dict[str, str] = {"CMAKE_CURRENT_SOURCE_DIR": ".", "CMAKE_SOURCE_DIR": "."}
     files: list[tuple[str, str]] = []
@@ -40,7 +54,7 @@ def installs(folder: Path) -> tuple[list[tuple[str, str]], list[str], list[str]]
                 variables[words[0]] = ";".join(words[1:])
             case "install":
                 _install(folder, words, files, absent, programs)
-    return files, absent, programs
+    return Read(variables.get("PROJECT_NAME", ""), files, absent, programs)
 
 
 def _filled(word: str, variables: dict[str, str]) -> str:

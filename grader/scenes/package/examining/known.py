@@ -39,6 +39,7 @@ FILES: Final[dict[str, tuple[str, ...]]] = {
     ),
     "ros_gz_bridge": ("launch/ros_gz_bridge.launch.py",),
     "urdf_launch": ("launch/display.launch.py", "launch/description.launch.py"),
+    "urdf_tutorial": ("launch/display.launch.py",),
 }
 #: ros-jazzy-desktop and what it brings along.
 DESKTOP: Final = frozenset(

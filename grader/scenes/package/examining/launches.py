@@ -12,7 +12,7 @@ import os
 import sys
 from typing import Any, Final
 
-from grader.scenes.package.examining import known
+from grader.scenes.package.examining import foreign, known
 from grader.scenes.package.examining.layout import Installed
 from grader.scenes.package.examining.packages import is_description
 from grader.scenes.package.examining.place import DOUBLES, Place
@@ -106,7 +106,7 @@ class _Unknown:
         self._declared = set(place.judged.setup.depends)
 
     def find_spec(self, name: str, path: Any = None, target: Any = None) -> Any:
-        """Refuse what would be found nowhere else."""
+        """Stand in for what would be found nowhere else, or refuse it."""
         import importlib.machinery
 
         top = name.partition(".")[0]
@@ -116,6 +116,8 @@ class _Unknown:
             and not top.startswith("launch_")
         ):
             return None
-        if importlib.machinery.PathFinder.find_spec(name, path) is None:
+        if importlib.machinery.PathFinder.find_spec(name, path) is not None:
+            return None
+        if top in DOUBLED or top.startswith("launch_"):
             raise NotKnown(f"it imports {name}, which the grader does not have")
-        return None
+        return foreign.module(name)

@@ -100,8 +100,8 @@ def _said(
     if package.is_cmake:
         if not (package.folder / "CMakeLists.txt").is_file():
             return {}, Problem("error", "there is no CMakeLists.txt"), [], [], []
-        files, absent, programs = cmake.installs(package.folder)
-        return {}, None, absent, files, programs
+        found = cmake.read(package.folder)
+        return {"name": found.project}, None, found.absent, found.files, found.programs
     if not (package.folder / "setup.py").is_file():
         return {}, Problem("error", "there is no setup.py"), [], [], []
 

@@ -13,6 +13,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Sequence
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -69,7 +70,7 @@ def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> P
     stubs = scratch / "stubs"
     declared = {name for each in everything for name in each.setup.depends}
     layout.make_stubs(stubs, declared, {each.name for each in everything})
-    (scratch / "empty").mkdir()
+    (scratch / "empty" / "home").mkdir(parents=True)
     place = Place(prefix, stubs, scratch / "empty", scratch / "asked", judged, everything)
     return Looking(place, scratch).trace()
 
@@ -131,6 +132,7 @@ class Looking:
                 if parameter["text"] >= 0:
                     parameter["text"] = numbers[parameter["text"]]
         there, missing = said["asked"]
+        there, missing = self._used_and_wrong(there, missing, said["borrowed"])
         lacking = [{**each, "by": each["by"] or file} for each in said["lacking"]]
         lacking += [{"kind": "package", "name": n, "source": "", "by": file} for n in missing]
         launch = strict.from_json(
@@ -142,7 +144,7 @@ class Looking:
                 "packages": there,
                 "moved": "",
                 **{key: said[key] for key in ("nodes", "processes", "includes", "declared")},
-                "remarks": [*said["remarks"], *_unwrapped(said["nodes"])],
+                "remarks": [*said["remarks"], *_unwrapped(file, said["nodes"])],
             },
         )
         for node in launch.nodes:
@@ -152,6 +154,14 @@ class Looking:
                         refused = "" if self._texts[each.text].strip() else _first(said["refused"])
                         self._describe(each.text, launch.file, said["source"], refused)
         return launch
+
+    def _used_and_wrong(
+        self, there: list[str], missing: list[str], borrowed: list[str]
+    ) -> tuple[list[str], list[str]]:
+        """Packages that are used, and names that are wrong: of a package whose files are ours."""
+        ours = [each.name for each in self._place.all]
+        wrong = [n for n in missing if n in borrowed or get_close_matches(n, ours, 1, 0.85)]
+        return [*there, *(name for name in missing if name not in wrong)], wrong
 
     def _number(self, text: str) -> int:
         if len(text) > trace.LONGEST_TEXT:
@@ -288,15 +298,15 @@ def _ended(file: str, problem: dict[str, Any]) -> Launch:
     return Launch(file, Problem(**problem), (), (), (), (), (), (), (), "")
 
 
-def _unwrapped(nodes: Sequence[dict[str, Any]]) -> list[str]:
-    for node in nodes:
-        for each in node["parameters"]:
-            if each["name"] == "robot_description" and not each["wrapped"]:
-                return [
-                    "robot_description is put through YAML, which takes most descriptions and not "
-                    "all: ParameterValue(..., value_type=str) keeps it as it is"
-                ]
-    return []
+def _unwrapped(file: str, nodes: Sequence[dict[str, Any]]) -> list[str]:
+    given = [each for node in nodes for each in node["parameters"]]
+    if all(each["wrapped"] for each in given if each["name"] == "robot_description"):
+        return []
+    wrapped = "ParameterValue(..., value_type=str)" if file.endswith(".py") else 'type="str"'
+    return [
+        "robot_description is put through YAML, which takes most descriptions and not all: "
+        f"{wrapped} keeps it as it is"
+    ]
 
 
 def _cleaned(value: Any, place: Place) -> Any:

@@ -33,9 +33,14 @@ class Place:
     judged: Installed
     all: tuple[Installed, ...]
 
+    @property
+    def home(self) -> Path:
+        """The home folder of who launches; it is empty."""
+        return self.empty / "home"
+
     def told(self, text: str) -> str:
         """A text with the places as everybody knows them."""
-        for path, shown in ((self.prefix, PREFIX), (self.stubs, ROS)):
+        for path, shown in ((self.prefix, PREFIX), (self.stubs, ROS), (self.home, "~")):
             text = text.replace(str(path), shown)
         for each in self.all:
             text = text.replace(str(each.package.folder), f"/source/{each.name}")
@@ -44,6 +49,22 @@ class Place:
     def own(self, path: str) -> str:
         """A file of any package of the submission; '' for others."""
         return next((f for each in self.all if (f := each.own(path, self.prefix))), "")
+
+    def borrowed(self, wanted: str) -> tuple[str, str]:
+        """A package that is not there, and the file of the submission that is asked for as its.
+
+        Two empty texts: the path is of a package that is known, or of no file here.
+        """
+        share = f"{self.stubs}/share/"
+        name, _, inside = wanted.removeprefix(share).partition("/")
+        if not wanted.startswith(share) or (self.stubs / "share" / name).is_dir():
+            return "", ""
+        for each in self.all:
+            if f"share/{each.name}/{inside}" in each.files:
+                return name, str(self.prefix / "share" / each.name / inside)
+            if inside in each.package.files:
+                return name, str(each.package.folder / inside)
+        return "", ""
 
     def meant(self, wanted: str) -> str:
         """The file of the package that was meant by a path that is not there; '' for none."""
@@ -69,9 +90,8 @@ class Place:
             "PYTHONPATH": f"{DOUBLES}:{CODE}",
             "PATH": f"{self.stubs}/bin:{os.environ.get('PATH', '')}",
             "GRADER_ASKED": str(self.asked),
-            "GRADER_PACKAGE": self.judged.name,
             "ROS_DISTRO": os.environ.get("ROS_DISTRO", "jazzy"),
             "ROS_VERSION": "2",
-            "HOME": str(self.empty),
+            "HOME": str(self.home),
             "USER": "student",
         }

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
-import subprocess
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any, Final
 
-from grader.scenes.package.examining import known
+from grader.scenes.package.examining import commands, foreign, known
 from grader.scenes.package.examining.place import Place
 from grader.scenes.package.examining.steps import NotKnown
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
 _MOST: Final = 200
-_COMMAND_S: Final = 20.0
 _FILE_OPTIONS: Final = ("-d", "--display-config", "-file", "--file")
 #: How the names of files end that a node may be told to read.
 SUFFIXES: Final = (
@@ -43,6 +38,7 @@ class Taken:
                 "lacking",
                 "remarks",
                 "refused",
+                "borrowed",
             )
         }
         self.texts: list[str] = []
@@ -94,12 +90,16 @@ class Taken:
             prefix = get_package_prefix(package)
         except PackageNotFoundError:
             return
-        ours = any(each.name == package for each in self._place.all)
-        if ours:
+        ours = [each.name for each in self._place.all]
+        if package in ours:
             there = (Path(prefix) / "lib" / package / name).exists()
         else:
             programs = known.PROGRAMS.get(package)
             there = programs is None or name in programs
+            programs_of = (self._place.prefix / "lib" / each / name for each in ours)
+            is_known = (self._place.stubs / "share" / package).is_dir()
+            if not is_known and any(each.exists() for each in programs_of):
+                self._add("borrowed", package)
         if not there:
             self._lack("executable", f"{package} {name}", "")
 
@@ -111,6 +111,10 @@ class Taken:
         """
         if os.path.exists(wanted):
             return wanted
+        package, own = self._place.borrowed(wanted)
+        if package:
+            self._add("borrowed", package)
+            return self.path(own)
         if wanted.startswith(f"{self._place.stubs}/"):
             raise NotKnown(f"it needs {self._place.told(wanted)}, a file of another package")
         meant = self._place.meant(wanted)
@@ -119,14 +123,10 @@ class Taken:
 
     def include(self, path: str, arguments: dict[str, str]) -> bool:
         """Another launch file: followed where it is the submission's own."""
+        if self._place.borrowed(path)[0]:
+            path = self.path(path)
         if path.startswith(f"{self._place.stubs}/share/"):
-            package, _, file = path.removeprefix(f"{self._place.stubs}/share/").partition("/")
-            given = [f"{name}:={value}"[:1000] for name, value in arguments.items()]
-            if file not in known.FILES.get(package, (file,)):
-                self._lack("file", path, "")
-            self._add("includes", {"package": package, "file": file, "arguments": given})
-            if package == "urdf_launch":
-                self._urdf_launch(file, arguments)
+            self._include_foreign(path, arguments)
             return True
         self._depth += 1
         if self._depth > 20:
@@ -136,16 +136,42 @@ class Taken:
         self._depth -= 1
         return True
 
+    def _include_foreign(self, path: str, arguments: dict[str, str]) -> None:
+        from ament_index_python.packages import get_package_share_directory
+
+        package, _, file = path.removeprefix(f"{self._place.stubs}/share/").partition("/")
+        given = [f"{name}:={value}"[:1000] for name, value in arguments.items()]
+        if file not in known.FILES.get(package, (file,)):
+            self._lack("file", path, "")
+        self._add("includes", {"package": package, "file": file, "arguments": given})
+
+        def expand(model: str) -> str:
+            return self.command(["xacro", model], "fail")
+
+        share = get_package_share_directory
+        for node in foreign.nodes_of(package, file, arguments, share, expand):
+            self.node(node)
+
+    def foreign(self, package: str, name: str) -> None:
+        """An action of another package, of which no more is known."""
+        self._add("includes", {"package": package, "file": f"{name}()"[:1000], "arguments": []})
+
     def command(self, words: list[str], on_stderr: str) -> str:
         """What a `Command` prints.
 
         Raises:
             SubstitutionFailure: as the original does: it is not there, fails, or complains.
         """
+        from ament_index_python.packages import get_package_prefix
         from launch.substitutions import SubstitutionFailure
 
         if words[:2] == ["ros2", "run"] and len(words) > 3:
             words = words[3:]
+        if words[:1] == ["ros2"]:
+            said = commands.ros2(words, get_package_prefix)
+            if said is None:
+                self.remark(f"`{' '.join(words[:3])}` asks a running system, which nobody has here")
+            return said or ""
         shown = self._place.told(" ".join(words))
         if words and os.path.basename(words[0]) == "xacro":
             code, out, errors = self.xacro(words[1:])
@@ -153,7 +179,7 @@ class Taken:
                 self._add("refused", f"xacro: {_end(errors)}")
                 return ""
         else:
-            code, out, errors = self._other(words)
+            code, out, errors = commands.other(words, self.path)
         if code:
             raise SubstitutionFailure(
                 f"executed command failed. Command: {shown}. It says: {_end(errors)}"
@@ -173,53 +199,21 @@ class Taken:
         read = self.path(path)
         before = self.context.locals_.get("current_launch_file_path")
         self.context.locals_["current_launch_file_path"] = path
-        if path.endswith((".yaml", ".yml")):
-            raise NotKnown("it is a launch file in YAML, which the grader does not evaluate")
         if path.endswith(".py"):
             walk(_python(path, read), self.context)
         else:
-            from grader.scenes.package.examining.xml_launch import entities
+            from grader.scenes.package.examining import xml_launch, yaml_launch
 
-            walk(entities(path, read), self.context)
+            is_yaml = path.endswith((".yaml", ".yml"))
+            walk((yaml_launch if is_yaml else xml_launch).entities(read), self.context)
         self.context.locals_["current_launch_file_path"] = before
 
-    def xacro(self, words: list[str]) -> tuple[int, str, str]:
+    def xacro(self, words: list[str]) -> commands.Ended:
         """What xacro does: its exit code, and what it prints to either side."""
-        try:
-            import xacro
-        except ImportError:
-            raise NotKnown("xacro is not installed where this was graded") from None
-        words = [self._given(word) for word in words]
-        out, errors, before = io.StringIO(), io.StringIO(), sys.argv
-        sys.argv = ["xacro", *words]
-        try:
-            with redirect_stdout(out), redirect_stderr(errors):
-                xacro.main()
-            code = 0
-        except SystemExit as end:
-            code = end.code if isinstance(end.code, int) else 1
-        finally:
-            sys.argv = before
-        return code, out.getvalue(), errors.getvalue()
+        return commands.xacro([self._given(word) for word in words])
 
     def _given(self, word: str) -> str:
         return word if word.startswith("-") or ":=" in word else self.path(word)
-
-    def _other(self, words: list[str]) -> tuple[int, str, str]:
-        from launch.substitutions import SubstitutionFailure
-
-        if words and os.path.basename(words[0]) == "cat":
-            paths = [self.path(word) for word in words[1:]]
-            return 0, "".join(Path(path).read_text(encoding="utf-8") for path in paths), ""
-        try:
-            ended = subprocess.run(
-                words, capture_output=True, text=True, timeout=_COMMAND_S, check=False
-            )
-        except (OSError, IndexError) as error:
-            raise SubstitutionFailure(f"file not found: {error}") from error
-        except subprocess.TimeoutExpired:
-            raise SubstitutionFailure(f"{words[0]} did not come to an end") from None
-        return ended.returncode, ended.stdout, ended.stderr
 
     def _by_argument(self, node: dict[str, Any]) -> list[dict[str, Any]]:
         """The file that a robot_state_publisher reads where it has no parameter, with a warning."""
@@ -275,26 +269,6 @@ class Taken:
     def _add(self, what: str, entry: Any) -> None:
         if entry not in self.found[what] and len(self.found[what]) < _MOST:
             self.found[what].append(entry)
-
-    def _urdf_launch(self, file: str, arguments: dict[str, str]) -> None:
-        """What ros/urdf_launch starts, of which description packages make use."""
-        from ament_index_python.packages import get_package_share_directory
-
-        share = get_package_share_directory(arguments.get("urdf_package", ""))
-        path = os.path.join(share, arguments.get("urdf_package_path", ""))
-        text = self.command(["xacro", path], "fail")
-        told = {"name": "", "namespace": "", "arguments": [], "remappings": [], "later": False}
-        description = {"name": "robot_description", "value": text, "wrapped": True}
-        publisher = "robot_state_publisher"
-        one = {**told, "package": publisher, "executable": publisher, "parameters": [description]}
-        self.node(one)
-        if file.endswith("display.launch.py"):
-            gui = arguments.get("jsp_gui", "true").lower() in ("true", "1")
-            source = "joint_state_publisher_gui" if gui else "joint_state_publisher"
-            self.node({**told, "package": source, "executable": source, "parameters": []})
-            config = arguments.get("rviz_config", f"{self._place.stubs}/share/urdf_launch/a.rviz")
-            rviz = {**told, "package": "rviz2", "executable": "rviz2", "parameters": []}
-            self.node({**rviz, "arguments": ["-d", config]})
 
 
 def _python(path: str, read: str) -> Any:

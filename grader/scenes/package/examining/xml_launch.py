@@ -12,27 +12,27 @@ from grader.scenes.package.examining.xml_substitutions import substitutions
 _NOT_KNOWN = "it uses {}, which the grader does not know"
 
 
-def entities(path: str, read: str) -> list[Any]:
-    """The actions of a launch file.
+_OF_ROS_1 = ("param", "rosparam", "remap", "env", "machine", "test", "master")
 
-    Args:
-        path: of the file, as the launch file knows it.
-        read: where it lies.
+
+def entities(path: str) -> list[Any]:
+    """The actions of a launch file.
 
     Raises:
         Exception: it is not what ROS reads.
     """
-    with open(read, encoding="utf-8") as file:
+    with open(path, encoding="utf-8") as file:
         text = file.read()
     if "<!DOCTYPE" in text:
         raise NotKnown(_NOT_KNOWN.format("a DOCTYPE"))
     root = ElementTree.fromstring(text)
     if root.tag != "launch":
         raise RuntimeError(f"expected 'launch' as root element, found '{root.tag}'")
-    return [_action(each) for each in root]
+    return [action(each) for each in root]
 
 
-def _action(element: ElementTree.Element) -> Any:
+def action(element: ElementTree.Element) -> Any:
+    """The action that an element means."""
     from launch import actions
     from launch_ros import actions as ros
 
@@ -73,7 +73,7 @@ def _action(element: ElementTree.Element) -> Any:
         case "group":
             scoped = take.plain("scoped", "true").lower() not in ("false", "0")
             take("forwarding")
-            made = actions.GroupAction([_action(each) for each in element], scoped=scoped, **more)
+            made = actions.GroupAction([action(each) for each in element], scoped=scoped, **more)
         case "push_ros_namespace" | "push-ros-namespace":
             made = ros.PushROSNamespace(take.needed("namespace"), **more)
         case "set_parameter":
@@ -86,7 +86,7 @@ def _action(element: ElementTree.Element) -> Any:
             made = actions.ExecuteProcess(cmd=words, **more)
         case "timer" | "ros_timer":
             made = actions.TimerAction(
-                period=take.needed("period"), actions=[_action(each) for each in element], **more
+                period=take.needed("period"), actions=[action(each) for each in element], **more
             )
         case "log" | "log_info":
             take.ignore("message", "level")
@@ -96,6 +96,8 @@ def _action(element: ElementTree.Element) -> Any:
             made = actions.Shutdown(**more)
         case "set_remap" | "set_use_sim_time" | "set_ros_log_dir":
             return actions.LogInfo(msg="")
+        case other if other in _OF_ROS_1:
+            raise RuntimeError(f"Unrecognized entity of the type: {other} (it is one of ROS 1)")
         case other:
             raise NotKnown(_NOT_KNOWN.format(f"<{other}>"))
     take.must_be_through()

@@ -8,6 +8,7 @@ from typing import Any
 from grader.scenes.package.examining.steps import NotKnown
 
 _NOT_KNOWN = "it uses {}, which the grader does not know"
+_OF_ROS_1 = ("find", "arg", "optenv", "param")
 _NAME = re.compile(r"\$\(([\w-]+)")
 
 
@@ -105,8 +106,8 @@ def _substitution(name: str, arguments: list[list[Any]]) -> Any:
         return plain.Command(arguments[0], on_stderr=arguments[1])
     if name == "path-join":
         return plain.PathJoinSubstitution(arguments)
-    if name == "find":
-        raise RuntimeError("Unknown substitution: find")
+    if name in _OF_ROS_1:
+        raise RuntimeError(f"Unknown substitution: {name}")
     if name not in kinds:
         raise NotKnown(_NOT_KNOWN.format(f"$({name})"))
     return kinds[name](*arguments)

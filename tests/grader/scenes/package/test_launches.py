@@ -64,7 +64,9 @@ def test_what_the_original_refuses_is_refused(action, says, tmp_path):
         ("from launch.actions import Wonder", "unknown", "launch.actions.Wonder"),
         ("import launch_ros.wonder", "unknown", "launch_ros.wonder"),
         ("import launch_testing", "unknown", "launch_testing"),
-        ("import moveit_configs_utils", "unknown", "moveit_configs_utils"),
+        ("import nav2_common.launch as n; n.Rewritten.made", "unknown", "nav2_common.launch.Rewri"),
+        ("import moveit_configs_utils as m; m.A('a').made()", "unknown", "moveit_configs_utils.A"),
+        ("return LaunchDescription([LogInfo(msg=Command('gzz p'))])", "unknown", "it runs gzz"),
         ("import os; os.environ['ROBOT']", "unknown", "environment variable ROBOT"),
         ("import numpyy", "error", "No module named 'numpyy'"),
         ("import os; os._exit(3)", "limit", "ended the process that it ran in (exit code 3)"),
@@ -143,6 +145,8 @@ def test_values_of_parameters_go_through_yaml_where_the_original_does_so(tmp_pat
         ("<node package='rviz2' exec='rviz2'/>", "Attribute 'pkg'"),
         ("<node pkg='rviz2' exec='rviz2' typ='a'/>", "Unexpected attribute(s)"),
         ("<node pkg='rviz2' exec='$(find rviz2)'/>", "Unknown substitution: find"),
+        ("<node pkg='rviz2' exec='$(arg a)'/>", "Unknown substitution: arg"),
+        ("<param name='robot_description' value='a'/>", "Unrecognized entity of the type: param"),
         ("<node", "ParseError"),
         ("<arg name='a'/><let name='b'/>", "Attribute 'value'"),
     ],
@@ -181,6 +185,47 @@ def test_a_launch_file_in_xml_starts_what_it_says(tmp_path):
     assert (include.package, include.arguments) == ("gazebo_ros", ("pause:=true",))
 
 
-def test_a_launch_file_in_yaml_is_not_judged(tmp_path):
-    launch = launched(tmp_path, "launch: []", "launch/display.launch.yaml")
-    assert launch.problem is not None and launch.problem.kind == "unknown"
+def test_a_launch_file_in_yaml_starts_what_one_in_xml_does(tmp_path):
+    launch = launched(
+        tmp_path,
+        """
+        launch:
+          - arg: {name: rviz, default: "true"}
+          - group:
+              - push_ros_namespace: {namespace: in}
+              - node:
+                  if: $(var rviz)
+                  pkg: rviz2
+                  exec: rviz2
+                  args: -d $(find-pkg-share rviz2)/a.rviz
+                  param: [{name: a, value: 1.5}, {name: b, value: [1, 2]}, {name: c, value: true}]
+                  remap: [{from: c, to: d}]
+          - include:
+              file: $(find-pkg-share gazebo_ros)/launch/gazebo.launch.py
+              arg: [{name: pause, value: "true"}]
+        """,
+        "launch/display.launch.yaml",
+    )
+    assert launch.problem is None
+    (node,) = launch.nodes
+    assert (node.namespace, node.remappings) == ("in", ("c:=d",))
+    assert node.arguments == ("-d", "/opt/ros/jazzy/share/rviz2/a.rviz")
+    values = {each.name: each.value for each in node.parameters}
+    assert values == {"a": "1.5", "b": "[1, 2]", "c": "true"}
+    assert launch.includes[0].arguments == ("pause:=true",)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("- node: {}", "expected 'launch' as the one root, found list"),
+        ("launch: {node: {}}", "expected a list of entities"),
+        ("launch: [node]", "expected one entity in each entry"),
+        ("launch: [{node: {pkg: rviz2}}]", "Attribute 'exec' of Entity 'node' not found"),
+        ("launch: [", "ParserError"),
+    ],
+)
+def test_a_launch_file_in_yaml_is_refused_where_it_is_none(text, says, tmp_path):
+    launch = launched(tmp_path, text, "launch/display.launch.yaml")
+    assert launch.problem is not None and launch.problem.kind == "error"
+    assert says in launch.problem.text

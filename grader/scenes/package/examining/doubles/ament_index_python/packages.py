@@ -1,8 +1,8 @@
 """A double of ROS's `ament_index_python.packages`: packages below AMENT_PREFIX_PATH.
 
 What is asked for is appended to the file that the variable GRADER_ASKED names, a line each:
-`+ NAME` where it is there, `- NAME` where it is not. A package that is not there stands for the one
-that is looked at (GRADER_PACKAGE) where that is named: so the rest can be looked at as well.
+`+ NAME` where it is there, `- NAME` where it is not. A package that is not there is said to be
+beside those of ROS, at the end of the path: so the rest can be looked at as well.
 """
 
 from __future__ import annotations
@@ -37,20 +37,11 @@ def get_package_prefix(package_name: str) -> str:
             _tell("+", package_name)
             return prefix
     _tell("-", package_name)
-    instead = os.environ.get("GRADER_PACKAGE", "")
-    if instead and instead != package_name:
-        return get_package_prefix(instead)
-    raise PackageNotFoundError(
-        f"package '{package_name}' not found, searching: {get_search_paths()}"
-    )
+    return get_search_paths()[-1]
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
-    prefix = get_package_prefix(package_name)
-    own = os.path.join(prefix, "share", package_name)
-    if not os.path.isdir(own) and (instead := os.environ.get("GRADER_PACKAGE", "")):
-        return os.path.join(prefix, "share", instead)
-    return own
+    return os.path.join(get_package_prefix(package_name), "share", package_name)
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:

@@ -57,9 +57,16 @@ class DeclareLaunchArgument(Action):
         context.record.declared(self.name)
         known = context.launch_configurations
         if self.name not in known:
-            if self.default_value is None:
+            if self.default_value is not None:
+                known[self.name] = text_of(context, self.default_value)
+            elif self.choices is not None:
+                known[self.name] = str(self.choices[0])
+                context.record.remark(
+                    f"its argument {self.name} has no default: looked at with {self.choices[0]}, "
+                    "the first of its choices"
+                )
+            else:
                 raise NeedsArgument(f'Required launch argument "{self.name}" was not provided.')
-            known[self.name] = text_of(context, self.default_value)
         if self.choices is not None and known[self.name] not in self.choices:
             raise RuntimeError(
                 f'Argument "{self.name}" provided value "{known[self.name]}" is not valid. '

@@ -1,0 +1,88 @@
+"""Programs whose output a launch file asks for, by `Command`."""
+
+from __future__ import annotations
+
+import difflib
+import io
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import Final
+
+from grader.scenes.package.examining.steps import NotKnown
+
+#: Exit code, and what is printed to either side.
+Ended = tuple[int, str, str]
+_COMMAND_S: Final = 20.0
+_USUAL: Final = ("xacro", "cat", "ros2", "check_urdf")
+
+
+def xacro(words: list[str]) -> Ended:
+    """What xacro does with these arguments.
+
+    Raises:
+        NotKnown: it is not installed here.
+    """
+    try:
+        import xacro as program
+    except ImportError:
+        raise NotKnown("xacro is not installed where this was graded") from None
+    out, errors, before = io.StringIO(), io.StringIO(), sys.argv
+    sys.argv = ["xacro", *words]
+    try:
+        with redirect_stdout(out), redirect_stderr(errors):
+            program.main()
+        code = 0
+    except SystemExit as end:
+        code = end.code if isinstance(end.code, int) else 1
+    finally:
+        sys.argv = before
+    return code, out.getvalue(), errors.getvalue()
+
+
+def other(words: list[str], path: Callable[[str], str]) -> Ended:
+    """What another program does.
+
+    Args:
+        path: where a file is that is named.
+
+    Raises:
+        NotKnown: there is none here, and there may be one elsewhere.
+        SubstitutionFailure: there is none anywhere, or it does not end.
+    """
+    from launch.substitutions import SubstitutionFailure
+
+    program = words[0] if words else ""
+    if os.path.basename(program) == "cat":
+        texts = [Path(path(word)).read_text(encoding="utf-8") for word in words[1:]]
+        return 0, "".join(texts), ""
+    try:
+        ended = subprocess.run(
+            words, capture_output=True, text=True, timeout=_COMMAND_S, check=False
+        )
+    except (OSError, IndexError) as error:
+        is_slip = difflib.get_close_matches(program, _USUAL, 1, 0.7)
+        if program and "/" not in program and not is_slip:
+            raise NotKnown(f"it runs {program}, which is not here") from None
+        raise SubstitutionFailure(f"file not found: {error}") from error
+    except subprocess.TimeoutExpired:
+        raise SubstitutionFailure(f"{program} did not come to an end") from None
+    return ended.returncode, ended.stdout, ended.stderr
+
+
+def ros2(words: list[str], prefix: Callable[[str], str]) -> str | None:
+    """What `ros2 ...` prints; None: that is known to a running system alone.
+
+    Args:
+        prefix: of a package.
+    """
+    if words[1:3] == ["pkg", "prefix"]:
+        names = [word for word in words[3:] if not word.startswith("-")]
+        if len(names) == 1:
+            found = prefix(names[0])
+            is_share = "--share" in words
+            return f"{found}/share/{names[0]}\n" if is_share else f"{found}\n"
+    return None
