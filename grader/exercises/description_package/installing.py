@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, folder_of, placed, shown
-from grader.scenes.package.trace import EMPTY
+from grader.scenes.package.trace import EMPTY, Lacking
 
 #: One thing missing leaves so much; two leave nothing.
 ONE_MISSING = 0.5
@@ -113,12 +113,8 @@ def _missing(looked: Looked) -> Iterator[Missing]:
     yield from _scripts(looked)
     for launch in looked.launches:
         for each in launch.lacking:
-            if each.kind == "file":
-                yield _file(looked, each.name, each.source, each.by)
-            elif each.kind == "package":
-                yield _package(looked, each.name, each.by)
-            else:
-                yield _program(looked, each.name, each.by)
+            of_kind = {"file": _file, "package": _package}.get(each.kind, _program)
+            yield of_kind(looked, each)
         if launch.moved:
             yield Missing(
                 launch.moved,
@@ -138,11 +134,17 @@ def _missing(looked: Looked) -> Iterator[Missing]:
                 )
 
 
-def _file(looked: Looked, name: str, source: str, by: str) -> Missing:
-    if source == by:
+def _by(lacking: Lacking) -> str:
+    """The file that asks for something, with the line."""
+    return f"{lacking.by} (line {lacking.line})" if lacking.line else lacking.by
+
+
+def _file(looked: Looked, lacking: Lacking) -> Missing:
+    name, source, by = lacking.name, lacking.source, _by(lacking)
+    if source == lacking.by:
         return Missing(
             "launch",
-            f"{by} is not installed: `ros2 launch {looked.name}` does not find it.",
+            f"{source} is not installed: `ros2 launch {looked.name}` does not find it.",
             "data_files in setup.py (or install() in CMakeLists.txt) has to list the launch files.",
         )
     if not name.startswith(("/", "~")) or name.startswith(_EMPTY):
@@ -175,7 +177,8 @@ def _file(looked: Looked, name: str, source: str, by: str) -> Missing:
     )
 
 
-def _package(looked: Looked, name: str, by: str) -> Missing:
+def _package(looked: Looked, lacking: Lacking) -> Missing:
+    name, by = lacking.name, _by(lacking)
     return Missing(
         f"package {name}",
         f"{by} asks for the package {shown(name)!r}, which is neither yours ({looked.name}) nor "
@@ -184,7 +187,8 @@ def _package(looked: Looked, name: str, by: str) -> Missing:
     )
 
 
-def _program(looked: Looked, name: str, by: str) -> Missing:
+def _program(looked: Looked, lacking: Lacking) -> Missing:
+    name, by = lacking.name, _by(lacking)
     package, _, program = name.partition(" ")
     if package != looked.name:
         return Missing(

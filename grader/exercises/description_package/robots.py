@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, not_judged, nothing_started, shown
-from grader.scenes.package.trace import Description
+from grader.scenes.package.trace import Description, Mesh
 from robot_py.findings import Consequence
 from robot_py.model import Inertial, Joint, JointType, Model
 from robot_py.urdf import parse
@@ -102,6 +102,8 @@ def _help(text: str) -> str:
         )
     if "limit" in text:
         return 'Such a joint needs <limit lower="" upper="" effort="" velocity=""/>.'
+    if "PARSING_DECLARATION" in text:
+        return "A declaration such as <?xml ...?> stands at the very start: take the other away."
     if "XML" in text:
         return "The file is no XML: look for a tag that is not closed, at the line or above."
     return "`check_urdf FILE` prints the same line; the element that it names is at fault."
@@ -172,7 +174,7 @@ def judge_meshes(looked: Looked) -> Finding:
     first = wrong[0]
     why = {
         "scheme": "no viewer resolves that: expected package://PACKAGE/PATH",
-        "missing": "there is no such file",
+        "missing": f"there is no such file{_instead(looked, first)}",
         "case": f"there is {first.path}: letters count",
         "package": f"there is no package {shown(first.path)!r}",
     }[first.state]
@@ -185,6 +187,16 @@ def judge_meshes(looked: Looked) -> Finding:
         "The way to a mesh begins with package:// and your package's name, and goes on as below "
         f"its share folder: package://{looked.name}/meshes/FILE.",
     )
+
+
+def _instead(looked: Looked, mesh: Mesh) -> str:
+    """Where a file of the same name is installed."""
+    name = mesh.path.rsplit("/", 1)[-1]
+    share = f"share/{looked.name}/"
+    for path in looked.setup.installed:
+        if path.startswith(share) and path.endswith(f"/{name}"):
+            return f": {name} is installed as package://{looked.name}/{path.removeprefix(share)}"
+    return ""
 
 
 def first_source(descriptions: list[Description]) -> str:

@@ -69,12 +69,14 @@ class Lacking:
         source: the package's own file that was meant, as far as one is called the same; '' for
             none.
         by: the file that names it; '' where that is not known.
+        line: of that file, which alone has the last part of the name; 0 where that is not known.
     """
 
     kind: str
     name: str
     source: str
     by: str
+    line: int = 0
 
 
 @dataclass(frozen=True)

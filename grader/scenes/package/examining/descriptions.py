@@ -58,6 +58,8 @@ def _resolved(uri: str, place: Place) -> tuple[str, str]:
         path = Path(uri.removeprefix("file://"))
         if not path.is_absolute() or str(path).startswith(f"{place.stubs}/"):
             return ("foreign" if path.is_absolute() else "scheme"), str(path)
+        if not path.is_relative_to(place.prefix):
+            return "missing", str(path)
         return _looked_for(path, place)
     return "scheme", uri
 
@@ -65,14 +67,14 @@ def _resolved(uri: str, place: Place) -> tuple[str, str]:
 def _looked_for(path: Path, place: Place) -> tuple[str, str]:
     if path.is_file():
         return "found", str(path)
-    meant = place.meant(str(path))
-    if meant:
-        return "left", place.own(meant)
-    name = path.name.lower()
-    for each in place.all:
-        for file in each.package.files:
-            if os.path.basename(file).lower() == name:
-                return "case", file
+    meant = place.own(place.meant(str(path)))
+    if meant and str(path).endswith(f"/{meant}"):
+        return "left", meant
+    if not meant:
+        for each in place.all:
+            for file in each.package.files:
+                if os.path.basename(file).lower() == path.name.lower():
+                    return "case", file
     return "missing", str(path)
 
 

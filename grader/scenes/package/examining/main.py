@@ -135,6 +135,7 @@ class Looking:
         there, missing = self._used_and_wrong(there, missing, said["borrowed"])
         lacking = [{**each, "by": each["by"] or file} for each in said["lacking"]]
         lacking += [{"kind": "package", "name": n, "source": "", "by": file} for n in missing]
+        lacking = [{**each, "line": self._line(file, each["name"])} for each in lacking]
         launch = strict.from_json(
             Launch,
             {
@@ -154,6 +155,14 @@ class Looking:
                         refused = "" if self._texts[each.text].strip() else _first(said["refused"])
                         self._describe(each.text, launch.file, said["source"], refused)
         return launch
+
+    def _line(self, file: str, name: str) -> int:
+        """The one line of a launch file that has the last part of a path or name; 0 for none."""
+        of, own = self._files[file]
+        text = (of.package.folder / own).read_text(encoding="utf-8", errors="replace")
+        word = name.replace(" ", "/").rstrip("/").rsplit("/", 1)[-1]
+        found = [n for n, line in enumerate(text.splitlines(), 1) if word and word in line]
+        return found[0] if len(found) == 1 else 0
 
     def _used_and_wrong(
         self, there: list[str], missing: list[str], borrowed: list[str]

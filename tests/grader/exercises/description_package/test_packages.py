@@ -176,6 +176,48 @@ def test_what_a_description_does_not_say_is_found_where_urdfdom_is_silent(tmp_pa
     assert "'camera' hangs on 2 joints" in result.diagnosis.cause
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        (
+            "package://walker_description/meshes/camera.stl",
+            "file:///home/me/ros2_ws/src/walker_description/meshes/camera.stl",
+            "a path of one machine",
+        ),
+        (
+            "package://walker_description/meshes/camera.stl",
+            "package://walker_description/camera.stl",
+            "camera.stl is installed as package://walker_description/meshes/camera.stl",
+        ),
+    ],
+)
+def test_a_wrong_way_to_a_mesh_that_is_installed_is_a_fault_of_the_description(
+    old, new, says, tmp_path
+):
+    file = "urdf/walker.urdf.xacro"
+    text = (REFERENCE / file).read_text()
+    assert old in text
+    result = graded(written(tmp_path, {file: text.replace(old, new)}))
+    assert lost(result) == {"meshes": 0}
+    assert says in result.diagnosis.cause
+
+
+def test_a_second_declaration_is_told_as_what_it_is(tmp_path):
+    file = "urdf/walker.urdf.xacro"
+    link = '<link name="base_link"/>'
+    text = (REFERENCE / file).read_text().replace(link, f"<?xacro?>{link}")
+    result = graded(written(tmp_path, {file: text}))
+    assert lost(result) == {"urdf": 0}
+    assert "take the other away" in result.diagnosis.help
+
+
+def test_who_asks_for_what_is_not_there_is_told_with_the_line(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text().replace('"walker.rviz"', '"wolker.rviz"')
+    line = 1 + next(n for n, each in enumerate(text.splitlines()) if "wolker" in each)
+    result = graded(written(tmp_path, {DISPLAY: text}))
+    assert f"{DISPLAY} (line {line}) asks for" in result.diagnosis.cause
+
+
 class TestThymio:
     EXERCISE = load_exercise(EXERCISE.folder / "thymio.yaml")
     PACKAGE = FOLDER / "thymio" / "thymio_description"
