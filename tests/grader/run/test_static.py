@@ -95,6 +95,21 @@ def test_a_set_up_that_writes_wherever_it_can_spoils_its_own_answer_alone(tmp_pa
     assert result.run.outcome == "finished"
 
 
+def test_what_a_set_up_leaves_running_is_ended_and_costs_nothing(tmp_path):
+    daemons = """
+import os, time
+for _ in range(8):
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork() == 0:
+            time.sleep(1000)
+        os._exit(0)
+"""
+    text = (REFERENCE / "setup.py").read_text()
+    result = grader.grade(written(tmp_path, {"setup.py": f"{daemons}\n{text}"}), EXERCISE)
+    assert result.score == 100
+
+
 def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
     path = written(tmp_path, {"launch/spawn.launch.py": NEVER_ENDS})
     result = grader.grade(path, EXERCISE)

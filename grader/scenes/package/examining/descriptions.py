@@ -15,16 +15,17 @@ from grader.scenes.package.examining.taken import Taken
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].
-_MOST_NUMBERS: Final = 30
+_MOST_NUMBERS: Final = 60
 _LONGEST_TEXT: Final = 400_000
 _MOST_VARIED: Final = 4_000_000
-_NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_PROPERTY: Final = re.compile(
-    rf'<xacro:property\b(?=[^>]*\bname="(?P<name>\w+)")[^>]*\bvalue="(?P<value>\s*{_NUMBER}\s*)"'
+#: A number, or `${...}` with an expression.
+_NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\$\{[^${}\"']*\}"
+_GIVEN: Final = (
+    r"""<xacro:{}\b(?=[^>]*\bname\s*=\s*["'](?P<name>\w+)["'])"""
+    r"""[^>]*\b{}\s*=\s*["']\s*(?P<value>""" + _NUMBER + r""")\s*["']"""
 )
-_ARGUMENT: Final = re.compile(
-    rf'<xacro:arg\b(?=[^>]*\bname="(?P<name>\w+)")[^>]*\bdefault="(?P<value>\s*{_NUMBER}\s*)"'
-)
+_PROPERTY: Final = re.compile(_GIVEN.replace("{}", "property", 1).replace("{}", "value", 1))
+_ARGUMENT: Final = re.compile(_GIVEN.replace("{}", "arg", 1).replace("{}", "default", 1))
 
 
 def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
@@ -125,8 +126,9 @@ def varied(place: Place, source: str, words: list[str]) -> list[dict[str, str]]:
         for match in (*_PROPERTY.finditer(text), *_ARGUMENT.finditer(text)):
             if len(found) >= _MOST_NUMBERS or size > _MOST_VARIED:
                 return found
-            value = 2 * float(match["value"])
-            other = f"{text[: match.start('value')]}{value!r}{text[match.end('value') :]}"
+            value = match["value"].removeprefix("${").removesuffix("}")
+            doubled = f"${{2 * ({value})}}" if value != match["value"] else repr(2 * float(value))
+            other = f"{text[: match.start('value')]}{doubled}{text[match.end('value') :]}"
             path.write_text(other, encoding="utf-8")
             code, made, _ = taken.xacro([source, *words])
             path.write_text(text, encoding="utf-8")

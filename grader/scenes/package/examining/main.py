@@ -23,10 +23,10 @@ if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
 from grader.scenes.package import strict, trace  # noqa: E402
-from grader.scenes.package.examining import descriptions, launches, layout, packages  # noqa: E402
+from grader.scenes.package.examining import descriptions, launches, layout, leftovers, packages  # noqa: E402
 from grader.scenes.package.examining.layout import Installed  # noqa: E402
 from grader.scenes.package.examining.place import Place  # noqa: E402
-from grader.scenes.package.examining.steps import Ended, problem_of, step  # noqa: E402
+from grader.scenes.package.examining.steps import NONSENSE, Ended, problem_of, step  # noqa: E402
 from grader.scenes.package.trace import (  # noqa: E402
     Description,
     Launch,
@@ -45,6 +45,7 @@ def main() -> None:
 
     order = json.loads(sys.argv[1])
     CDLL(None).prctl(4, 0)  # PR_SET_DUMPABLE: no copy opens our descriptors by /proc
+    leftovers.adopt()
     with tempfile.TemporaryDirectory(prefix="package-") as scratch:
         folder = Path(order["folder"]) if "folder" in order else None
         found = look(Path(order["root"]), order["package"], Path(scratch).resolve(), folder)
@@ -120,9 +121,7 @@ class Looking:
         try:
             return self._taken(file, said)
         except (ValueError, KeyError, TypeError, IndexError):
-            return _ended(
-                file, {**vars(Problem("limit", "its process was made to answer nonsense"))}
-            )
+            return _ended(file, vars(Problem("limit", NONSENSE)))
 
     def _taken(self, file: str, said: dict[str, Any]) -> Launch:
         """A launch file as what was taken down of it."""

@@ -10,10 +10,12 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from grader import limited
+from grader.scenes.package.examining import leftovers
 from grader.scenes.package.trace import Problem
 
 LIMITS: Final = limited.Limits(cpu_s=20.0, wall_s=40.0, memory_bytes=2**30, answer_bytes=16_000_000)
 _LONGEST: Final = 400
+NONSENSE: Final = "it spoils what is taken down of it"
 #: Names a file of the package's own by its path; '' for others.
 Own = Callable[[str], str]
 
@@ -53,8 +55,12 @@ def step(work: Callable[[], Any], own: Own) -> Any:
         said = json.loads(limited.call(answer, LIMITS).decode("ascii"))
     except limited.LimitHit as hit:
         raise Ended(Problem("limit", f"it {hit}")) from None
+    except OSError as error:
+        raise Ended(Problem("limit", f"it could not be started: {error.strerror}")) from None
     except (ValueError, RecursionError):
-        raise Ended(Problem("limit", "its process was made to answer nonsense")) from None
+        raise Ended(Problem("limit", NONSENSE)) from None
+    finally:
+        leftovers.end()
     if "problem" in said:
         raise Ended(Problem(**said["problem"]))
     return said["made"]
