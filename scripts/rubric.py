@@ -12,7 +12,10 @@ from grader.exercise.loading import load_exercise  # noqa: E402
 from grader.exercise.rubric import rubric  # noqa: E402
 
 PAGE = ROOT / "docs" / "rubric.md"
-EXERCISES = ("turtlesim_challenge", "square", "state_publisher", "description_package")
+EXERCISES = (
+    *("turtlesim_challenge", "square", "state_publisher"),
+    *("description_package", "thymio_package"),
+)
 #: What stands between these two lines is written here.
 FIRST, LAST = "<!-- from the checks: python scripts/rubric.py -->", "<!-- so far -->"
 

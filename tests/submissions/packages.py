@@ -18,7 +18,7 @@ EXERCISE = load_exercise("description_package")
 SOLUTIONS = {solution.name: solution for solution in read_solutions(EXERCISE)}
 REFERENCE = SOLUTIONS["reference"].path
 #: The tutorials followed, and what a course makes of them.
-HANDED_IN = ("r2d2_tutorial", "urdf_to_package", "thymio")
+HANDED_IN = ("r2d2_tutorial", "urdf_to_package")
 
 
 def looked_at(path: Path, package: str = "") -> PackageTrace:

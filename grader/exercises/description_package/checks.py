@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package import (
     installing,
     launching,
     needs,
-    parametric,
     robots,
     spawning,
 )
-from grader.exercises.description_package.looked import Looked, nothing
+from grader.exercises.description_package.looked import looked_at
 from grader.recording.recording import Recordings
 
 checks = Checks()
-
-
-def _of(recordings: Recordings, judge: Callable[[Looked], Finding]) -> Finding:
-    looked = Looked.at(recordings)
-    return nothing(recordings) if looked is None else judge(looked)
 
 
 @checks()
@@ -42,7 +34,7 @@ def installed(recordings: Recordings, tolerances: Tolerances) -> Finding:
     A marker below share/ament_index, or a package.xml, that nothing installs costs nothing: colcon
     adds both.
     """
-    return _of(recordings, installing.judge)
+    return looked_at(recordings, installing.judge)
 
 
 @checks()
@@ -60,7 +52,7 @@ def launch(recordings: Recordings, tolerances: Tolerances) -> Finding:
     If it ends with an error: 0; if another one of the package does: half at most. One that uses
     what the grader does not know makes this check not judged, where nothing else passes it.
     """
-    return _of(recordings, launching.judge)
+    return looked_at(recordings, launching.judge)
 
 
 @checks()
@@ -75,7 +67,7 @@ def urdf(recordings: Recordings, tolerances: Tolerances) -> Finding:
       meant (limits with lower above upper, an axis 0 0 0, a link with two parents, a mimic of no
       joint, a mass or moment of inertia that no body has): half of the points.
     """
-    return _of(recordings, robots.judge)
+    return looked_at(recordings, robots.judge)
 
 
 @checks()
@@ -87,7 +79,7 @@ def meshes(recordings: Recordings, tolerances: Tolerances) -> Finding:
     the share of the points. One that the package has and does not install is no fault here.
     A description without any gets all points, if a launch file starts anything.
     """
-    return _of(recordings, robots.judge_meshes)
+    return looked_at(recordings, robots.judge_meshes)
 
 
 @checks()
@@ -99,7 +91,7 @@ def dependencies(recordings: Recordings, tolerances: Tolerances) -> Finding:
     (robot_state_publisher, rviz2, tf2_ros, ...) need not be declared. The share that is, is the
     share of the points.
     """
-    return _of(recordings, needs.judge)
+    return looked_at(recordings, needs.judge)
 
 
 @checks()
@@ -110,51 +102,4 @@ def spawn(recordings: Recordings, tolerances: Tolerances) -> Finding:
     a name where one is needed, numbers as places, and a topic that a launch file publishes.
     All or nothing; a package that puts nothing into Gazebo gets the points.
     """
-    return _of(recordings, lambda looked: spawning.judge(looked, False))
-
-
-@checks()
-def spawns(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """A launch file puts the robot into Gazebo.
-
-    As `spawn`, and one has to be there.
-    """
-    return _of(recordings, lambda looked: spawning.judge(looked, True))
-
-
-@checks()
-def parameters(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """The numbers of the xacro are what the robot is made of.
-
-    Each of the properties {numbers} is doubled, and xacro run again: a part has to change its size,
-    and something has to move along. The share of those that do so is the share of the points.
-    """
-    names = [str(each) for each in tolerances["numbers"]]
-    return _of(recordings, lambda looked: parametric.judge(looked, names))
-
-
-@checks()
-def masses(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """The robot weighs what it should.
-
-    All links together weigh {mass_kg} kg, give or take {mass_error%}, and each link with a
-    collision has an inertial. Otherwise half of the points.
-    """
-    mass_kg, error = tolerances["mass_kg"], tolerances["mass_error"]
-    return _of(recordings, lambda looked: parametric.judge_masses(looked, mass_kg, error))
-
-
-@checks()
-def one_source(recordings: Recordings, tolerances: Tolerances) -> Finding:
-    """Beside Gazebo nothing else publishes joint states.
-
-    No launch file that puts the robot into Gazebo starts a joint_state_publisher. All or nothing.
-    """
-    return _of(recordings, spawning.judge_one_source)
-
-
-@checks.tolerance
-def numbers(value: object) -> None:
-    """Look at the names of properties."""
-    if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
-        raise ValueError(f"expected a list of names, found {value!r}")
+    return looked_at(recordings, lambda looked: spawning.judge(looked, False))

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked, folder_of, placed, shown
+from grader.exercises.description_package.looked import Looked, folder_of, how_it_ends, shown
 from grader.scenes.package.trace import EMPTY, Lacking
 
 #: One thing missing leaves so much; two leave nothing.
@@ -63,7 +63,7 @@ def _stops(looked: Looked) -> Finding | None:
             )
         return Finding(
             0,
-            f"setup.py ends with {shown(problem.text)}{placed(problem)}: {_BUILD}.",
+            f"setup.py {how_it_ends(problem)}: {_BUILD}.",
             "Run `python3 setup.py --name` in the package's folder: it shows the same.",
         )
     if _is_cmake(looked) and setup.told and setup.told != looked.name:

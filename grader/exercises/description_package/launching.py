@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked, not_judged, placed, shown
+from grader.exercises.description_package.looked import Looked, how_it_ends, not_judged, shown
 from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
 from grader.scenes.package.trace import Launch, Node
 from robot_py.urdf import parse
@@ -54,7 +54,7 @@ def judge(looked: Looked) -> Finding:
         assert launch.problem is not None
         return Finding(
             min(share, BROKEN) if launch.file != best else 0.0,
-            f"{launch.file} ends with {shown(launch.problem.text)}{placed(launch.problem)}.",
+            f"{launch.file} {how_it_ends(launch.problem)}.",
             _advice(launch.problem.text),
         )
     strange = next((each for each in looked.launches if each.file == best), None)

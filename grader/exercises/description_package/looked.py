@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
@@ -60,8 +60,20 @@ class Looked:
         return next((each for each, problem in problems if problem.kind in kinds), None)
 
 
-def nothing(recordings: Recordings) -> Finding:
-    """The finding of every check where nobody got so far."""
+def looked_at(recordings: Recordings, judge: Callable[[Looked], Finding]) -> Finding:
+    """What a check finds of a package; the same for every check where nobody got so far."""
+    looked = Looked.at(recordings)
+    return _nothing(recordings) if looked is None else judge(looked)
+
+
+def how_it_ends(problem: Problem) -> str:
+    """'ends with NameError: ... (setup.py, line 3)', 'did not come to an end in 20 s ...'."""
+    if problem.kind == "limit":
+        return shown(problem.text.removeprefix("it "))
+    return f"ends with {shown(problem.text)}{placed(problem)}"
+
+
+def _nothing(recordings: Recordings) -> Finding:
     run = recordings.nominal.run
     why = f": {run.flags[0]}" if run.flags else ""
     return Finding(

@@ -35,11 +35,7 @@ def judge(looked: Looked, is_asked: bool) -> Finding:
     if looked.starts_nothing:
         return nothing_started()
     found = [(launch, node) for launch in looked.launches for node in spawners(launch)]
-    included = [
-        launch
-        for launch in looked.launches
-        if any(each.file.endswith("gz_spawn_model.launch.py") for each in launch.includes)
-    ]
+    included = [launch for launch in looked.launches if _includes_spawner(launch)]
     if not found and not included:
         if is_asked:
             return Finding(
@@ -58,6 +54,10 @@ def judge(looked: Looked, is_asked: bool) -> Finding:
             )
     launches = [launch for launch, _ in found] or included
     return Finding(1, f"{launches[0].file} puts the robot into Gazebo.")
+
+
+def _includes_spawner(launch: Launch) -> bool:
+    return any(each.file.endswith("gz_spawn_model.launch.py") for each in launch.includes)
 
 
 def _faults(looked: Looked, launch: Launch, node: Node) -> Iterator[str]:
@@ -133,7 +133,7 @@ def _is_remapped(launch: Launch, topic: str) -> bool:
 def judge_one_source(looked: Looked) -> Finding:
     """Whether the simulator alone says where the joints are."""
     for launch in looked.launches:
-        if not spawners(launch):
+        if not spawners(launch) and not _includes_spawner(launch):
             continue
         second = [node for node in launch.nodes if node.package in JOINT_SOURCES]
         if second:

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked
+from grader.exercises.description_package.looked import Looked, shown
 from robot_py import kinematics
-from robot_py.model import Model
+from robot_py.model import Box, Model, Pose
 from robot_py.urdf import parse
 
 _MOVED_M = 1e-6
+#: What hangs on a part so far from its middle, as a share of half of its size, is at its side.
+_ASIDE = 0.25
+
+
+class _Shape(NamedTuple):
+    origin: Pose
+    geometry: Box
 
 
 def judge(looked: Looked, names: Sequence[str]) -> Finding:
@@ -23,7 +31,7 @@ def judge(looked: Looked, names: Sequence[str]) -> Finding:
             0, "There is no robot to vary.", "See what is said of the description first."
         )
     good, told, help_ = 0, "", ""
-    texts = {each.name: looked.text(each.text) for each in looked.trace.varied}
+    texts = _varied(looked)
     for name in names:
         if name not in texts:
             fault = f"there is no property {name} with a number as its value"
@@ -49,12 +57,23 @@ def _fault(name: str, model: Model, text: str) -> tuple[str, str]:
             f"doubling {name} changes the size of nothing",
             f"Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
         )
-    if not _moved(model, other):
+    stays = next(_staying(model, other), "")
+    if stays:
         return (
-            f"doubling {name} changes the size of a part, and nothing moves along",
+            f"doubling {name} changes the size of a part, and {shown(stays)} does not move along",
             f"Write the origins of wheels and caster with ${{{name}}}, not as numbers.",
         )
     return "", ""
+
+
+def _varied(looked: Looked) -> dict[str, str]:
+    """Name -> the description with that number doubled; of two such numbers the one that counts."""
+    found: dict[str, str] = {}
+    for each in looked.trace.varied:
+        as_before = looked.trace.descriptions[each.of].text
+        if each.name not in found or each.text != as_before:
+            found[each.name] = looked.text(each.text)
+    return found
 
 
 def _model(looked: Looked) -> Model | None:
@@ -70,13 +89,46 @@ def _sizes(model: Model) -> list[object]:
     ]
 
 
-def _moved(one: Model, other: Model) -> bool:
-    """Whether a link lies in another place, or a shape in its link."""
+def _staying(one: Model, other: Model) -> Iterator[str]:
+    """Links that should move along with a part that has changed its size, and do not.
+
+    They hang on it away from its middle, along the side that has changed. Of a part that is no
+    upright box nobody knows which side that is: then something has to move.
+    """
+    boxes = [(name, *both) for name in one.links if (both := _boxes(one, other, name))]
+    if not boxes and not _has_moved(one, other):
+        yield "nothing"
+    for part, before, after in boxes:
+        for joint in one.joints.values():
+            if joint.parent != part or joint.name not in other.joints:
+                continue
+            for axis in range(3):
+                half = before.geometry.size[axis] / 2
+                offset = joint.origin.xyz[axis] - before.origin.xyz[axis]
+                later = other.joints[joint.name].origin.xyz[axis] - after.origin.xyz[axis]
+                has_changed = abs(after.geometry.size[axis] / 2 - half) > _MOVED_M
+                if has_changed and abs(offset) > _ASIDE * half and abs(later - offset) <= _MOVED_M:
+                    yield joint.child
+
+
+def _boxes(one: Model, other: Model, link: str) -> tuple[_Shape, _Shape] | None:
+    """The upright box that a link shows, before and after."""
+    both = [model.links[link].visuals for model in (one, other) if link in model.links]
+    if len(both) < 2 or not all(both):
+        return None
+    before, after = both[0][0], both[1][0]
+    if not isinstance(before.geometry, Box) or not isinstance(after.geometry, Box):
+        return None
+    if before.geometry == after.geometry or any(before.origin.rpy):
+        return None
+    return _Shape(before.origin, before.geometry), _Shape(after.origin, after.geometry)
+
+
+def _has_moved(one: Model, other: Model) -> bool:
+    """Whether a link lies in another place."""
     before, after = (kinematics.forward(each, {}) for each in (one, other))
-    for name in before.keys() & after.keys():
-        if np.abs(before[name] - after[name]).max() > _MOVED_M:
-            return True
-    return False
+    common = before.keys() & after.keys()
+    return any(np.abs(before[name] - after[name]).max() > _MOVED_M for name in common)
 
 
 def judge_masses(looked: Looked, mass_kg: float, error: float) -> Finding:

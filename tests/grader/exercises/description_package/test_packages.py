@@ -6,11 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise.loading import load_exercise
 from grader.grading import judge
 from grader.result.result import Result
-from grader.testing.odd_packages import odd_packages
-from grader.testing.sanity import examine
 from tests.submissions.packages import (
     EXERCISE,
     FOLDER,
@@ -216,42 +213,3 @@ def test_who_asks_for_what_is_not_there_is_told_with_the_line(tmp_path):
     line = 1 + next(n for n, each in enumerate(text.splitlines()) if "wolker" in each)
     result = graded(written(tmp_path, {DISPLAY: text}))
     assert f"{DISPLAY} (line {line}) asks for" in result.diagnosis.cause
-
-
-class TestThymio:
-    EXERCISE = load_exercise(EXERCISE.folder / "thymio.yaml")
-    PACKAGE = FOLDER / "thymio" / "thymio_description"
-    XACRO = "urdf/thymio.urdf.xacro"
-
-    def changed(self, folder: Path, file: str, old: str, new: str) -> Result:
-        text = (self.PACKAGE / file).read_text()
-        assert old in text
-        path = written(folder, {file: text.replace(old, new)}, self.PACKAGE)
-        return graded(path, self.EXERCISE)
-
-    def test_a_right_one_keeps_all_points(self):
-        assert lost(graded(self.PACKAGE, self.EXERCISE)) == {}
-
-    def test_an_origin_as_a_number_does_not_move_along(self, tmp_path):
-        moving = "${side * (base_width - wheel_width) / 2}"
-        result = self.changed(tmp_path, self.XACRO, moving, "${side * 0.0485}")
-        assert lost(result) == {"parameters": 0.5}
-        assert "doubling base_width changes the size of a part" in result.diagnosis.cause
-
-    def test_masses_are_added_up(self, tmp_path):
-        result = self.changed(
-            tmp_path, self.XACRO, 'name="mass" value="0.27"', 'name="mass" value="27"'
-        )
-        assert lost(result) == {"masses": 0.5}
-        assert "weighs 27000 g" in result.diagnosis.cause
-
-    def test_a_second_source_of_joints_beside_gazebo_is_told(self, tmp_path):
-        node = "Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui'),"
-        old = "        model_arg,\n"
-        result = self.changed(tmp_path, "launch/spawn.launch.py", old, f"{old}        {node}\n")
-        assert lost(result) == {"one_source": 0}
-        assert "joint_state_publisher_gui beside Gazebo" in result.diagnosis.cause
-
-    def test_its_checks_survive_whatever_a_package_is(self):
-        for what, recordings in odd_packages().items():
-            assert examine(self.EXERCISE, recordings)[1] == [], what

@@ -1,0 +1,1 @@
+"""The exercise thymio_package: a Thymio in xacro, looked at and not started."""
