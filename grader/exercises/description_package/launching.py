@@ -70,7 +70,8 @@ def judge(looked: Looked) -> Finding:
         return Finding(
             1, f"{best} starts {PUBLISHER} with the description, and what belongs to it."
         )
-    texts = " ".join(part.rationale for part in found[best])
+    first, *others = (part.rationale for part in found[best])
+    texts = " ".join((first, *(f"{each[0].upper()}{each[1:]}" for each in others)))
     return Finding(share, f"{best}: {texts}", found[best][0].help)
 
 

@@ -132,9 +132,15 @@ def _is_remapped(launch: Launch, topic: str) -> bool:
 
 def judge_one_source(looked: Looked) -> Finding:
     """Whether the simulator alone says where the joints are."""
-    for launch in looked.launches:
-        if not spawners(launch) and not _includes_spawner(launch):
-            continue
+    into = [each for each in looked.launches if spawners(each) or _includes_spawner(each)]
+    if not into:
+        return Finding(
+            0,
+            "Not judged: no launch file puts the robot into Gazebo.",
+            "Write that launch file first.",
+            judged=False,
+        )
+    for launch in into:
         second = [node for node in launch.nodes if node.package in JOINT_SOURCES]
         if second:
             return Finding(

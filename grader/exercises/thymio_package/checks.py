@@ -41,7 +41,7 @@ def masses(recordings: Recordings, tolerances: Tolerances) -> Finding:
     """The robot weighs what it should.
 
     All links together weigh {mass_kg} kg, give or take {mass_error%}, and each link with a
-    collision has an inertial. Otherwise half of the points.
+    collision has an inertial. Otherwise half of the points; none without any mass.
     """
     mass_kg, error = tolerances["mass_kg"], tolerances["mass_error"]
     return looked_at(recordings, lambda looked: parametric.judge_masses(looked, mass_kg, error))

@@ -148,7 +148,7 @@ def judge_masses(looked: Looked, mass_kg: float, error: float) -> Finding:
     mass = sum(each.inertial.mass for each in model.links.values() if each.inertial)
     if abs(mass - mass_kg) > error * mass_kg:
         return Finding(
-            0.5,
+            0.5 if mass else 0,
             f"The robot weighs {1000 * mass:.0f} g in all; expected {1000 * mass_kg:.0f} g, give "
             f"or take {100 * error:g} %.",
             "Add up the masses of all links.",
