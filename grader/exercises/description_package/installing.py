@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, folder_of, how_it_ends, shown
-from grader.scenes.package.trace import EMPTY, Lacking
+from grader.scenes.package.trace import EMPTY, Lacking, Problem
 
 #: One thing missing leaves so much; two leave nothing.
 ONE_MISSING = 0.5
@@ -53,8 +53,7 @@ def _stops(looked: Looked) -> Finding | None:
     if setup.problem is not None:
         problem = setup.problem
         if problem.kind == "unknown":
-            text = f"Not judged: setup.py could not be run: {shown(problem.text)}."
-            return Finding(0, text, "Tell whoever runs the course.", judged=False)
+            return None if next(_missing(looked), None) is None else _not_known(problem)
         if problem.text.startswith("there is no"):
             return Finding(
                 0,
@@ -95,6 +94,12 @@ def _stops(looked: Looked) -> Finding | None:
             "they come into.",
         )
     return None
+
+
+def _not_known(problem: Problem) -> Finding:
+    """Of a set-up that nobody can follow here, where something seems to be missing."""
+    said = f"{problem.file or 'setup.py'} could not be followed: {shown(problem.text)}"
+    return Finding(0, f"Not judged: {said}.", "Tell whoever runs the course.", judged=False)
 
 
 def _is_cmake(looked: Looked) -> bool:

@@ -10,7 +10,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
-_COMMAND = re.compile(r"\b(project|set|install|ament_python_install_package)\s*\(([^()]*)\)", re.I)
+_COMMAND = re.compile(r"\b(project|set|file|install)\s*\(([^()]*)\)", re.I)
+#: The innermost loop: its head, and its body.
+_LOOP = re.compile(
+    r"\bforeach\s*\(([^()]*)\)((?:(?!\bforeach\s*\().)*?)\bendforeach\s*\([^()]*\)", re.I | re.S
+)
+_HERE = ("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR")
+_MOST_CHARACTERS, _MOST_FILES = 1_000_000, 20_000
 _WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|(\S+)', re.DOTALL)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _KINDS = ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS")
@@ -30,57 +36,98 @@ class Read(NamedTuple):
         files: (folder below the prefix, file of the package).
         absent: what it installs, and is not there.
         programs: what is compiled and installed: 'lib/NAME/PROGRAM'.
+        unknown: what it installs, with variables that nobody knows here.
     """
 
     project: str
     files: list[tuple[str, str]]
     absent: list[str]
     programs: list[str]
+    unknown: list[str]
 
 
 def read(folder: Path) -> Read:
     """What the CMakeLists.txt of a package says."""
-    text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
-    variables: dict[str, str] = {"CMAKE_CURRENT_SOURCE_DIR": ".", "CMAKE_SOURCE_DIR": "."}
-    files: list[tuple[str, str]] = []
-    absent: list[str] = []
-    programs: list[str] = []
-    for found in _COMMAND.finditer(_COMMENT.sub("", text)):
+    with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
+        text = file.read(_MOST_CHARACTERS)
+    variables = {**dict.fromkeys(_HERE, "."), "CMAKE_INSTALL_PREFIX": ""}
+    made = Read("", [], [], [], [])
+    for found in _COMMAND.finditer(_unrolled(_COMMENT.sub("", text))):
         words = [_filled(a or b, variables) for a, b in _WORD.findall(found[2])]
         match found[1].lower():
             case "project" if words:
                 variables["PROJECT_NAME"] = words[0]
             case "set" if words:
                 variables[words[0]] = ";".join(words[1:])
+            case "file" if len(words) > 2 and words[0].upper() in ("GLOB", "GLOB_RECURSE"):
+                variables[words[1]] = ";".join(_globbed(folder, words))
             case "install":
-                _install(folder, words, files, absent, programs)
-    return Read(variables.get("PROJECT_NAME", ""), files, absent, programs)
+                _install(folder, words, made)
+    return made._replace(project=variables.get("PROJECT_NAME", ""))
+
+
+def _unrolled(text: str) -> str:
+    """A text with its loops over words, and over lists of words, written out."""
+
+    def written_out(loop: re.Match[str]) -> str:
+        name, *items = loop[1].split() or [""]
+        kind = [each.upper() for each in items[:2]]
+        if kind[:1] == ["RANGE"]:
+            return ""
+        if kind == ["IN", "LISTS"]:
+            lists = [
+                re.search(rf"\bset\s*\(\s*{re.escape(n)}\s([^()]*)\)", text) for n in items[2:]
+            ]
+            items = [word for each in lists if each for word in each[1].split()]
+        elif kind == ["IN", "ITEMS"]:
+            items = items[2:]
+        return "\n".join(loop[2].replace(f"${{{name}}}", each) for each in items[:100])
+
+    for _ in range(5):
+        text = _LOOP.sub(written_out, text)[:_MOST_CHARACTERS]
+    return text
+
+
+def _globbed(folder: Path, words: list[str]) -> list[str]:
+    before = "" if words[0].upper() == "GLOB" else "**/"
+    patterns = [each for each in words[2:] if each.upper() != "CONFIGURE_DEPENDS"]
+    found = {
+        str(path.relative_to(folder))
+        for each in patterns
+        if not each.startswith("/") and ".." not in each and "RELATIVE" not in patterns
+        for path in folder.glob(before + each.removeprefix("./"))
+        if path.is_file()
+    }
+    return sorted(found)[:_MOST_FILES]
 
 
 def _filled(word: str, variables: dict[str, str]) -> str:
+    """A word with its variables put in; those that nobody knows stay as they are."""
     for _ in range(5):
-        word = _VARIABLE.sub(lambda found: variables.get(found[1], ""), word)
+        word = _VARIABLE.sub(lambda found: variables.get(found[1], found[0]), word)
     return word
 
 
-def _install(
-    folder: Path,
-    words: list[str],
-    files: list[tuple[str, str]],
-    absent: list[str],
-    programs: list[str],
-) -> None:
+def _install(folder: Path, words: list[str], made: Read) -> None:
+    files, absent, programs = made.files, made.absent, made.programs
     if not words or words[0].upper() not in _KINDS or "DESTINATION" not in words[:-1]:
         return
     where = words[words.index("DESTINATION") + 1].strip("/")
     end = next((n for n, word in enumerate(words[1:], 1) if word in _OPTIONS), len(words))
     named = [each for word in words[1:end] for each in word.split(";") if each]
+    unknown = [each for each in (where, *named) if "${" in each or "$<" in each]
+    if unknown:
+        made.unknown.append(unknown[0])
+        return
     if words[0].upper() == "TARGETS":
         programs += [f"{where}/{name}" for name in named]
         return
     is_kept = _patterns(words)
     for name in named:
-        source = folder / name
+        source = Path(os.path.normpath(folder / name))
+        if not source.resolve().is_relative_to(folder.resolve()):
+            made.unknown.append(name)
+            continue
         if words[0].upper() == "DIRECTORY":
             if not source.is_dir():
                 absent.append(name.rstrip("/"))
@@ -90,7 +137,9 @@ def _install(
             for at, _, names in sorted(os.walk(source)):
                 for each in sorted(names):
                     path = Path(at, each)
-                    if is_kept(path.relative_to(source).as_posix(), each):
+                    if is_kept(path.relative_to(source).as_posix(), each) and (
+                        len(files) < _MOST_FILES
+                    ):
                         below = path.relative_to(base).parent.as_posix()
                         to = f"{where}/{below}" if below != "." else where
                         files.append((to, os.path.relpath(path, folder)))

@@ -101,7 +101,9 @@ def _said(
         if not (package.folder / "CMakeLists.txt").is_file():
             return {}, Problem("error", "there is no CMakeLists.txt"), [], [], []
         found = cmake.read(package.folder)
-        return {"name": found.project}, None, found.absent, found.files, found.programs
+        unknown = f"it installs {found.unknown[0]:.200}" if found.unknown else ""
+        problem = Problem("unknown", unknown, "CMakeLists.txt") if unknown else None
+        return {"name": found.project}, problem, found.absent, found.files, found.programs
     if not (package.folder / "setup.py").is_file():
         return {}, Problem("error", "there is no setup.py"), [], [], []
 
