@@ -117,6 +117,15 @@ def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
     assert "did not come to an end" in result.diagnosis.cause
 
 
+def test_a_set_up_that_deletes_the_package_is_told_what_is_missing(tmp_path):
+    delete = "import os, shutil\nshutil.rmtree(os.getcwd(), ignore_errors=True)\n"
+    text = (REFERENCE / "setup.py").read_text()
+    result = grader.grade(written(tmp_path, {"setup.py": f"{delete}{text}"}), EXERCISE)
+    assert result.run.outcome == "finished"
+    assert shares(result)["installed"] == 0
+    assert "there is no such file" in result.diagnosis.cause
+
+
 def test_a_set_up_that_kills_who_looks_is_judged_and_gets_nothing(tmp_path):
     kill = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
     result = grader.grade(written(tmp_path, {"setup.py": kill}), EXERCISE)

@@ -158,7 +158,10 @@ class Looking:
     def _line(self, file: str, name: str) -> int:
         """The one line of a launch file that has the last part of a path or name; 0 for none."""
         of, own = self._files[file]
-        text = (of.package.folder / own).read_text(encoding="utf-8", errors="replace")
+        try:
+            text = (of.package.folder / own).read_text(encoding="utf-8", errors="replace")
+        except OSError:  # its own code has taken it away
+            return 0
         word = name.replace(" ", "/").rstrip("/").rsplit("/", 1)[-1]
         found = [n for n, line in enumerate(text.splitlines(), 1) if word and word in line]
         return found[0] if len(found) == 1 else 0
