@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from grader.scenes.package.examining.steps import NotKnown
 
+_MOST_ENTITIES = 10_000
 NOT_KNOWN = "it uses {}, which the grader does not know"
 
 
@@ -158,7 +160,9 @@ class LaunchDescription(LaunchDescriptionEntity):
     def __init__(
         self, initial_entities: Iterable[Any] | None = None, *, deprecated_reason: str | None = None
     ) -> None:
-        self.entities = [] if initial_entities is None else list(initial_entities)
+        self.entities = list(islice(initial_entities or (), _MOST_ENTITIES + 1))
+        if len(self.entities) > _MOST_ENTITIES:
+            raise RecursionError("a launch description of actions without end")
         self.deprecated_reason = deprecated_reason
 
     def add_entity(self, entity: Any) -> None:
@@ -203,5 +207,5 @@ def walk(entities: Any, context: LaunchContext, depth: int = 0) -> None:
                 f"expected an action in the launch description, found {type(entity).__name__}"
             )
         if depth > 60:
-            raise RecursionError("launch files that include each other")
+            raise RecursionError("launch files or actions that lead to each other without end")
         walk(entity.visit(context), context, depth + 1)
