@@ -7,7 +7,7 @@
 | output.txt | what the submission printed | yes |
 | circumstances.json | what differs between equal runs: duration, provenance | if it is there |
 | conduct.json | what the submission's process told of itself, if anything | if it is there |
-| path.png, window.png | the bag's pictures, for people | no |
+| path.png, plan.png, window.png | the bag's pictures, for people, as many as its scene makes | no |
 | scenario.json | the inputs, for `python -m turtlesim_py.scenario` | no |
 
 Two saves of equal recordings differ in circumstances.json at most. metadata.yaml comes into the
@@ -50,7 +50,8 @@ NAME = "recording"
 BAG, METADATA, RUN, OUTPUT = f"{NAME}.mcap", "metadata.yaml", "run.json", "output.txt"
 CIRCUMSTANCES_FILE, SCENARIO = "circumstances.json", "scenario.json"
 CONDUCT, PACKAGE = "conduct.json", "package.json"
-PATH_PICTURE, WINDOW_PICTURE = "path.png", "window.png"
+WINDOW_PICTURE = "window.png"
+PICTURES = ("path.png", "plan.png", WINDOW_PICTURE)
 #: The scene of a recording that names none.
 FIRST_SCENE = "turtlesim"
 #: The one whose traces tell of packages.
@@ -58,7 +59,8 @@ PACKAGE_SCENE = "package"
 #: In the order in which they come into the folder.
 FILES = (
     *(BAG, RUN, OUTPUT, CONDUCT, PACKAGE, CIRCUMSTANCES_FILE, SCENARIO),
-    *(PATH_PICTURE, WINDOW_PICTURE, METADATA),
+    *PICTURES,
+    METADATA,
 )
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")

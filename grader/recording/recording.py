@@ -15,7 +15,7 @@ from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.scenes import load_scene
 from grader.scenes.scene import Start, Trace
-from grader.scenes.view import Pixels
+from grader.scenes.view import Pictures, Pixels
 
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed"]
 Clock = Literal["virtual", "real"]
@@ -89,6 +89,11 @@ class Recording:
     provenance: Provenance | None = field(default=None, compare=False)
 
     @cached_property
+    def pictures(self) -> Pictures:
+        """The pictures of the scene at the end; a robot takes a second to be drawn."""
+        return load_scene(self.scene).pictures(self.trace)
+
+    @cached_property
     def png(self) -> Mapping[str, bytes]:
         """The pictures of the scene at the end, as PNG files by their names.
 
@@ -102,7 +107,7 @@ class Recording:
             Image.fromarray(pixels).save(file, format="PNG")
             return file.getvalue()
 
-        made = load_scene(self.scene).pictures(self.trace)
+        made = self.pictures
         return {name: encoded(p) for name, p in {"window": made.window, **made.others}.items()}
 
 

@@ -244,6 +244,13 @@ class Scene(Protocol):
         """How places become pixels."""
 
     @property
+    def window_is_plane(self) -> bool:
+        """Whether what a person would have seen is that plane, so that places can be shown in it.
+
+        Else its `pictures` have a `plan`, if anything moves.
+        """
+
+    @property
     def farthest_start_m(self) -> float:
         """So far from the usual place something can start and still has room on every side."""
 

@@ -1,13 +1,18 @@
-"""A trace as people look at it: pictures, tracks in a plane, curves over time, calls.
+"""A trace as people look at it: pictures, tracks in a plane, curves over time, calls, and parts.
 
-A scene makes these; a page draws them and knows nothing else of a scene.
+A scene makes these; a page draws them and knows nothing else of a scene. A scene that has nothing
+of a kind leaves it empty, and the page has no place for it. Every text in them may come from a
+submission: it is clipped here, and escaped by the page.
+
+Parts are what else there is to see, in the order in which a page shows them: a `Solid` can be
+turned and follows the time, a `Tree` is drawn from its top, a `Table` has rows.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -89,6 +94,129 @@ class Rest:
     time_s: float
 
 
+class Placing(NamedTuple):
+    """Where a frame of a solid is in its parent: x, y, z [m] and a quaternion x, y, z, w."""
+
+    at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    turned: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class SolidFrame:
+    """A frame in which shapes of a solid lie.
+
+    Attributes:
+        name: a robot's link.
+        parent: the number of the frame in which this one is; -1 for the ground's. It is smaller
+            than this one's own.
+        placings: where in it, at each of the solid's ticks, or once where that never changes;
+            None where nobody has said it.
+    """
+
+    name: str
+    parent: int
+    placings: tuple[Placing | None, ...]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A shape of a solid.
+
+    Attributes:
+        frame: the number of its frame.
+        placing: in that.
+        sizes: of a box x, y, z; of a cylinder radius and length, along z; of a sphere the radius
+            [m]; of triangles nine numbers each.
+        color: "#rrggbb".
+        alpha: 0 to 1, which hides all behind.
+    """
+
+    kind: Literal["box", "cylinder", "sphere", "triangles"]
+    frame: int
+    placing: Placing
+    sizes: tuple[float, ...]
+    color: str
+    alpha: float = 1.0
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A thing in space that can be looked at from all sides.
+
+    A frame that nobody has placed is drawn at the origin of the ground's, white.
+
+    Attributes:
+        title: what it is.
+        text: what there is to see, in words.
+        frames, shapes: what it is made of.
+        ticks: when the frames are placed; () where no time passes.
+        ground_m: the height of the ground.
+        way: where it went on the ground, float64 (n, 2) [m].
+        lost: the names of those frames that nobody has placed at the end.
+        left_out: what belongs to it and is not drawn, in words.
+    """
+
+    title: str
+    text: str
+    frames: tuple[SolidFrame, ...]
+    shapes: tuple[Shape, ...]
+    ticks: tuple[int, ...] = ()
+    ground_m: float = 0.0
+    way: Floats = field(default_factory=lambda: np.empty((0, 2)))
+    lost: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class TreeNode:
+    """Something in a tree.
+
+    Attributes:
+        depth: 0 for what hangs on nothing.
+        name, text: what it is, and what there is to say of it, in a line each.
+        mark: `lost` - it should hang on something and does not; `wrong` - something is at odds.
+    """
+
+    depth: int
+    name: str
+    text: str
+    mark: Literal["", "lost", "wrong"] = ""
+
+
+@dataclass(frozen=True)
+class Tree:
+    """What hangs on what: each node after the one that it hangs on, and all of that's below it."""
+
+    title: str
+    nodes: tuple[TreeNode, ...]
+    note: str = ""
+
+
+class Cell(NamedTuple):
+    """A cell of a table: lines of text, and whether something of it is missing or wrong."""
+
+    lines: tuple[str, ...]
+    is_wrong: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under headings; each row has as many cells as there are headings.
+
+    Attributes:
+        title: what it shows.
+        note: what there is to say before it; '' for nothing.
+    """
+
+    title: str
+    headings: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    note: str = ""
+
+
+Part = Solid | Tree | Table
+
+
 @dataclass(frozen=True)
 class View:
     """A recording as a page can show it.
@@ -100,6 +228,7 @@ class View:
         rest: where the first track stood still at the end, if it had moved before.
         curves, calls: over time.
         drawn: what the picture shows at the end, in words, part by part.
+        parts: whatever else there is to see.
     """
 
     tracks: tuple[Track, ...]
@@ -109,6 +238,7 @@ class View:
     curves: tuple[Curve, ...]
     calls: tuple[Call, ...]
     drawn: tuple[str, ...] = ()
+    parts: tuple[Part, ...] = ()
 
 
 class Plane(NamedTuple):
@@ -145,7 +275,12 @@ class Plane(NamedTuple):
 
 @dataclass(frozen=True)
 class Pictures:
-    """The pictures of a recording by name; `window` is what a person would have seen at the end."""
+    """The pictures of a recording by name.
+
+    Attributes:
+        window: what a person would have seen at the end.
+        others: of these `plan` is the scene's plane, where the window shows something else.
+    """
 
     window: Pixels
     others: Mapping[str, Pixels] = field(default_factory=dict)

@@ -100,7 +100,8 @@ def thumb(recordings: Recordings) -> bytes:
 
 def _picture(recording: Recording) -> str:
     """The picture at the end with as many colours as there is room for."""
-    pixels = load_scene(recording.scene).pictures(recording.trace).window
+    made = recording.pictures
+    pixels = made.others.get("plan", made.window)  # the path is drawn over it
     whole = Image.fromarray(pixels).convert("RGB")
     small = whole.resize((EDGE_PX, EDGE_PX), Image.Resampling.LANCZOS)
     for colours in _COLOURS:

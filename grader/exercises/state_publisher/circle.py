@@ -10,7 +10,7 @@ import numpy as np
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.state_publisher.seen import Seen, sentence
-from grader.scenes.robot.motion import ODOM, Floats, Way, bare
+from grader.scenes.robot.motion import ODOM, Floats, Way, bare, fitted
 
 #: What each is worth: the circle, its height, the heading, the quaternion.
 CIRCLE, HEIGHT, HEADING, QUATERNION = 0.35, 0.15, 0.3, 0.2
@@ -193,23 +193,6 @@ def heading_errors(way: Way) -> Floats:
     goes = np.arctan2(steps[moves, 1], steps[moves, 0])
     off: Floats = (yaw[1:-1][moves] - goes + math.pi) % (2 * math.pi) - math.pi
     return off
-
-
-def fitted(points: Floats) -> tuple[float, float, float, float]:
-    """The circle nearest to points, by least squares: its centre, radius, and the usual distance.
-
-    Kasa's fit: x² + y² = 2 a x + 2 b y + c. Not a number where the points are none, or a line.
-    """
-    middle = points.mean(axis=0)
-    x, y = (points - middle).T
-    matrix = np.column_stack((2 * x, 2 * y, np.ones(len(x))))
-    (a, b, c), _, rank, _ = np.linalg.lstsq(matrix, x * x + y * y, rcond=None)
-    square = c + a * a + b * b
-    if rank < 3 or not square > 0:
-        return math.nan, math.nan, math.nan, math.nan
-    radius = math.sqrt(square)
-    off = float(np.quantile(np.abs(np.hypot(x - a, y - b) - radius), 0.95))
-    return float(a + middle[0]), float(b + middle[1]), radius, off
 
 
 def _place(point: Floats) -> str:

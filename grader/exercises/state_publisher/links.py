@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from grader.exercise.verdict import Finding
 from grader.exercises.state_publisher.naming import listed
 from grader.exercises.state_publisher.seen import Seen, sentence
-from grader.scenes.robot.decoding import Transform
+from grader.scenes.robot.frames import why_refused
 from grader.scenes.robot.motion import ODOM, bare
 
 HELP = (
@@ -54,19 +52,6 @@ def judge_links(seen: Seen) -> Finding:
             where,
         )
     return Finding(1, f"All {len(seen.links)} links have a place in {ODOM!r}.")
-
-
-def why_refused(transform: Transform) -> str:
-    """Why tf2 does not keep a transform that it hears, as a clause; ''."""
-    numbers = (*transform.translation, *transform.rotation)
-    parent, child = bare(transform.parent), bare(transform.child)
-    if not parent or not child:
-        return "a frame has no name"
-    if parent == child:
-        return "the two are one"
-    if not all(map(math.isfinite, numbers)):
-        return "it holds what is no number"
-    return "" if any(transform.rotation) else "its quaternion is all zeros, which turns nothing"
 
 
 def _is_below_odom(link: str, up: dict[str, str]) -> bool:

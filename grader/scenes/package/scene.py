@@ -36,6 +36,7 @@ class Package:
     introduction: Final = Introduction((), (), ())
     thing: Final = "package"
     plane: Final = view.PLANE
+    window_is_plane: Final = False
     finished: Final = "the package was looked at"
     farthest_start_m: Final = 0.0
 

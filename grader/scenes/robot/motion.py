@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
@@ -104,6 +105,23 @@ def odometry(trace: RobotTrace) -> Way:
             and (bare(each.parent), bare(each.child)) == (ODOM, root)
         ]
     )
+
+
+def fitted(points: Floats) -> tuple[float, float, float, float]:
+    """The circle nearest to points, by least squares: its centre, radius, and the usual distance.
+
+    Kasa's fit: x² + y² = 2 a x + 2 b y + c. Not a number where the points are none, or a line.
+    """
+    middle = points.mean(axis=0)
+    x, y = (points - middle).T
+    matrix = np.column_stack((2 * x, 2 * y, np.ones(len(x))))
+    (a, b, c), _, rank, _ = np.linalg.lstsq(matrix, x * x + y * y, rcond=None)
+    square = c + a * a + b * b
+    if rank < 3 or not square > 0:
+        return math.nan, math.nan, math.nan, math.nan
+    radius = math.sqrt(square)
+    off = float(np.quantile(np.abs(np.hypot(x - a, y - b) - radius), 0.95))
+    return float(a + middle[0]), float(b + middle[1]), radius, off
 
 
 def bare(frame: str) -> str:

@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import Any, Final
 
 from grader.scenes.channel import Channel
-from grader.scenes.robot import behaviour, decoding, trace, trying, view
+from grader.scenes.robot import behaviour, decoding, solid, trace, trying, view
 from grader.scenes.robot.endpoints import ENDPOINTS
 from grader.scenes.robot.trace import RobotTrace
 from grader.scenes.scene import (
@@ -44,6 +44,7 @@ class RobotScene:
     finished: Final = "the robot was watched to the end"
     examiner: Final = ""
     plane: Final = view.PLANE
+    window_is_plane: Final = False
     farthest_start_m: Final = 0.0
 
     def wrong_setting(self, setting: str) -> str:
@@ -131,11 +132,12 @@ class RobotScene:
         return ENDPOINTS
 
     def pictures(self, made: Trace) -> Pictures:
-        """The way from above."""
-        return Pictures(view.window(RobotTrace.of(made)))
+        """The robot at the end, and its way from above."""
+        run = RobotTrace.of(made)
+        return Pictures(solid.window(run), {"plan": view.plan(run)})
 
     def view(self, made: Trace) -> View:
-        """Way, joints, heading."""
+        """The robot, way, joints, heading, and tf."""
         return view.view(RobotTrace.of(made))
 
     def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[str]:

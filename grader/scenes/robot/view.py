@@ -1,4 +1,4 @@
-"""A recorded run for a page: the robot's way from above, its joints over time."""
+"""A recorded run for a page: the robot, its way from above, its joints over time, and tf."""
 
 from __future__ import annotations
 
@@ -6,19 +6,23 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from grader import text
+from grader.scenes.robot import frames, solid
 from grader.scenes.robot.motion import Floats, Joint, Way, joints, odometry
 from grader.scenes.robot.trace import RobotTrace
+from grader.scenes.robot_parts import name_of
 from grader.scenes.view import Curve, PenChange, Pixels, Plane, Track, View
 
 #: Ten metres square, the origin of `odom` in the middle.
 PLANE = Plane(size_px=500, metre_px=50.0, size_m=10.0, origin_m=-5.0)
-BACKGROUND, GRID, AXES, INK = "#f4f6f8", "#e0e5ea", "#aab4be", "#1f6feb"
+BACKGROUND, GRID, AXES, INK, FITTED = "#f4f6f8", "#e0e5ea", "#aab4be", "#1f6feb", "#8a6d3b"
+#: Curves of the robot as a whole, by their titles.
+HEIGHT, HEADING = "Height above odom", "Heading"
+FROM_CENTRE, FROM_ORIGIN = "Distance from its circle's centre", "Distance from the origin of odom"
 #: So many joints have a plot; a submission can name any number.
 MOST_JOINTS = 8
 #: Beyond this there is nothing to be seen [m, rad].
 FARTHEST = 1e6
 _INK_PX = 3
-_LONGEST_NAME = 60
 
 
 def view(trace: RobotTrace) -> View:
@@ -34,15 +38,16 @@ def view(trace: RobotTrace) -> View:
         rest=None,
         curves=(
             *(_curve(joint, units.get(joint.name, "?")) for joint in shown[:MOST_JOINTS]),
-            *_of_way(way),
+            *_of_way(way, solid.circle(trace)),
         ),
         calls=(),
-        drawn=_words(way),
+        drawn=_words(trace, way),
+        parts=tuple(part for part in (solid.solid(trace), frames.tree(trace)) if part is not None),
     )
 
 
-def window(trace: RobotTrace) -> Pixels:
-    """The way from above, uint8 (500, 500, 3)."""
+def plan(trace: RobotTrace) -> Pixels:
+    """The way from above, and the circle nearest to it, uint8 (500, 500, 3)."""
     image = Image.new("RGB", (PLANE.size_px, PLANE.size_px), BACKGROUND)
     draw = ImageDraw.Draw(image)
     for metre in range(int(PLANE.size_m) + 1):
@@ -50,6 +55,12 @@ def window(trace: RobotTrace) -> Pixels:
         colour = AXES if metre + PLANE.origin_m == 0 else GRID
         draw.line((at, 0, at, PLANE.size_px), colour)
         draw.line((0, at, PLANE.size_px, at), colour)
+    if (round_ := solid.circle(trace)) is not None:
+        x, y = PLANE.to_px(*round_[:2])
+        far = round_[2] * PLANE.metre_px
+        draw.ellipse((x - far, y - far, x + far, y + far), outline=FITTED)
+        draw.line((x - 4, y, x + 4, y), FITTED)
+        draw.line((x, y - 4, x, y + 4), FITTED)
     way = odometry(trace)
     x, y = _pixels(way)
     for piece in _finite_pieces(np.column_stack((x, y))):
@@ -84,20 +95,25 @@ def _track(trace: RobotTrace, way: Way) -> Track:
 
 
 def _curve(joint: Joint, unit: str) -> Curve:
-    name = text.clip(text.one_line(text.plain(joint.name)), _LONGEST_NAME)
-    return Curve(f"Joint {name}", unit, joint.ticks.astype(np.float64), _drawable(joint.positions))
+    return Curve(curve_of(joint.name), unit, joint.ticks.astype(np.float64), _drawable(joint.positions))
 
 
-def _of_way(way: Way) -> tuple[Curve, ...]:
+def curve_of(joint: str) -> str:
+    """The title of a joint's curve."""
+    return f"Joint {name_of(joint)}"
+
+
+def _of_way(way: Way, circle: tuple[float, float, float] | None) -> tuple[Curve, ...]:
     if not len(way):
         return ()
     ticks = way.ticks.astype(np.float64)
     with np.errstate(all="ignore"):
-        distance = np.hypot(way.places[:, 0], way.places[:, 1])
+        x, y, _ = circle or (0.0, 0.0, 0.0)
+        distance = np.hypot(way.places[:, 0] - x, way.places[:, 1] - y)
     return (
-        Curve("Distance from the origin of odom", "m", ticks, _drawable(distance)),
-        Curve("Height above odom", "m", ticks, _drawable(way.places[:, 2])),
-        Curve("Heading", "rad", ticks, _drawable(way.yaw)),
+        Curve(FROM_CENTRE if circle else FROM_ORIGIN, "m", ticks, _drawable(distance)),
+        Curve(HEIGHT, "m", ticks, _drawable(way.places[:, 2])),
+        Curve(HEADING, "rad", ticks, _drawable(way.yaw)),
     )
 
 
@@ -105,9 +121,13 @@ def _drawable(values: Floats) -> Floats:
     return np.where(np.abs(values) < FARTHEST, values, np.nan)
 
 
-def _words(way: Way) -> tuple[str, ...]:
+def _words(trace: RobotTrace, way: Way) -> tuple[str, ...]:
     there = way.places[np.isfinite(way.places).all(axis=1)]
     if not len(there):
         return ("nothing: no transform from odom to the robot's root was heard",)
     first, last = (text.place(float(row[0]), float(row[1])) for row in (there[0], there[-1]))
-    return (f"the robot's way in odom, from {first} to {last}",)
+    told = [f"the robot's way in odom, from {first} to {last}"]
+    if (round_ := solid.circle(trace)) is not None:
+        centre = text.place(*round_[:2])
+        told.append(f"the circle nearest to it: {round_[2]:.2f} m around {centre}")
+    return tuple(told)

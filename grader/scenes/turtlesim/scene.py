@@ -58,6 +58,7 @@ class Turtlesim:
     thing: Final = "turtle"
     finished: Final = "the turtle came to rest"
     plane: Final = view.PLANE
+    window_is_plane: Final = True
     farthest_start_m: Final = starts.FARTHEST_M
 
     def wrong_setting(self, setting: str) -> str:

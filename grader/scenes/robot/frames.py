@@ -1,0 +1,155 @@
+"""tf as it was heard: which frame hangs on which, who says so, and how often."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from grader.scenes.robot.decoding import Transform
+from grader.scenes.robot.motion import ODOM, bare
+from grader.scenes.robot.trace import TF_STATIC, TICK_S, RobotTrace
+from grader.scenes.robot_parts import name_of, named
+from grader.scenes.view import Tree, TreeNode
+
+#: A tree has no more nodes: a submission can send any number of frames.
+_MOST_NODES = 150
+_SENDERS = {"scene": "robot_state_publisher", "submission": "your node"}
+
+
+@dataclass
+class Hung:
+    """A frame that hangs on another.
+
+    Attributes:
+        parent: on which, as it was said last.
+        parents: all of which it was said.
+        senders: who said it.
+        is_static: whether it was said on /tf_static, at last.
+        said: the transforms to its last parent, as they came.
+    """
+
+    parent: str
+    parents: set[str] = field(default_factory=set)
+    senders: set[str] = field(default_factory=set)
+    is_static: bool = False
+    said: list[Transform] = field(default_factory=list)
+
+
+def why_refused(transform: Transform) -> str:
+    """Why tf2 does not keep a transform that it hears, as a clause; ''."""
+    numbers = (*transform.translation, *transform.rotation)
+    parent, child = bare(transform.parent), bare(transform.child)
+    if not parent or not child:
+        return "a frame has no name"
+    if parent == child:
+        return "the two are one"
+    if not all(map(math.isfinite, numbers)):
+        return "it holds what is no number"
+    return "" if any(transform.rotation) else "its quaternion is all zeros, which turns nothing"
+
+
+def hung(trace: RobotTrace) -> dict[str, Hung]:
+    """Every frame that hangs on another, by name, as a listener knows it at the end."""
+    found: dict[str, Hung] = {}
+    for each in trace.transforms:
+        if why_refused(each):
+            continue
+        child, parent = bare(each.child), bare(each.parent)
+        one = found.setdefault(child, Hung(parent))
+        if one.parent != parent:
+            one.parent, one.said = parent, []
+        one.parents.add(parent)
+        one.senders.add(each.publisher)
+        one.is_static = each.topic == TF_STATIC
+        one.said.append(each)
+    return found
+
+
+def below(root: str, frames: dict[str, Hung]) -> list[str]:
+    """All that hang on a frame, each after the one that it hangs on."""
+    children = _children(frames)
+    found: list[str] = []
+    seen = {root}
+    waiting = list(reversed(children.get(root, [])))
+    while waiting:
+        name = waiting.pop()
+        if name not in seen:
+            seen.add(name)
+            found.append(name)
+            waiting += reversed(children.get(name, []))
+    return found
+
+
+def tree(trace: RobotTrace) -> Tree | None:
+    """tf as a tree; None where nothing was heard of it."""
+    frames = hung(trace)
+    if not frames:
+        return None
+    links = tuple(trace.robot.model.links) if trace.robot else ()
+    reached = {ODOM, *below(ODOM, frames)}
+    nodes = list(_nodes(frames, links, reached))
+    lost = [link for link in links if link not in reached]
+    note = (
+        f"{len(lost)} of {len(links)} links of the robot have no place in {ODOM}: {named(lost)}."
+        if lost
+        else f"Every link of the robot has a place in {ODOM}."
+    )
+    if len(nodes) > _MOST_NODES:
+        note += f" {len(nodes) - _MOST_NODES} more frames are not shown."
+    return Tree("Frames, as tf2 knows them at the end", tuple(nodes[:_MOST_NODES]), note)
+
+
+def _nodes(
+    frames: dict[str, Hung], links: tuple[str, ...], reached: set[str]
+) -> Iterator[TreeNode]:
+    """From the roots down; then what goes round in a circle, and links that hang on nothing."""
+    children = _children(frames)
+    roots = [name for name in children if name not in frames]
+    roots.sort(key=lambda name: (name != ODOM, name))
+    seen: set[str] = set()
+    for start in (*roots, *frames):
+        waiting = [(0, start)]
+        while waiting:
+            depth, name = waiting.pop()
+            if name in seen:
+                continue
+            seen.add(name)
+            is_lost = name in links and name not in reached
+            yield _node(depth, name, frames.get(name), is_lost)
+            waiting += [(depth + 1, each) for each in reversed(children.get(name, []))]
+    for link in links:
+        if link not in seen:
+            yield TreeNode(0, name_of(link), "no transform", "lost")
+
+
+def _node(depth: int, name: str, frame: Hung | None, is_lost: bool) -> TreeNode:
+    mark: Literal["", "lost", "wrong"] = "lost" if is_lost else ""
+    if frame is None:
+        return TreeNode(depth, name_of(name), "hangs on nothing", mark)
+    told = [_pace(frame), " and ".join(sorted(_SENDERS[each] for each in frame.senders))]
+    if depth == 0:
+        told.append(f"goes round in a circle by {name_of(frame.parent)}")
+    if len(frame.parents) > 1:
+        told.append(f"parents: {named(sorted(frame.parents))}")
+    if depth == 0 or len(frame.parents) > 1 or len(frame.senders) > 1:
+        mark = "wrong"
+    return TreeNode(depth, name_of(name), ", ".join(told), mark)
+
+
+def _pace(frame: Hung) -> str:
+    if frame.is_static:
+        return "static"
+    first, last = frame.said[0], frame.said[-1]
+    duration_s = (last.tick - first.tick) * TICK_S
+    if not duration_s:
+        return f"{len(frame.said)} times"
+    return f"{(len(frame.said) - 1) / duration_s:.1f} Hz"
+
+
+def _children(frames: dict[str, Hung]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for child, one in sorted(frames.items()):
+        found.setdefault(one.parent, []).append(child)
+    return found

@@ -1,0 +1,155 @@
+"""A robot in its place: the triangles of all its links, where these stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from robot_py.drawing.triangles import NOTHING, Floats, Triangles, flat, triangles
+from robot_py.kinematics import matrix
+from robot_py.model import Colour, Mesh, Model, Visual
+
+#: What has no place stands at the origin, white, as in RViz.
+WHITE: Colour = (1.0, 1.0, 1.0, 1.0)
+#: What has no material: RViz takes red.
+RED: Colour = (1.0, 0.0, 0.0, 1.0)
+#: Nothing is drawn beyond [m].
+FARTHEST = 1e6
+#: More shapes than this are drawn with fewer edges, many more not at all.
+_EDGES = ((60, 32), (250, 16), (1500, 8))
+_MOST_TRIANGLES = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Triangles in the world.
+
+    Attributes:
+        corners, normals: float64 (n, 3, 3), as in `Triangles`.
+        colours: float64 (n, 4): red, green, blue, alpha from 0 to 1.
+        links: int64 (n,): of which of `names`.
+        names: of the robot's links.
+        lost: those that have no place.
+        left_out: meshes that nobody has read, and what is too much or too far to be drawn; each
+            once, as the URDF names it.
+    """
+
+    corners: Floats
+    normals: Floats
+    colours: Floats
+    links: npt.NDArray[np.int64]
+    names: tuple[str, ...]
+    lost: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+    @property
+    def lowest_m(self) -> float:
+        """The height of its lowest point; 0 of nothing."""
+        return float(self.corners[..., 2].min()) if len(self.corners) else 0.0
+
+
+#: What there is to draw where there is no robot.
+NOBODY = Body(
+    NOTHING.corners,
+    NOTHING.normals,
+    np.empty((0, 4)),
+    np.empty(0, dtype=np.int64),
+    *((), (), ()),
+)
+
+
+def body(
+    model: Model,
+    frames: Mapping[str, Floats],
+    meshes: Mapping[str, Floats] | None = None,
+) -> Body:
+    """A robot whose links have their places.
+
+    Args:
+        frames: of each link its transform into the world, 4 x 4. Whoever is not among them, or has
+            one that is no number, has no place.
+        meshes: by the name that the URDF gives: triangles, float64 (n, 3, 3), not yet scaled.
+    """
+    names = tuple(model.links)
+    placed = {name: frame for name, frame in frames.items() if is_place(frame)}
+    visuals = list(_visuals(model))
+    around = next((edges for most, edges in _EDGES if len(visuals) <= most), 0)
+    left_out: dict[str, None] = {}
+    parts: list[tuple[Triangles, Colour, int]] = []
+    count = 0
+    for number, visual in visuals:
+        surface = _surface(visual, meshes or {}, around)
+        place = placed.get(names[number])
+        there = _moved(surface, (np.eye(4) if place is None else place), matrix(visual.origin))
+        colour = WHITE if place is None else colour_of(visual)
+        if not len(there) or count + len(there) > _MOST_TRIANGLES:
+            left_out[_told(visual, names[number])] = None
+        elif colour[3] > 0:
+            parts.append((there, colour, number))
+            count += len(there)
+    sizes = [len(surface) for surface, _, _ in parts]
+    return Body(
+        np.concatenate([NOTHING.corners, *(surface.corners for surface, _, _ in parts)]),
+        np.concatenate([NOTHING.normals, *(surface.normals for surface, _, _ in parts)]),
+        np.repeat(np.array([c for _, c, _ in parts]).reshape(-1, 4), sizes, axis=0),
+        np.repeat(np.array([number for *_, number in parts], dtype=np.int64), sizes),
+        names,
+        tuple(name for name in names if name not in placed),
+        tuple(left_out),
+    )
+
+
+def is_place(frame: Floats) -> bool:
+    """Whether something can be drawn there."""
+    return bool((np.abs(frame) < FARTHEST).all())
+
+
+def colour_of(visual: Visual) -> Colour:
+    """What RViz shows; a texture's colour is not known."""
+    if visual.material is None:
+        return RED
+    return WHITE if visual.material.texture else visual.material.rgba
+
+
+def _visuals(model: Model) -> Iterator[tuple[int, Visual]]:
+    """Every visual with the number of its link."""
+    for number, link in enumerate(model.links.values()):
+        for visual in link.visuals:
+            yield number, visual
+
+
+def _surface(visual: Visual, meshes: Mapping[str, Floats], around: int) -> Triangles:
+    shape = visual.geometry
+    if not around:
+        return NOTHING
+    if isinstance(shape, Mesh):
+        corners = meshes.get(shape.filename)
+        return NOTHING if corners is None else flat(corners * np.array(shape.scale))
+    return triangles(shape, around)
+
+
+def _told(visual: Visual, link: str) -> str:
+    shape = visual.geometry
+    return shape.filename if isinstance(shape, Mesh) else f"a shape of {link}"
+
+
+def _moved(surface: Triangles, *frames: Floats) -> Triangles:
+    """Through all frames, the last first; nothing where it ends too far away."""
+    corners, normals = surface.corners, surface.normals
+    with np.errstate(all="ignore"):
+        for frame in reversed(frames):
+            rotation = frame[:3, :3]
+            corners = _turned(corners, rotation) + frame[:3, 3]
+            normals = _turned(normals, rotation)
+    if not (np.abs(corners) < FARTHEST).all() or not np.isfinite(normals).all():
+        return NOTHING
+    return Triangles(corners.round(7), normals.round(7))
+
+
+def _turned(points: Floats, rotation: Floats) -> Floats:
+    """Term by term: a matrix product may add in another order on another processor."""
+    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    return np.stack([x * row[0] + y * row[1] + z * row[2] for row in rotation], axis=-1)
