@@ -68,6 +68,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "robot_py.kinematics": {"robot_py.model"},
     "robot_py.robot_state": below("robot_py", "findings", "kinematics", "logs", "model", "urdf"),
     "robot_py.joint_states": set(),
+    "robot_py.drawing": below("robot_py", "kinematics", "model"),
     "turtlesim_py.__init__": set(),
     "turtlesim_py.world": set(),
     "turtlesim_py.png": {"turtlesim_py.world"},
@@ -83,8 +84,10 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.scenes.turtlesim": GROUND | {"grader.scenes", "turtlesim_py"},
     # the same clock says "tick"
     "grader.scenes.robot": GROUND | {"grader.scenes", "robot_py", "turtlesim_py.ros.pacer"},
+    # what both scenes with a robot show of it
+    "grader.scenes.robot_parts": GROUND | {"grader.scenes", "robot_py"},
+    "grader.scenes.package": GROUND | {"grader.scenes", "robot_py"},
     # a package is looked at in the submission's process, which sees little of ours
-    "grader.scenes.package": GROUND | {"grader.scenes"},
     "grader.scenes.package.strict": set(),
     "grader.scenes.package.trace": {"grader.scenes.package.strict"},
     "grader.scenes.package.examining": below("grader", "limited")

@@ -8,7 +8,7 @@ from typing import Any, Final, NoReturn
 import numpy as np
 
 from grader.scenes.channel import Channel
-from grader.scenes.package import messages, trace, view
+from grader.scenes.package import described, messages, trace, view
 from grader.scenes.package.trace import PackageTrace
 from grader.scenes.scene import (
     Behaviour,
@@ -119,12 +119,12 @@ class Package:
         return ()
 
     def pictures(self, made: Trace) -> Pictures:
-        """The links of the robot, as a tree."""
-        return Pictures(view.picture(PackageTrace.of(made)))
+        """The robot."""
+        return Pictures(described.window(PackageTrace.of(made)))
 
     def view(self, made: Trace) -> View:
-        """Nothing over time."""
-        return view.view()
+        """The robot and the launch files; nothing over time."""
+        return view.view(PackageTrace.of(made))
 
     def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[str]:
         """Which package was looked at, and what of it could not be."""

@@ -139,6 +139,8 @@ class Node:
 
     Attributes:
         later: whether it starts only when something else happens.
+        file, line: where a launch file says so; 0 where the line is not known.
+        condition: on which, in words; '' for none of its own.
     """
 
     package: str
@@ -149,6 +151,20 @@ class Node:
     parameters: tuple[Parameter, ...]
     remappings: tuple[str, ...]
     later: bool
+    file: str = ""
+    line: int = 0
+    condition: str = ""
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """A node that a launch file does not start with its default arguments; see `Node`."""
+
+    package: str
+    executable: str
+    file: str
+    line: int
+    condition: str
 
 
 @dataclass(frozen=True)
@@ -173,6 +189,7 @@ class Launch:
         lacking: what it names and is not there.
         remarks: what works, and need not.
         moved: what is otherwise where the package is installed in another place; '' for nothing.
+        skipped: nodes whose own condition is not met.
     """
 
     file: str
@@ -185,6 +202,7 @@ class Launch:
     lacking: tuple[Lacking, ...]
     remarks: tuple[str, ...]
     moved: str
+    skipped: tuple[Skipped, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -143,7 +143,8 @@ class Looking:
                 "lacking": lacking,
                 "packages": there,
                 "moved": "",
-                **{key: said[key] for key in ("nodes", "processes", "includes", "declared")},
+                **{key: said[key] for key in ("nodes", "skipped", "processes", "includes")},
+                "declared": said["declared"],
                 "remarks": [*said["remarks"], *_unwrapped(file, said["nodes"])],
             },
         )

@@ -39,6 +39,7 @@ class Taken:
                 "remarks",
                 "refused",
                 "borrowed",
+                "skipped",
             )
         }
         self.texts: list[str] = []
@@ -53,7 +54,24 @@ class Taken:
         given = [*node["parameters"], *self._by_argument(node)]
         parameters = [self._parameter(each) for each in given]
         self._look_for_paths(node["arguments"])
-        self._add("nodes", {**node, "parameters": parameters})
+        self._add("nodes", {**self._from_where(node), "parameters": parameters})
+
+    def skipped(self, node: dict[str, Any]) -> None:
+        """A node that would start on a condition that is not met."""
+        self._add("skipped", self._from_where(node))
+
+    def _from_where(self, node: dict[str, Any]) -> dict[str, Any]:
+        """A node with the file and line that say that it starts."""
+        told = {"condition": "", **node}
+        path, line = told.pop("made", ("", 0))
+        file = self._place.own(path)
+        current = self.context.locals_.get("current_launch_file_path") or ""
+        return {
+            **told,
+            "file": file or self._place.own(current),
+            "line": line if file else 0,
+            "condition": told["condition"][:LONG],
+        }
 
     def process(self, words: list[str]) -> None:
         """Another program that would start; a node, where it is plainly one."""

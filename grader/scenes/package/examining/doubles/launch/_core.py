@@ -35,6 +35,8 @@ class Record:
 
     def node(self, node: dict[str, Any]) -> None: ...
 
+    def skipped(self, node: dict[str, Any]) -> None: ...
+
     def process(self, words: list[str]) -> None: ...
 
     def include(self, path: str, arguments: dict[str, str]) -> bool:
@@ -130,12 +132,29 @@ def text_of(context: LaunchContext, subs: Any) -> str:
     return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
 
 
+def shown(subs: Any) -> str:
+    """Whatever may be a substitution, as a launch file in XML has it."""
+    parts = []
+    for each in normalize_to_list_of_substitutions(subs):
+        name = getattr(each, "variable_name", None)
+        if isinstance(each, TextSubstitution):
+            parts.append(each.text)
+        elif isinstance(name, list):
+            parts.append(f"$(var {shown(name)})")
+        else:
+            parts.append(f"$({type(each).__name__})")
+    return "".join(parts)
+
+
 class LaunchDescriptionEntity:
     def visit(self, context: LaunchContext) -> list[Any] | None:
         return None
 
 
 class Condition:
+    #: in words
+    told = "a condition"
+
     def __init__(self, *, predicate: Any = None) -> None:
         self.predicate = predicate
 
@@ -150,7 +169,11 @@ class Action(LaunchDescriptionEntity):
     def visit(self, context: LaunchContext) -> list[Any] | None:
         if self.condition is None or self.condition.evaluate(context):
             return self.execute(context)
+        self.skip(context)
         return None
+
+    def skip(self, context: LaunchContext) -> None:
+        """Its condition is not met."""
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
         return None

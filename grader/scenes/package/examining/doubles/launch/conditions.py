@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from launch._core import Condition, LaunchContext, text_of, unknown
+from launch._core import Condition, LaunchContext, shown, text_of, unknown
 
 
 class InvalidConditionExpressionError(Exception):
@@ -25,6 +25,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
 class IfCondition(Condition):
     def __init__(self, predicate_expression: Any) -> None:
         super().__init__(predicate=lambda c: evaluate_condition_expression(c, predicate_expression))
+        self.told = f"if {shown(predicate_expression)}"
 
 
 class UnlessCondition(Condition):
@@ -32,6 +33,7 @@ class UnlessCondition(Condition):
         super().__init__(
             predicate=lambda c: not evaluate_condition_expression(c, predicate_expression)
         )
+        self.told = f"unless {shown(predicate_expression)}"
 
 
 class LaunchConfigurationEquals(Condition):

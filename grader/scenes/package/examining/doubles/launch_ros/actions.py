@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,8 @@ from launch_ros.parameter_descriptions import (
     is_substitution,
 )
 
+#: What evaluates launch files.
+_OURS = str(Path(__file__).resolve().parents[2])
 _NAMESPACE, _PARAMETERS = "ros_namespace", "global_params"
 
 
@@ -48,6 +51,7 @@ class Node(ExecuteProcess):
                 f"'{parameters!r:.80}' of type '{type(parameters)}'"
             )
         super().__init__(cmd=[], name=exec_name, **kwargs)
+        self._made = _made_at()
         self._package, self._executable = package, executable
         for given in (package, executable, name, namespace):
             if given is not None:
@@ -78,9 +82,23 @@ class Node(ExecuteProcess):
                     f"{text_of(context, a)}:={text_of(context, b)}" for a, b in self._remappings
                 ],
                 "later": context.is_later,
+                **self._told(),
             }
         )
         self._afterwards(context)
+
+    def skip(self, context: LaunchContext) -> None:
+        names = []
+        for given in (self._package, self._executable):
+            try:
+                names.append("" if given is None else text_of(context, given))
+            except Exception:  # what does not start need not have a name
+                names.append("?")
+        context.record.skipped({"package": names[0], "executable": names[1], **self._told()})
+
+    def _told(self) -> dict[str, Any]:
+        condition = getattr(self.condition, "told", "")
+        return {"made": self._made, "condition": condition if isinstance(condition, str) else ""}
 
     def _evaluated(self, context: LaunchContext) -> list[dict[str, Any]]:
         found: dict[str, dict[str, Any]] = {}
@@ -88,6 +106,14 @@ class Node(ExecuteProcess):
             for name, value, wrapped in _values(context, each):
                 found[name] = {"name": name, "value": value, "wrapped": wrapped}
         return list(found.values())
+
+
+def _made_at() -> tuple[str, int]:
+    """The line of a launch file that makes the action; '' and 0 of one that is not Python."""
+    frame = sys._getframe(1)
+    while frame is not None and frame.f_code.co_filename.startswith(_OURS):
+        frame = frame.f_back
+    return (frame.f_code.co_filename, frame.f_lineno) if frame else ("", 0)
 
 
 def _words(given: Any) -> list[Any]:

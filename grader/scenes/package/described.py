@@ -1,0 +1,144 @@
+"""The robot of a package: what its launch file hands on, as a picture, a solid and a tree."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from grader import text
+from grader.scenes.package.trace import Description, PackageTrace
+from grader.scenes.robot_parts import name_of, named, place_less, placing, shapes
+from grader.scenes.view import Pixels, Placing, Solid, SolidFrame, Tree, TreeNode
+from robot_py.drawing import NOBODY, body, picture
+from robot_py.kinematics import forward, joint_transform, tree
+from robot_py.model import Model
+from robot_py.urdf import parse
+
+_MOST_LINKS = 400
+_MOST_NODES = 150
+#: A description that is longer is not drawn [characters].
+_LONGEST = 500_000
+
+
+def model(trace: PackageTrace) -> Model | None:
+    """The robot that is drawn; None where there is none that urdfdom takes."""
+    found = _described(trace)
+    return None if found is None else _model(trace.texts[found.text])
+
+
+def window(trace: PackageTrace) -> Pixels:
+    """The robot with all joints at 0, uint8 (500, 500, 3)."""
+    robot = model(trace)
+    if robot is None:
+        return picture(NOBODY, labels=(_why_not(trace),))
+    there = body(robot, forward(robot, {}))
+    left_out = (f"not drawn: {named(there.left_out)}",) if there.left_out else ()
+    labels = (*place_less(there.lost), *left_out)
+    return picture(there, height_m=there.lowest_m, labels=labels)
+
+
+def solid(trace: PackageTrace) -> Solid | None:
+    """The same, to be turned; None where there is no robot."""
+    robot = model(trace)
+    if robot is None:
+        return None
+    placed = forward(robot, {})
+    there = body(robot, placed)
+    joints = tree(robot).joints
+    links = [link for link in (*placed, *there.lost)][:_MOST_LINKS]
+    numbers = {link: number for number, link in enumerate(dict.fromkeys(links))}
+    frames = []
+    for link in numbers:
+        if link in there.lost:
+            frames.append(SolidFrame(name_of(link), -1, (None,)))
+        elif link == robot.root:
+            frames.append(SolidFrame(name_of(link), -1, (Placing(),)))
+        else:
+            where = placing(joint_transform(joints[link]))
+            frames.append(SolidFrame(name_of(link), numbers[joints[link].parent], (where,)))
+    made, left_out = shapes(robot, numbers, {})
+    return Solid(
+        f"The robot {name_of(robot.name)}",
+        _words(trace, robot, there.lost, left_out),
+        tuple(frames),
+        made,
+        ground_m=there.lowest_m,
+        lost=tuple(map(name_of, there.lost)),
+        left_out=left_out,
+    )
+
+
+def links(trace: PackageTrace) -> Tree | None:
+    """Which link hangs on which, by which joint; None where there is no robot."""
+    robot = model(trace)
+    if robot is None:
+        return None
+    held = tree(robot).joints
+    depths = {robot.root: 0}
+    below: dict[str, list[str]] = {}
+    for link, joint in held.items():
+        depths[link] = depths[joint.parent] + 1
+        below.setdefault(joint.parent, []).append(link)
+    claimed: dict[str, int] = {}
+    for joint in robot.joints.values():
+        claimed[joint.child] = claimed.get(joint.child, 0) + 1
+    nodes: list[TreeNode] = []
+    waiting = [robot.root]
+    while waiting:
+        link = waiting.pop()
+        waiting += reversed(below.get(link, []))
+        on = held.get(link)
+        told = "the root" if on is None else f"{name_of(on.name)}, {on.type.value}"
+        several = claimed.get(link, 0) > 1
+        if several:
+            told += f", claimed by {claimed[link]} joints"
+        nodes.append(TreeNode(depths[link], name_of(link), told, "wrong" if several else ""))
+    lost = [link for link in robot.links if link not in depths]
+    nodes += [TreeNode(0, name_of(each), "hangs on nothing", "lost") for each in lost]
+    more = len(nodes) - _MOST_NODES
+    note = f"{more} more links are not shown." if more > 0 else ""
+    return Tree("Links and the joints that hold them", tuple(nodes[:_MOST_NODES]), note)
+
+
+def _described(trace: PackageTrace) -> Description | None:
+    """The first description that a launch file hands on; else that of a file."""
+    every = [each for each in trace.descriptions if each.text >= 0]
+    return next((each for each in every if each.is_launched), next(iter(every), None))
+
+
+@lru_cache(maxsize=4)
+def _model(description: str) -> Model | None:
+    if len(description) > _LONGEST:
+        return None
+    robot = parse(description).model
+    # a circle of links below the root has no end; robot_state_publisher does not survive it
+    if robot is None or len(robot.links) > 4 * _MOST_LINKS or tree(robot).is_endless:
+        return None
+    return robot
+
+
+def _why_not(trace: PackageTrace) -> str:
+    if _described(trace) is None:
+        return "no robot description was found"
+    return "the robot description cannot be drawn"
+
+
+def words(trace: PackageTrace) -> str:
+    """What there is to see, for who cannot."""
+    found = solid(trace)
+    return _why_not(trace) if found is None else found.text
+
+
+def _words(
+    trace: PackageTrace, robot: Model, lost: tuple[str, ...], left_out: tuple[str, ...]
+) -> str:
+    found = _described(trace)
+    by = name_of(found.by) if found is not None else ""
+    said = [f"The robot {name_of(robot.name)} with {text.count(len(robot.links), 'link')}"]
+    said.append(f"as {by} describes it, all joints at 0")
+    if lost:
+        said.append(f"white, at the origin, for they hang on nothing: {named(lost)}")
+    if left_out:
+        said.append(f"not drawn: {named(left_out)}")
+    return "; ".join(said)
