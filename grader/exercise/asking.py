@@ -16,7 +16,7 @@ from typing import Any, Self
 
 from grader import strict_json
 from grader.exercise.foreign import contained
-from grader.exercise.verdict import Evidence, Finding, wrong_with
+from grader.exercise.verdict import Evidence, Expected, Finding, wrong_with
 from grader.limited import Copy, Limits
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 
@@ -79,7 +79,8 @@ class Asked:
             case "finding":
                 found = words["finding"]
                 evidence = tuple(Evidence(**item) for item in found["evidence"])
-                return Finding(**{**found, "evidence": evidence})
+                expected = tuple(Expected.from_json(item) for item in found["expected"])
+                return Finding(**{**found, "evidence": evidence, "expected": expected})
             case "not over":
                 raise NotOver
             case "interrupted":

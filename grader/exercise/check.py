@@ -202,6 +202,7 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
         "" if passed else finding.help,
         finding.evidence,
         check.depends_on,
+        expected=finding.expected,
     )
 
 

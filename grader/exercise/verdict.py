@@ -50,6 +50,39 @@ class Evidence:
 
 
 @dataclass(frozen=True)
+class Expected:
+    """What a check wants of something over time, for who looks at its plot.
+
+    Attributes:
+        curve: the title of the curve in the scene's view.
+        text: what is wanted, in words.
+        within: between which values it has to stay; None where that is not said by values.
+        beyond: a value that it has to fall below, and one that it has to rise above.
+    """
+
+    curve: str
+    text: str
+    within: tuple[float, float] | None = None
+    beyond: tuple[float, float] | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """As the result file holds it."""
+        pairs = {"within": self.within, "beyond": self.beyond}
+        there = {name: list(pair) for name, pair in pairs.items() if pair is not None}
+        return {"curve": self.curve, "text": self.text, **there}
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """What a result file holds; it follows the schema."""
+        pairs = {name: (float(low), float(high)) for name, (low, high) in _pairs(data)}
+        return cls(data["curve"], data["text"], **pairs)
+
+
+def _pairs(data: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    return [(name, data[name]) for name in ("within", "beyond") if data.get(name) is not None]
+
+
+@dataclass(frozen=True)
 class Finding:
     """What a check function returns.
 
@@ -60,6 +93,7 @@ class Finding:
         evidence: where to see it.
         judged: False where the check cannot tell, for no fault of the submission's: the verdict is
             then "not judged", and says why by `rationale`.
+        expected: what is wanted of curves, for their plots; it decides nothing.
     """
 
     share: float
@@ -67,6 +101,7 @@ class Finding:
     help: str = ""
     evidence: tuple[Evidence, ...] = ()
     judged: bool = True
+    expected: tuple[Expected, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -77,7 +112,7 @@ class Verdict:
         check: its name.
         title: what it asks for.
         score, max_score: the points that it earned, and that it can earn.
-        rationale, help, evidence: see `Finding`.
+        rationale, help, evidence, expected: see `Finding`.
         depends_on: the checks that have to pass before it is judged.
         visible: what students see of it.
     """
@@ -92,10 +127,13 @@ class Verdict:
     evidence: tuple[Evidence, ...] = ()
     depends_on: tuple[str, ...] = ()
     visible: Visible = "now"
+    expected: tuple[Expected, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """The verdict as the result file holds it."""
-        visible = {} if self.visible == "now" else {"visible": self.visible}
+        more: dict[str, Any] = {} if self.visible == "now" else {"visible": self.visible}
+        if self.expected:
+            more["expected"] = [item.to_json() for item in self.expected]
         return {
             "check": self.check,
             "title": self.title,
@@ -106,14 +144,16 @@ class Verdict:
             "help": self.help,
             "evidence": [item.to_json() for item in self.evidence],
             "depends_on": list(self.depends_on),
-            **visible,
+            **more,
         }
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
         """The verdict that a result file holds; it follows the schema."""
         evidence = tuple(Evidence.from_json(item) for item in data["evidence"])
-        return cls(**{**data, "evidence": evidence, "depends_on": tuple(data["depends_on"])})
+        expected = tuple(Expected.from_json(item) for item in data.get("expected", ()))
+        lists = {"depends_on": tuple(data["depends_on"]), "expected": expected}
+        return cls(**{**data, "evidence": evidence, **lists})
 
     @property
     def passed(self) -> bool:
@@ -149,7 +189,27 @@ def wrong_with(finding: object, runs: int) -> str:
     evidence: object = finding.evidence
     if not isinstance(evidence, tuple):
         return f"evidence: expected a tuple, found a {type(evidence).__name__}"
-    return next(filter(None, (_wrong_with_evidence(item, runs) for item in evidence)), "")
+    wrong = next(filter(None, (_wrong_with_evidence(item, runs) for item in evidence)), "")
+    expected: object = finding.expected
+    if not wrong and not isinstance(expected, tuple):
+        return f"expected: expected a tuple, found a {type(expected).__name__}"
+    return wrong or next(filter(None, map(_wrong_with_expected, finding.expected)), "")
+
+
+def _wrong_with_expected(item: object) -> str:
+    if not isinstance(item, Expected):
+        return f"expected: expected Expected, found a {type(item).__name__}"
+    for name in ("curve", "text"):
+        if not isinstance(getattr(item, name), str):
+            return f"expected: {name}: expected a text, found {getattr(item, name)!r}"
+    for name in ("within", "beyond"):
+        pair = getattr(item, name)
+        if pair is None:
+            continue
+        is_pair = isinstance(pair, tuple) and len(pair) == 2
+        if not is_pair or not all(_is_number(value) and math.isfinite(value) for value in pair):
+            return f"expected: {name}: expected two finite numbers, found {pair!r}"
+    return ""
 
 
 def _wrong_with_evidence(item: object, runs: int) -> str:

@@ -16,6 +16,8 @@ AZIMUTH, ELEVATION = math.radians(40), math.radians(24)
 HALF_WIDTH = 0.32
 #: What of the picture's half is used.
 _FILLED = 0.86
+#: So often the middle is moved to where it looks like the middle, and once more looked at.
+_STEPS = 6
 #: A robot is never seen from nearer [m].
 _NEAREST = 0.02
 
@@ -49,15 +51,16 @@ class Camera:
         seen = np.stack([_along(points, axis) for axis in (right, up, ahead)], axis=-1)
         low, high_ = (seen.min(axis=0), seen.max(axis=0)) if len(seen) else (np.zeros(3),) * 2
         middle = (low + high_) / 2
-        wide = HALF_WIDTH * _FILLED
-        offsets = seen - middle
-        away = max(
-            [
-                _NEAREST,
-                *(np.abs(offsets[:, :2]).max(axis=1) / wide - offsets[:, 2]).tolist(),
-                *(-1.25 * offsets[:, 2]).tolist(),
-            ]
-        )
+        away = _NEAREST
+        for _ in range(_STEPS):
+            offsets = seen - middle
+            wide = np.abs(offsets[:, :2]).max(axis=1) / (HALF_WIDTH * _FILLED)
+            needed = np.maximum(wide - offsets[:, 2], -1.25 * offsets[:, 2])
+            away = max(_NEAREST, float(needed.max(initial=0.0)))
+            # what is near looks larger: so the middle of the picture is not that of the things
+            flat_ = offsets[:, :2] / (away + offsets[:, 2:])
+            if len(flat_):
+                middle[:2] += (flat_.min(axis=0) + flat_.max(axis=0)) / 2 * away
         away = round(away, 6)
         eye = right * middle[0] + up * middle[1] + ahead * (middle[2] - away)
         return cls(eye.round(7), right, up, ahead, away, size_px)

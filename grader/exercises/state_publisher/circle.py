@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from grader.exercise.check import Tolerances
-from grader.exercise.verdict import Evidence, Finding
+from grader.exercise.verdict import Evidence, Expected, Finding
 from grader.exercises.state_publisher.seen import Seen, sentence
 from grader.scenes.robot.motion import ODOM, Floats, Way, bare, fitted
+from grader.scenes.robot.view import FROM_CENTRE, HEADING as HEADING_CURVE, HEIGHT as HEIGHT_CURVE
 
 #: What each is worth: the circle, its height, the heading, the quaternion.
 CIRCLE, HEIGHT, HEADING, QUATERNION = 0.35, 0.15, 0.3, 0.2
@@ -39,6 +40,7 @@ def judge_odometry(seen: Seen, tolerances: Tolerances) -> Finding:
             (seen.moment(int(way.ticks[0]), "no number"),),
         )
     faults = [*_circle(way, tolerances), *_height(way, tolerances), *_turned(way, tolerances)]
+    wanted = _wanted(tolerances)
     if faults:
         where: tuple[Evidence, ...] = (seen.moment(int(way.ticks[-1]), faults[0].text),)
         share = 1 - sum(fault.costs for fault in faults)
@@ -47,6 +49,7 @@ def judge_odometry(seen: Seen, tolerances: Tolerances) -> Finding:
             sentence([fault.text for fault in faults]),
             f"{faults[0].help} Look at the transform that you send on /tf.",
             where,
+            expected=wanted,
         )
     _, _, radius, _ = fitted(way.places[:, :2])
     height = float(np.median(way.places[:, 2]))
@@ -54,6 +57,18 @@ def judge_odometry(seen: Seen, tolerances: Tolerances) -> Finding:
         1,
         f"{seen.root} goes in a circle of {radius:.2f} m at a height of {height:.2f} m, upright "
         "and looking where it goes.",
+        expected=wanted,
+    )
+
+
+def _wanted(tolerances: Tolerances) -> tuple[Expected, ...]:
+    """For the plots of the robot as a whole."""
+    radius = tolerances["radius_least_m"], tolerances["radius_most_m"]
+    height = tolerances["height_least_m"], tolerances["height_most_m"]
+    return (
+        Expected(FROM_CENTRE, f"constant, {radius[0]:g} to {radius[1]:g} m", radius),
+        Expected(HEIGHT_CURVE, f"constant, {height[0]:g} to {height[1]:g} m", height),
+        Expected(HEADING_CURVE, "where it goes: it turns on as the robot goes round"),
     )
 
 

@@ -7,11 +7,12 @@ import math
 import numpy as np
 
 from grader.exercise.check import Tolerances
-from grader.exercise.verdict import Evidence, Finding
+from grader.exercise.verdict import Evidence, Expected, Finding
 from grader.exercises.state_publisher.naming import judge_names
 from grader.exercises.state_publisher.rate import too_seldom
 from grader.exercises.state_publisher.seen import Seen, finite, number, sentence
 from grader.scenes.robot.motion import Floats, Joint
+from grader.scenes.robot.view import curve_of
 from robot_py.model import JointType
 
 HELP = (
@@ -44,7 +45,35 @@ def judge_moves(seen: Seen, tolerances: Tolerances) -> Finding:
     share = len(told) / max(len(seen.moving), 1)
     if wrong and (seldom := too_seldom(seen, tolerances)):
         wrong.insert(0, seldom)
-    return Finding(share, sentence([*wrong, *told]), HELP, tuple(where))
+    wanted = tuple(_wanted(seen, name, tolerances) for name in seen.moving)
+    return Finding(share, sentence([*wrong, *told]), HELP, tuple(where), expected=wanted)
+
+
+def _wanted(seen: Seen, name: str, tolerances: Tolerances) -> Expected:
+    """What a joint should do, for its plot: of a width, about the middle of what it did."""
+    kind = seen.moving[name].type
+    curve = curve_of(name)
+    if kind == JointType.CONTINUOUS:
+        text = f"turns on, one way, by {number(tolerances['turn_least_rad'])} rad at least"
+        return Expected(curve, f"{text} and {number(tolerances['turn_most'])} rad/s at most")
+    unit, (least, most) = _width(kind, tolerances)
+    text = f"to and fro, {number(least)} to {number(most)} {unit} wide"
+    said = finite(seen.joints[name].positions) if name in seen.joints else np.empty(0)
+    if not len(said):
+        return Expected(curve, text)
+    middle = float(said.min() + said.max()) / 2
+    return Expected(
+        *(curve, text),
+        within=(middle - most / 2, middle + most / 2),
+        beyond=(middle - least / 2, middle + least / 2),
+    )
+
+
+def _width(kind: JointType, tolerances: Tolerances) -> tuple[str, tuple[float, float]]:
+    """The unit of a joint that goes to and fro, and how wide it should."""
+    if kind == JointType.PRISMATIC:
+        return "m", (tolerances["push_least_m"], tolerances["push_most_m"])
+    return "rad", (tolerances["swing_least_rad"], tolerances["swing_most_rad"])
 
 
 def _judge(joint: Joint, kind: JointType, tolerances: Tolerances) -> tuple[str, str]:
@@ -57,11 +86,7 @@ def _judge(joint: Joint, kind: JointType, tolerances: Tolerances) -> tuple[str, 
     duration_s = max(float(joint.ticks[-1] - joint.ticks[0]) * 0.016, 0.016)
     if kind == JointType.CONTINUOUS:
         return _turns(positions, duration_s, tolerances)
-    unit = "m" if kind == JointType.PRISMATIC else "rad"
-    names = (
-        ("push_least_m", "push_most_m") if unit == "m" else ("swing_least_rad", "swing_most_rad")
-    )
-    span = tolerances[names[0]], tolerances[names[1]]
+    unit, span = _width(kind, tolerances)
     return _swings(positions, unit, span, tolerances)
 
 

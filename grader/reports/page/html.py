@@ -6,7 +6,10 @@ content security policy lets nothing run but the page's own script.
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -15,21 +18,25 @@ from weakref import WeakKeyDictionary
 
 import jinja2
 import numpy as np
+from markupsafe import Markup
 
 from grader import text
 from grader.recording.recording import Recording
 from grader.reports import wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import templating
-from grader.reports.page.pictures import canvas_uri, window_uri
+from grader.reports.page.expected import Drawn, expected
+from grader.reports.page.pictures import canvas_uri, plane_uri, window_uri
 from grader.reports.page.pins import RADIUS_PX, Pin, pins
 from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
+from grader.reports.page.solids import Turnable, turnable
 from grader.reports.page.tracks import Film, film
+from grader.reports.page.trees import DrawnTree, drawn
 from grader.reports.report import Report
 from grader.result.result import RunSummary
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
-from grader.scenes.view import Floats
+from grader.scenes.view import Floats, Solid, Table, Tree
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
@@ -45,8 +52,13 @@ class RunView:
         number: 0 for the nominal one.
         title: what it is.
         facts: how it went, as in the result file.
-        picture: the window at the end as data URI, or ''.
-        pins: the evidence in it.
+        picture: the scene's plane at the end as data URI, or ''.
+        still: the window at the end, where that is not the plane, as data URI, or ''.
+        still_words: what it shows.
+        turnable: the same, to be turned.
+        trees, tables: what else there is to see.
+        expected: what checks want of curves, by their titles.
+        pins: the evidence in the plane.
         film, plots: None without a recording.
         output: what the node printed.
         on_paper: whether it is printed: there is a fault in it, or in no run at all.
@@ -56,6 +68,12 @@ class RunView:
     title: str
     facts: RunSummary
     picture: str
+    still: str
+    still_words: str
+    turnable: Turnable | None
+    trees: tuple[DrawnTree, ...]
+    tables: tuple[Table, ...]
+    expected: Mapping[str, Drawn]
     pins: tuple[Pin, ...]
     film: Film | None
     plots: Plots | None
@@ -69,7 +87,9 @@ class RunView:
 
     @property
     def can_be_seen(self) -> bool:
-        """Whether there is anything to show in a picture."""
+        """Whether there is anything to show in the plane."""
+        if self.still and not self.plots:
+            return bool(self.film and self.film.tracks)
         return bool(self.picture or self.film or self.pins)
 
 
@@ -94,7 +114,10 @@ def render(report: Report) -> str:
             report=report,
             runs=runs,
             films={run.number: _film_data(run.film) for run in runs if run.film is not None},
-            pinned={pin.point.number for run in runs for pin in run.pins},
+            pinned={pin.point.number for run in runs if run.can_be_seen for pin in run.pins},
+            has_parts=any(run.still or run.trees or run.tables for run in runs),
+            has_solids=any(run.turnable for run in runs),
+            is_still=all(run.still and not run.can_be_seen for run in runs),
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
             places={verdict.check: index for index, verdict in enumerate(report.verdicts)},
@@ -162,7 +185,11 @@ def render_error(report: ErrorReport) -> str:
 @cache
 def _environment() -> jinja2.Environment:
     made = templating.environment(_TEMPLATES / "page.js")
+    code = (_TEMPLATES / "solid.js").read_text(encoding="utf-8")
     made.globals.update(
+        solid_script=Markup(code),
+        solid_digest=base64.b64encode(hashlib.sha256(code.encode()).digest()).decode(),
+        parts_style=Markup((_TEMPLATES / "parts.css").read_text(encoding="utf-8")),
         all_passed=wording.all_passed,
         see_first=wording.SEE_FIRST,
         place=text.place,
@@ -178,6 +205,9 @@ class Drawing:
 
     film: Film | None = None
     plots: Plots | None = None
+    turnable: Turnable | None = None
+    trees: tuple[DrawnTree, ...] = ()
+    tables: tuple[Table, ...] = ()
 
 
 _drawings: WeakKeyDictionary[Recording, Drawing] = WeakKeyDictionary()
@@ -190,7 +220,14 @@ def draw(recording: Recording) -> Drawing:
         scene = load_scene(recording.scene)
         view, tick_s = scene.view(recording.trace), scene.tick_ns / 1e9
         ticks = recording.run.ticks
-        drawing = Drawing(film(view, ticks, tick_s), plots(view, ticks, tick_s))
+        solids = [part for part in view.parts if isinstance(part, Solid)]
+        drawing = Drawing(
+            film(view, ticks, tick_s),
+            plots(view, ticks, tick_s),
+            turnable(solids[0], tick_s) if solids else None,
+            tuple(drawn(part) for part in view.parts if isinstance(part, Tree)),
+            tuple(part for part in view.parts if isinstance(part, Table)),
+        )
         _drawings[recording] = drawing
     return drawing
 
@@ -198,18 +235,33 @@ def draw(recording: Recording) -> Drawing:
 def _view(report: Report, number: int, on_paper: bool) -> RunView:
     recording = report.recordings.get(number)
     drawing = Drawing() if recording is None else draw(recording)
+    window = canvas_uri(report) if number == 0 else window_uri(report, number)
+    is_apart = not report.scene.window_is_plane
     output = report.output if number == 0 else text.plain(recording.output if recording else "")
     return RunView(
         number,
         _title(report, number),
         report.varied_runs[number - 1] if number else report.run,
-        canvas_uri(report) if number == 0 else window_uri(report, number),
+        plane_uri(report, number) if is_apart else window,
+        window if is_apart else "",
+        _still_words(drawing),
+        drawing.turnable,
+        drawing.trees,
+        drawing.tables,
+        expected(report, drawing.plots) if number == 0 else {},
         pins(report, number),
         drawing.film,
         drawing.plots,
         text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
         on_paper,
     )
+
+
+def _still_words(drawing: Drawing) -> str:
+    if drawing.turnable is not None:
+        return drawing.turnable.solid.text
+    shown = drawing.film.drawn if drawing.film is not None else ()
+    return "; ".join(shown) or "The window at the end"
 
 
 def _title(report: Report, number: int) -> str:

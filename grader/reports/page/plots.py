@@ -39,6 +39,7 @@ class Plot:
         path: the `d` of an SVG path in a box of WIDTH x HEIGHT.
         ticks: of the value axis.
         summary: the plot in words.
+        bottom, top: the values at the box's edges.
     """
 
     title: str
@@ -46,6 +47,8 @@ class Plot:
     path: str
     ticks: tuple[Tick, ...]
     summary: str
+    bottom: float
+    top: float
 
 
 @dataclass(frozen=True)
@@ -136,7 +139,8 @@ def _plot(curve: Curve, x: Floats) -> Plot:
     y = (top - values) / (top - bottom) * HEIGHT
     labels = tuple(Tick(100 * (v - bottom) / (top - bottom), f"{v:g}") for v in steps)
     summary = f"{curve.title}: from {low:.3g} to {high:.3g} {curve.unit}"
-    return Plot(curve.title, curve.unit, svg_path(*_thinned(x, y)), labels, summary)
+    path = svg_path(*_thinned(x, y))
+    return Plot(curve.title, curve.unit, path, labels, summary, bottom, top)
 
 
 def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
