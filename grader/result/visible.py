@@ -55,7 +55,9 @@ def student_view(result: Result, after_due: bool = False) -> Result:
 def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
     """A verdict without what may not be told of it, or of others."""
     if verdict.visible == "points_only":
-        verdict = replace(verdict, rationale=_no_finding(verdict), help="", evidence=(), expected=())
+        verdict = replace(
+            verdict, rationale=_no_finding(verdict), help="", evidence=(), expected=()
+        )
     if hidden.isdisjoint(verdict.depends_on):
         return verdict
     left = tuple(name for name in verdict.depends_on if name not in hidden)

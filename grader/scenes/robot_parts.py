@@ -16,7 +16,7 @@ from robot_py.model import Box, Colour, Cylinder, Geometry, Model, Sphere
 Floats = npt.NDArray[np.float64]
 
 #: A page has no more shapes, and no more triangles of meshes.
-MOST_SHAPES, MOST_TRIANGLES = 400, 4000
+MOST_SHAPES, MOST_TRIANGLES = 400, 8000
 LONGEST_NAME = 60
 _FARTHEST = 1e6
 
@@ -38,12 +38,12 @@ def shapes(
             colour = colour_of(visual)
             sizes = _sizes(visual.geometry, meshes)
             triangles += len(sizes) // 9
-            fits = sizes and max(map(abs, sizes)) < _FARTHEST and is_finite(visual.origin.xyz)
+            pose = placing(matrix(visual.origin))
+            fits = sizes and is_finite((*sizes, *pose.at, *pose.turned)) and link.name in numbers
             if not fits or len(found) >= MOST_SHAPES or triangles > MOST_TRIANGLES:
                 named = getattr(visual.geometry, "filename", f"a shape of {link.name}")
                 left_out[name_of(named)] = None
             elif colour[3] > 0:
-                pose = placing(matrix(visual.origin))
                 kind = _KINDS.get(type(visual.geometry).__name__, "triangles")
                 number = numbers[link.name]
                 found.append(Shape(kind, number, pose, sizes, _hex(colour), colour[3]))  # type: ignore[arg-type]

@@ -81,7 +81,7 @@ def _paint(
         found[hides >= nearness] = -1
     rows, columns = np.nonzero(found >= 0)
     number = found[rows, columns]
-    shares = barycentric(pixels[number], columns + 0.5, rows + 0.5)
+    shares = barycentric(pixels[number], columns, rows)
     normals = (robot.normals[chosen[number]] * shares[..., np.newaxis]).sum(axis=1)
     light = _light(normals, camera)
     colours = robot.colours[chosen[number]]

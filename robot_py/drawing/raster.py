@@ -29,7 +29,7 @@ def nearest(pixels: Floats, ahead: Floats, size_px: int) -> tuple[Ints, Floats]:
     nearness = np.zeros(size_px * size_px)
     found = np.full(size_px * size_px, -1, dtype=np.int64)
     for number, x, y in _candidates(pixels, size_px):
-        shares = barycentric(pixels[number], x + 0.5, y + 0.5)
+        shares = barycentric(pixels[number], x, y)
         inside = (shares >= 0).all(axis=1)
         number, place = number[inside], (y * size_px + x)[inside]
         # over a plane in space, the inverse of the distance is linear in the picture
@@ -40,8 +40,9 @@ def nearest(pixels: Floats, ahead: Floats, size_px: int) -> tuple[Ints, Floats]:
     return found.reshape(size_px, size_px), nearness.reshape(size_px, size_px)
 
 
-def barycentric(corners: Floats, x: Floats, y: Floats) -> Floats:
-    """How much of each corner is in a point: float64 (n, 3), all >= 0 inside."""
+def barycentric(corners: Floats, column: Ints, row: Ints) -> Floats:
+    """How much of each corner is in the middle of a pixel: float64 (n, 3), all >= 0 inside."""
+    x, y = column.astype(np.float64) + 0.5, row.astype(np.float64) + 0.5
     (ax, ay), (bx, by), (cx, cy) = (corners[:, k].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
     with np.errstate(all="ignore"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -84,9 +85,7 @@ def _cylinder(radius: float, length: float, around: int) -> Triangles:
     top = np.stack((middle + half, a * radius + half, b * radius + half), axis=1)
     bottom = np.stack((middle - half, b * radius - half, a * radius - half), axis=1)
     caps = flat(np.concatenate((top, bottom)))
-    return Triangles(
-        np.concatenate((mantle, caps.corners)), np.concatenate((looks, caps.normals))
-    )
+    return Triangles(np.concatenate((mantle, caps.corners)), np.concatenate((looks, caps.normals)))
 
 
 def _sphere(radius: float, around: int) -> Triangles:
@@ -95,10 +94,7 @@ def _sphere(radius: float, around: int) -> Triangles:
     up = np.array((0.0, 0.0, 1.0))
     layers = [ring * math.cos(tilt) + up * math.sin(tilt) for tilt in tilts]
     looks = np.concatenate(
-        [
-            _strip(low[:-1], low[1:], high[1:], high[:-1])
-            for low, high in zip(layers[:-1], layers[1:], strict=True)
-        ]
+        [_strip(low[:-1], low[1:], high[1:], high[:-1]) for low, high in pairwise(layers)]
     )
     return Triangles(looks * radius, looks)
 

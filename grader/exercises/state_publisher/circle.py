@@ -11,7 +11,9 @@ from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Expected, Finding
 from grader.exercises.state_publisher.seen import Seen, sentence
 from grader.scenes.robot.motion import ODOM, Floats, Way, bare, fitted
-from grader.scenes.robot.view import FROM_CENTRE, HEADING as HEADING_CURVE, HEIGHT as HEIGHT_CURVE
+from grader.scenes.robot.view import FROM_CENTRE
+from grader.scenes.robot.view import HEADING as HEADING_CURVE
+from grader.scenes.robot.view import HEIGHT as HEIGHT_CURVE
 
 #: What each is worth: the circle, its height, the heading, the quaternion.
 CIRCLE, HEIGHT, HEADING, QUATERNION = 0.35, 0.15, 0.3, 0.2

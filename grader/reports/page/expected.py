@@ -40,9 +40,7 @@ def expected(report: Report, plots: Plots | None) -> dict[str, Drawn]:
     return found
 
 
-def _bands(
-    plot: Plot, within: tuple[float, float] | None
-) -> tuple[tuple[float, float], ...]:
+def _bands(plot: Plot, within: tuple[float, float] | None) -> tuple[tuple[float, float], ...]:
     if within is None:
         return ()
     low, high = (min(max(value, plot.bottom), plot.top) for value in within)

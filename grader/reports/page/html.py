@@ -117,7 +117,7 @@ def render(report: Report) -> str:
             pinned={pin.point.number for run in runs if run.can_be_seen for pin in run.pins},
             has_parts=any(run.still or run.trees or run.tables for run in runs),
             has_solids=any(run.turnable for run in runs),
-            is_still=all(run.still and not run.can_be_seen for run in runs),
+            is_looked_at=bool(report.scene.examiner),
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
             places={verdict.check: index for index, verdict in enumerate(report.verdicts)},

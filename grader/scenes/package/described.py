@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from functools import lru_cache
 
 import numpy as np
@@ -11,12 +12,14 @@ from grader.scenes.package.trace import Description, PackageTrace
 from grader.scenes.robot_parts import name_of, named, place_less, placing, shapes
 from grader.scenes.view import Pixels, Placing, Solid, SolidFrame, Tree, TreeNode
 from robot_py.drawing import NOBODY, body, picture
+from robot_py.drawing.triangles import Floats
 from robot_py.kinematics import forward, joint_transform, tree
 from robot_py.model import Model
 from robot_py.urdf import parse
 
 _MOST_LINKS = 400
 _MOST_NODES = 150
+_LARGEST = 1e9
 #: A description that is longer is not drawn [characters].
 _LONGEST = 500_000
 
@@ -32,7 +35,7 @@ def window(trace: PackageTrace) -> Pixels:
     robot = model(trace)
     if robot is None:
         return picture(NOBODY, labels=(_why_not(trace),))
-    there = body(robot, forward(robot, {}))
+    there = body(robot, forward(robot, {}), meshes(trace))
     left_out = (f"not drawn: {named(there.left_out)}",) if there.left_out else ()
     labels = (*place_less(there.lost), *left_out)
     return picture(there, height_m=there.lowest_m, labels=labels)
@@ -44,10 +47,10 @@ def solid(trace: PackageTrace) -> Solid | None:
     if robot is None:
         return None
     placed = forward(robot, {})
-    there = body(robot, placed)
+    there = body(robot, placed, meshes(trace))
     joints = tree(robot).joints
-    links = [link for link in (*placed, *there.lost)][:_MOST_LINKS]
-    numbers = {link: number for number, link in enumerate(dict.fromkeys(links))}
+    links = (*placed, *there.lost)[:_MOST_LINKS]
+    numbers = {link: number for number, link in enumerate(links)}
     frames = []
     for link in numbers:
         if link in there.lost:
@@ -57,7 +60,7 @@ def solid(trace: PackageTrace) -> Solid | None:
         else:
             where = placing(joint_transform(joints[link]))
             frames.append(SolidFrame(name_of(link), numbers[joints[link].parent], (where,)))
-    made, left_out = shapes(robot, numbers, {})
+    made, left_out = shapes(robot, numbers, meshes(trace))
     return Solid(
         f"The robot {name_of(robot.name)}",
         _words(trace, robot, there.lost, left_out),
@@ -99,6 +102,26 @@ def links(trace: PackageTrace) -> Tree | None:
     more = len(nodes) - _MOST_NODES
     note = f"{more} more links are not shown." if more > 0 else ""
     return Tree("Links and the joints that hold them", tuple(nodes[:_MOST_NODES]), note)
+
+
+def meshes(trace: PackageTrace) -> dict[str, Floats]:
+    """By the name that the URDF gives: triangles, float64 (n, 3, 3), as far as they were read."""
+    found = _described(trace)
+    return {
+        mesh.uri: surface
+        for mesh in (found.meshes if found is not None else ())
+        if mesh.surface >= 0 and (surface := _surface(trace.surfaces[mesh.surface])) is not None
+    }
+
+
+def _surface(told: str) -> Floats | None:
+    """A surface of a trace; None where it is none."""
+    try:
+        numbers = np.frombuffer(base64.b64decode(told, validate=True), "<f4").astype(np.float64)
+    except ValueError:
+        return None
+    whole = len(numbers) % 9 == 0 and (np.abs(numbers) < _LARGEST).all()
+    return numbers.reshape(-1, 3, 3) if whole else None
 
 
 def _described(trace: PackageTrace) -> Description | None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from grader import text
-from grader.scenes.package.trace import Lacking, Launch, Node, PackageTrace, Skipped
+from grader.scenes.package.trace import PREFIX, Lacking, Launch, Node, PackageTrace, Skipped
 from grader.scenes.view import Cell, Table
 
 HEADINGS = ("Package", "Program", "Name", "Parameters and arguments", "Said in")
@@ -19,15 +21,26 @@ def tables(trace: PackageTrace) -> tuple[Table, ...]:
 
 def _table(trace: PackageTrace, launch: Launch) -> Table:
     rows = [_node(trace, launch, node) for node in launch.nodes]
-    rows += [
-        _row("", "", "", (f"the program {each}",), launch.file) for each in launch.processes
-    ]
+    rows += [_row("", "", "", (f"the program {each}",), launch.file) for each in launch.processes]
     for each in launch.includes:
         told = (f"includes {each.file}", *each.arguments)
         rows.append(_row(each.package, "", "", told, launch.file))
     rows += [_skipped(each) for each in launch.skipped]
-    rows += [_lacking(each) for each in launch.lacking]
-    return Table(f"What {_clip(launch.file)} would start", HEADINGS, tuple(rows[:_MOST_ROWS]), _note(launch, len(rows)))
+    rows += [_lacking(each) for each in launch.lacking if each.source or not _is_told(launch, each)]
+    title = f"What {_clip(launch.file)} would start"
+    return Table(title, HEADINGS, tuple(rows[:_MOST_ROWS]), _note(launch, len(rows)))
+
+
+def _is_told(launch: Launch, lacking: Lacking) -> bool:
+    """Whether a node's row says that it is missing."""
+    for node in launch.nodes:
+        names = {"package": node.package, "executable": f"{node.package} {node.executable}"}
+        if names.get(lacking.kind) == lacking.name:
+            return True
+        said = (*node.arguments, *(each.value for each in node.parameters))
+        if lacking.kind == "file" and _names(said, lacking.name):
+            return True
+    return False
 
 
 def _note(launch: Launch, rows: int) -> str:
@@ -67,7 +80,7 @@ def _node(trace: PackageTrace, launch: Launch, node: Node) -> tuple[Cell, ...]:
     )
 
 
-def _names(told: list[str], file: str) -> bool:
+def _names(told: Sequence[str], file: str) -> bool:
     return any(file in each for each in told)
 
 
@@ -77,7 +90,7 @@ def _skipped(each: Skipped) -> tuple[Cell, ...]:
 
 
 def _lacking(each: Lacking) -> tuple[Cell, ...]:
-    told = f"missing: the {each.kind} {each.name}"
+    told = f"the {each.kind} {each.name}"
     lines = (told, f"the package has {each.source}, not there") if each.source else (told,)
     return (Cell(("",)),) * 3 + (Cell(_lines(lines), True), Cell((_clip(each.by),)))
 
@@ -108,4 +121,4 @@ def _place(file: str, line: int) -> str:
 
 
 def _clip(said: str) -> str:
-    return text.clip(text.one_line(text.plain(said)), _LONGEST)
+    return text.clip(text.one_line(text.plain(said.replace(f"{PREFIX}/", ""))), _LONGEST)

@@ -17,6 +17,8 @@ from grader.scenes.package.strict import from_json, longest, to_json
 #: A description may have so many characters; all of a trace so many bytes.
 LONGEST_TEXT = 2_000_000
 MOST_BYTES = 16_000_000
+#: A surface in base64: 2000 triangles.
+LONGEST_SURFACE = 96_000
 #: Where a package is laid out, in the paths of a trace.
 PREFIX = "/prefix"
 #: Where the packages of ROS are said to be, and the current folder of who launches.
@@ -216,12 +218,14 @@ class Mesh:
             resolves such a name.
         path: what was looked for; of `case` and `left`, what is there.
         is_mesh: whether it is a mesh, and no texture.
+        surface: the number of its triangles among the surfaces; -1 where nobody has read them.
     """
 
     uri: str
     state: str
     path: str
     is_mesh: bool
+    surface: int = -1
 
 
 @dataclass(frozen=True)
@@ -273,6 +277,7 @@ class PackageTrace:
         descriptions: the robots that it describes.
         varied: with other numbers.
         texts: what the numbers of texts stand for.
+        surfaces: of meshes, for pictures: nine float32 for each triangle, in base64.
     """
 
     setup: Setup | None = None
@@ -281,6 +286,7 @@ class PackageTrace:
     descriptions: tuple[Description, ...] = ()
     varied: tuple[Varied, ...] = ()
     texts: tuple[str, ...] = longest(LONGEST_TEXT)
+    surfaces: tuple[str, ...] = longest(LONGEST_SURFACE)
 
     @classmethod
     def of(cls, trace: object) -> Self:
@@ -339,6 +345,9 @@ def _must_agree(trace: PackageTrace) -> None:
     ]
     if any(not -1 <= number < len(trace.texts) for number in numbers):
         raise ValueError("it names a text that is not there")
+    meshes = (mesh for each in trace.descriptions for mesh in each.meshes)
+    if any(not -1 <= each.surface < len(trace.surfaces) for each in meshes):
+        raise ValueError("it names a surface that is not there")
     if any(not 0 <= each.of < len(trace.descriptions) for each in trace.varied):
         raise ValueError("it names a description that is not there")
     if trace.setup and len(trace.setup.installed) != len(trace.setup.sources):

@@ -83,7 +83,7 @@ def below(root: str, frames: dict[str, Hung]) -> list[str]:
 
 
 def tree(trace: RobotTrace) -> Tree | None:
-    """tf as a tree; None where nothing was heard of it."""
+    """The frames as a tree; None where nothing was heard of it."""
     frames = hung(trace)
     if not frames:
         return None

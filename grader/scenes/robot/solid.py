@@ -120,7 +120,9 @@ def words(trace: RobotTrace, lost: tuple[str, ...], left_out: tuple[str, ...]) -
     robot = trace.robot
     if robot is None:
         return "no robot description was recorded"
-    said = [f"The robot {name_of(robot.model.name)} with {text.count(len(robot.model.links), 'link')}"]
+    said = [
+        f"The robot {name_of(robot.model.name)} with {text.count(len(robot.model.links), 'link')}"
+    ]
     root = places(trace).get(robot.model.root)
     if root is not None:
         said.append(f"at {text.place(float(root[0, 3]), float(root[1, 3]))} in {ODOM} at the end")

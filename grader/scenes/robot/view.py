@@ -23,6 +23,8 @@ MOST_JOINTS = 8
 #: Beyond this there is nothing to be seen [m, rad].
 FARTHEST = 1e6
 _INK_PX = 3
+#: A larger circle is a line, as far as it is in the picture.
+_LARGEST_CIRCLE_M = 50.0
 
 
 def view(trace: RobotTrace) -> View:
@@ -55,18 +57,23 @@ def plan(trace: RobotTrace) -> Pixels:
         colour = AXES if metre + PLANE.origin_m == 0 else GRID
         draw.line((at, 0, at, PLANE.size_px), colour)
         draw.line((0, at, PLANE.size_px, at), colour)
-    if (round_ := solid.circle(trace)) is not None:
-        x, y = PLANE.to_px(*round_[:2])
-        far = round_[2] * PLANE.metre_px
-        draw.ellipse((x - far, y - far, x + far, y + far), outline=FITTED)
-        draw.line((x - 4, y, x + 4, y), FITTED)
-        draw.line((x, y - 4, x, y + 4), FITTED)
+    _draw_circle(draw, solid.circle(trace))
     way = odometry(trace)
     x, y = _pixels(way)
     for piece in _finite_pieces(np.column_stack((x, y))):
         if len(piece) > 1:
             draw.line([tuple(each) for each in piece.tolist()], INK, _INK_PX, joint="curve")
     return np.asarray(image)
+
+
+def _draw_circle(draw: ImageDraw.ImageDraw, circle: tuple[float, float, float] | None) -> None:
+    if circle is None or max(map(abs, circle)) > _LARGEST_CIRCLE_M:
+        return
+    x, y = PLANE.to_px(*circle[:2])
+    far = circle[2] * PLANE.metre_px
+    draw.ellipse((x - far, y - far, x + far, y + far), outline=FITTED)
+    draw.line((x - 4, y, x + 4, y), FITTED)
+    draw.line((x, y - 4, x, y + 4), FITTED)
 
 
 def _pixels(way: Way) -> tuple[Floats, Floats]:
@@ -95,7 +102,9 @@ def _track(trace: RobotTrace, way: Way) -> Track:
 
 
 def _curve(joint: Joint, unit: str) -> Curve:
-    return Curve(curve_of(joint.name), unit, joint.ticks.astype(np.float64), _drawable(joint.positions))
+    return Curve(
+        curve_of(joint.name), unit, joint.ticks.astype(np.float64), _drawable(joint.positions)
+    )
 
 
 def curve_of(joint: str) -> str:

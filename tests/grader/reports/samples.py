@@ -6,8 +6,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
-
 from grader.recording import folder as storage
 from grader.recording.recording import Recording
 from grader.reports import Report
@@ -121,7 +119,7 @@ def graded(
     storage.save(recording, folder / "recording")
     for number, other in enumerate(varied, 1):
         storage.save(other, folder / "recording" / f"varied_{number}")
-    Image.fromarray(recording.trace.window).save(folder / "canvas.png")
+    (folder / "canvas.png").write_bytes(recording.png["window"])
     (folder / "output.txt").write_bytes(output.encode())
     artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
     if varied:

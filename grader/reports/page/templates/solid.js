@@ -104,7 +104,6 @@
       this.player = figure.querySelector(".player input");
       this.sample = Math.max(this.data.t.length - 1, 0);
       this.waits = false;
-      this.place();
       this.frame();
       this.back();
       figure.querySelector(".turning").hidden = false;
@@ -219,11 +218,16 @@
       this.world = world;
     }
 
-    /** Choose what is in the middle, and how far the eye is away, at the sample that is shown. */
+    /** Choose what is in the middle, and how far the eye is away: all is seen that there ever is. */
     frame() {
       const { ground, way } = this.data;
-      const points = way.map(([x, y]) => [x, y, ground]);
-      for (const { p } of this.world) points.push([p[0], p[1], p[2]], [p[6], p[7], p[8]], [p[12], p[13], p[14]]);
+      const points = way.map(([x, y]) => [x, y, ground]), last = this.sample;
+      const stride = Math.max(Math.floor(last / 6), 1);
+      for (let sample = last % stride; sample <= last; sample += stride) {
+        this.sample = sample;
+        this.place();
+        for (const { p } of this.world) points.push([p[0], p[1], p[2]], [p[6], p[7], p[8]], [p[12], p[13], p[14]]);
+      }
       if (!points.length) points.push([-1, -1, ground], [1, 1, ground]);
       const low = [0, 1, 2].map((k) => points.reduce((m, p) => Math.min(m, p[k]), Infinity));
       const high = [0, 1, 2].map((k) => points.reduce((m, p) => Math.max(m, p[k]), -Infinity));

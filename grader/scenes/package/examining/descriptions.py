@@ -29,7 +29,10 @@ _ARGUMENT: Final = re.compile(_GIVEN.replace("{}", "arg", 1).replace("{}", "defa
 
 
 def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
-    """The files that a description names; None where it is no XML."""
+    """The files that a description names; None where it is no XML.
+
+    Where one that is a mesh is found, `real` is its path.
+    """
     try:
         if "<!DOCTYPE" in text:
             return None
@@ -43,7 +46,9 @@ def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
             if key not in found and len(found) < _MOST_FILES:
                 state, path = _resolved(uri.strip(), place)
                 told = {"uri": place.told(uri)[:1000], "state": state}
-                found[key] = {**told, "path": place.told(path)[:1000], "is_mesh": key[1]}
+                real = path if state == "found" and key[1] else ""
+                told["path"] = place.told(path)[:1000]
+                found[key] = {**told, "is_mesh": key[1], "real": real}
     return list(found.values())
 
 

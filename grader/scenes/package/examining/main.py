@@ -13,6 +13,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
@@ -23,7 +24,14 @@ if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
 from grader.scenes.package import strict, trace  # noqa: E402
-from grader.scenes.package.examining import descriptions, launches, layout, leftovers, packages  # noqa: E402
+from grader.scenes.package.examining import (  # noqa: E402
+    descriptions,
+    launches,
+    layout,
+    leftovers,
+    packages,
+    surfaces,
+)
 from grader.scenes.package.examining.layout import Installed  # noqa: E402
 from grader.scenes.package.examining.place import Place  # noqa: E402
 from grader.scenes.package.examining.steps import NONSENSE, Ended, problem_of, step  # noqa: E402
@@ -83,6 +91,8 @@ class Looking:
         self._place = place
         self._scratch = scratch
         self._texts: list[str] = []
+        self._triangles: list[str] = []
+        self._surfaces: dict[str, int] = {}
         self._descriptions: list[Description] = []
         self._commands: dict[int, list[str]] = {}
         self._files: dict[str, tuple[Installed, str]] = {}
@@ -103,6 +113,7 @@ class Looking:
             descriptions=tuple(self._descriptions),
             varied=tuple(varied),
             texts=tuple(self._texts),
+            surfaces=tuple(self._triangles),
         )
 
     def _setup(self) -> dict[str, Any]:
@@ -200,12 +211,29 @@ class Looking:
             is_launched=launched,
             source=next((each for each in map(self._own, sources) if each), ""),
             problem=Problem("error", refused) if refused else None,
-            meshes=tuple(strict.from_json(Mesh, each) for each in named or ()),
+            meshes=tuple(strict.from_json(Mesh, each) for each in self._with_surfaces(named)),
             is_xml=named is not None,
         )
         if sources and sources[0].startswith("/prefix/"):
             self._commands[len(self._descriptions)] = [self._real(sources[0])]
         self._descriptions.append(made)
+
+    def _with_surfaces(self, named: list[dict[str, Any]] | None) -> list[dict[str, Any]]:
+        """The meshes of a description, each with the number of what it looks like."""
+        for each in named or ():
+            each["surface"] = self._surface(each.pop("real"))
+        return named or []
+
+    def _surface(self, path: str) -> int:
+        """The number of a mesh's triangles; -1 where nobody can read it."""
+        if path and path not in self._surfaces and len(self._surfaces) < surfaces.MOST_MESHES:
+            self._surfaces[path] = -1
+            with suppress(Ended, ValueError, TypeError):
+                said = str(step(partial(surfaces.surface, path), self._place.own))
+                if said and len(said) <= trace.LONGEST_SURFACE:
+                    self._surfaces[path] = len(self._triangles)
+                    self._triangles.append(said)
+        return self._surfaces.get(path, -1)
 
     def _own(self, told: str) -> str:
         return self._place.own(self._real(told))

@@ -1,0 +1,143 @@
+"""Solids, trees, tables and what is expected of curves, as a page has them; all of it escaped."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from grader.recording.recording import Recording, Run
+from grader.reports import Report
+from grader.reports.page import html
+from grader.reports.page.trees import DEEPEST, WIDTH, drawn
+from grader.scenes.package.trace import Description, Launch, Node, PackageTrace, Parameter
+from grader.scenes.robot.driving import drive
+from grader.scenes.robot.trace import RobotTrace
+from grader.scenes.view import Tree, TreeNode
+from tests.grader.reports import readers, samples
+from tests.grader.reports.samples import evidence, verdict
+from tests.grader.scenes.robot.robots import walks
+from tests.grader.scenes.robot.test_solid import URDF
+
+EXPECTED = [
+    {"curve": "Joint turn", "text": "turns <on>", "within": [-1, 2], "beyond": [0.5, 1.5]},
+    {"curve": "Height above odom", "text": "constant"},
+    {"curve": "of nothing", "text": "never shown"},
+]
+EVIL = "</script><img src=x onerror=alert(1)>"
+
+
+def page_of(folder, trace, scene, *verdicts):
+    run = Run(ticks=trace.ticks, simulated_s=trace.simulated_s, trace_sha256=trace.sha256())
+    recording = Recording(trace, run, scene=scene)
+    return html.render(Report.read(samples.graded(folder, recording, *verdicts)))
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory):
+    judged = verdict("moves", "failed", 2, evidence=[evidence("here", 1.0)], expected=EXPECTED)
+    return page_of(tmp_path_factory.mktemp("robot"), drive(walks, 400, URDF), "robot", judged)
+
+
+def package_trace(name: str = "arm") -> PackageTrace:
+    urdf = f'<robot name="{name}"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>'
+    node = Node("rviz2", EVIL, "", "", (EVIL,), (Parameter("p", EVIL, -1, True),), (), False)
+    launch = Launch("launch/a.launch.py", None, (node,), (), (), (), (), (), (), "")
+    of = Description(0, EVIL, True, "urdf/a.urdf", None, (), True)
+    return PackageTrace(launches=(launch,), descriptions=(of,), texts=(urdf,))
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    return page_of(tmp_path_factory.mktemp("package"), package_trace(), "package", verdict("a"))
+
+
+def data_of(page):
+    (found,) = re.findall(r'<script type="application/json">(.*?)</script>', page, re.DOTALL)
+    return json.loads(found)
+
+
+def test_a_page_with_parts_is_well_formed_and_loads_nothing(robot, package):
+    assert readers.html(robot) == 2
+    assert readers.html(package) == 10
+
+
+def test_its_scripts_and_no_others_may_run(robot):
+    (policy,) = re.findall(r"script-src ([^\"]*)\"", robot)
+    assert len(policy.split()) == 2
+    assert "onerror" not in robot
+
+
+def test_the_solid_s_data_has_a_placing_for_each_time(robot):
+    data = data_of(robot)
+    assert len(data["t"]) == len(data["frames"][0][1]) > 100
+    assert data["t"][-1] == 6.4
+    assert [shape[0] for shape in data["shapes"]] == [0, 2]
+    assert len(json.dumps(data)) < 20_000
+
+
+def test_what_moves_has_a_player_at_the_solid_and_a_plane_with_its_pins(robot):
+    assert robot.count('class="player"') == 1
+    solid, plane = robot.index('<figure class="solid">'), robot.index('<svg class="window light"')
+    assert solid < robot.index('class="player"') < plane
+    assert 'id="pin1"' in robot
+
+
+def test_a_picture_says_in_words_what_it_shows(robot, package):
+    assert 'alt="The robot two with 2 links; at (' in robot
+    assert "as &lt;/script&gt;&lt;img src=x onerror=alert(1)&gt; describes it" in package
+
+
+def test_frames_are_a_drawing_with_words(robot):
+    (words,) = re.findall(r'<svg class="tree" [^>]*aria-label="([^"]*)"', robot)
+    assert "- axis: 31.2 Hz, your node" in words
+    assert "<title>axis: 31.2 Hz, your node</title>" in robot
+
+
+def test_what_is_expected_stands_at_its_curve(robot):
+    assert "Expected: turns &lt;on&gt;" in robot
+    assert "Expected: constant" in robot
+    assert "never shown" not in robot
+    # the plot goes from 0 to 4: from there to 2 is its lower half
+    assert '<rect class="within" y="50.00" width="500" height="50.00"/>' in robot
+    assert robot.count('class="beyond"') == 2
+
+
+def test_a_package_has_a_table_and_neither_plane_nor_player(package):
+    assert 'class="window' not in package
+    assert 'class="player"' not in package
+    assert "What the package describes" in package
+    assert '<th scope="col" role="columnheader">Program</th>' in package
+    assert EVIL not in package
+
+
+@pytest.mark.parametrize(
+    ("trace", "scene"),
+    [(RobotTrace(0), "robot"), (PackageTrace(), "package")],
+    ids=lambda v: str(v)[:5],
+)
+def test_where_nothing_was_found_the_page_says_so_and_works(trace, scene, tmp_path):
+    page = page_of(tmp_path, trace, scene, verdict("a", "failed", 0, evidence=[evidence()]))
+    readers.html(page)
+    assert "<canvas" not in page
+    assert "no robot description was" in page or "no transform from odom" in page
+
+
+def test_without_the_recording_the_picture_beside_the_result_is_shown(tmp_path):
+    page = html.render(samples.report(verdict("a")))
+    assert "<canvas" not in page and 'class="still"' not in page
+
+
+def test_a_page_of_turtles_has_nothing_of_it():
+    page = html.render(samples.report(verdict("a")))
+    for part in (".solid", "turning", "aspect-ratio: 1", "data-heading"):
+        assert part not in page
+
+
+def test_a_deep_tree_stays_in_its_width():
+    nodes = tuple(TreeNode(depth, "n" * 60, "t" * 200) for depth in range(40))
+    made = drawn(Tree("deep", nodes))
+    assert max(node.x for node in made.nodes) < WIDTH / 2
+    assert len({node.x for node in made.nodes}) == DEEPEST + 1
+    assert all(len(node.name) * 8 + node.x < WIDTH + 20 for node in made.nodes)

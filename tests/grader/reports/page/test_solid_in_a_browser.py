@@ -1,0 +1,115 @@
+"""A solid as a browser draws it, on a telephone and on a desk; without one, nothing is asked.
+
+A copy of the page gets a program that plays its reader: it asks for keys, clicks and moments as a
+person would, and tells the page around it what came of it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from grader.scenes.robot.driving import drive
+from tests.grader.reports.page.test_parts import package_trace, page_of
+from tests.grader.reports.samples import verdict
+from tests.grader.scenes.robot.robots import walks
+from tests.grader.scenes.robot.test_solid import URDF
+
+BROWSER = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
+)
+pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+
+#: A window has a least width, a frame has none.
+FRAME = """<!DOCTYPE html><title>nothing</title><iframe src="page.html" width="{}" height="900"
+style="border:0"></iframe><script>
+addEventListener("message", (event) => {{ document.title = event.data; }});</script>"""
+#: Nobody looks at the page, so no frame would ever come.
+AT_ONCE = "window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 0);"
+READER = """
+(async () => {
+  const canvas = document.querySelector("canvas"), paper = canvas.getContext("2d");
+  const drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const look = async () => {
+    await drawn();
+    const all = paper.getImageData(0, 0, canvas.width, canvas.height).data;
+    let sum = 0, blue = 0, red = 0;
+    for (let k = 0; k < all.length; k += 4 * 3) {
+      sum = (sum * 31 + all[k] + 3 * all[k + 1] + 7 * all[k + 2]) % 1000003;
+      blue += all[k + 2] > 90 && all[k] < 40 && all[k + 1] < 40;
+      red += all[k] > 90 && all[k + 1] < 40 && all[k + 2] < 40;
+    }
+    return { sum, blue, red };
+  };
+  const key = (name) => canvas.dispatchEvent(new KeyboardEvent("keydown", { key: name, cancelable: true }));
+  const drag = (x) => {
+    const at = canvas.getBoundingClientRect();
+    for (const [kind, across, buttons] of [["pointerdown", 0, 1], ["pointermove", x, 1], ["pointerup", x, 0]]) {
+      canvas.dispatchEvent(new PointerEvent(kind, {
+        pointerId: 1, clientX: at.left + 50 + across, clientY: at.top + 50, buttons,
+      }));
+    }
+  };
+  canvas.setPointerCapture = () => {};
+  const said = { wide: document.documentElement.scrollWidth - innerWidth, width: innerWidth };
+  said.hidden = [...document.querySelectorAll(".still, .turning")].map((part) => part.hidden);
+  said.first = await look();
+  key("ArrowLeft");
+  said.key = await look();
+  drag(120);
+  said.drag = await look();
+  document.querySelector("[data-turn=nearer]").click();
+  said.nearer = await look();
+  document.querySelector("[data-turn=back]").click();
+  said.back = await look();
+  const slider = document.querySelector(".player input");
+  if (slider) {
+    slider.value = 1;
+    slider.dispatchEvent(new Event("input"));
+    await new Promise((done) => setTimeout(done, 0));
+    said.earlier = await look();
+  }
+  parent.postMessage(JSON.stringify(said), "*");
+})();
+"""
+
+
+def read(folder, page: str, width: int) -> dict:
+    """What the reader has seen."""
+    free = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page)
+    free = free.replace("<head>", f"<head><script>{AT_ONCE}</script>", 1)
+    played = free.replace("</body>", f"<script>{READER}</script></body>")
+    (folder / "page.html").write_text(played)
+    path = folder / "frame.html"
+    path.write_text(FRAME.format(width))
+    switches = ("--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/user")
+    command = [BROWSER, *switches, "--virtual-time-budget=5000", "--dump-dom", path.as_uri()]
+    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    (title,) = re.findall("<title>(.*?)</title>", dom)
+    return json.loads(title)
+
+
+@pytest.mark.parametrize("width", [375, 1280])
+def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(width, tmp_path):
+    page = page_of(tmp_path, drive(walks, 400, URDF), "robot", verdict("a"))
+    said = read(tmp_path, page, width)
+    assert said["wide"] <= 0 and said["width"] == width
+    assert said["hidden"] == [True, False]
+    first = said["first"]
+    assert first["blue"] > 100 and first["red"] > 30
+    views = [said[name]["sum"] for name in ("first", "key", "drag", "nearer", "earlier")]
+    assert len(set(views)) == len(views)
+    assert said["nearer"]["blue"] > said["drag"]["blue"]
+    assert said["back"] == first
+
+
+def test_a_package_s_robot_stands_still_and_can_be_turned(tmp_path):
+    page = page_of(tmp_path, package_trace(), "package", verdict("a"))
+    said = read(tmp_path, page, 375)
+    assert said["wide"] <= 0
+    assert said["first"]["red"] > 2000
+    assert said["key"]["sum"] != said["first"]["sum"] == said["back"]["sum"]
