@@ -41,7 +41,8 @@ def robot(tmp_path_factory):
 
 
 def package_trace(name: str = "arm") -> PackageTrace:
-    urdf = f'<robot name="{name}"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>'
+    box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
+    urdf = f'<robot name="{name}"><link name="base">{box}</link></robot>'
     node = Node("rviz2", EVIL, "", "", (EVIL,), (Parameter("p", EVIL, -1, True),), (), False)
     launch = Launch("launch/a.launch.py", None, (node,), (), (), (), (), (), (), "")
     of = Description(0, EVIL, True, "urdf/a.urdf", None, (), True)

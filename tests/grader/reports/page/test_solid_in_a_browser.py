@@ -33,9 +33,10 @@ AT_ONCE = "window.requestAnimationFrame = (draw) => setTimeout(() => draw(perfor
 READER = """
 (async () => {
   const canvas = document.querySelector("canvas"), paper = canvas.getContext("2d");
-  const drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
   const look = async () => {
-    await drawn();
+    await frame();
+    await frame();
     const all = paper.getImageData(0, 0, canvas.width, canvas.height).data;
     let sum = 0, blue = 0, red = 0;
     for (let k = 0; k < all.length; k += 4 * 3) {
@@ -45,10 +46,11 @@ READER = """
     }
     return { sum, blue, red };
   };
-  const key = (name) => canvas.dispatchEvent(new KeyboardEvent("keydown", { key: name, cancelable: true }));
+  const key = (name) => canvas.dispatchEvent(new KeyboardEvent("keydown", { key: name }));
   const drag = (x) => {
     const at = canvas.getBoundingClientRect();
-    for (const [kind, across, buttons] of [["pointerdown", 0, 1], ["pointermove", x, 1], ["pointerup", x, 0]]) {
+    const steps = [["pointerdown", 0, 1], ["pointermove", x, 1], ["pointerup", x, 0]];
+    for (const [kind, across, buttons] of steps) {
       canvas.dispatchEvent(new PointerEvent(kind, {
         pointerId: 1, clientX: at.left + 50 + across, clientY: at.top + 50, buttons,
       }));
