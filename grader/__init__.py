@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.exercise.check import Checks, Tolerances
     from grader.exercise.driven_path import DrivenPath
     from grader.exercise.loading import Exercise, load_exercise
-    from grader.exercise.verdict import Evidence, Finding, Verdict
+    from grader.exercise.verdict import Evidence, Expected, Finding, Verdict
     from grader.grading import grade, judge, load_recordings, record, save_recordings
     from grader.recording.recording import Recording, Recordings
     from grader.result.result import Result
@@ -36,7 +36,7 @@ _PUBLIC = {
     "grader.exercise.loading": ("Exercise", "load_exercise"),
     "grader.exercise.check": ("Checks", "Tolerances"),
     "grader.exercise.driven_path": ("DrivenPath",),
-    "grader.exercise.verdict": ("Evidence", "Finding", "Verdict"),
+    "grader.exercise.verdict": ("Evidence", "Expected", "Finding", "Verdict"),
     "grader.recording.recording": ("Recording", "Recordings"),
     "grader.result.result": ("Result",),
     "grader.result.visible": ("student_view",),
@@ -53,6 +53,7 @@ __all__ = [
     "Evidence",
     "Exercise",
     "ExerciseError",
+    "Expected",
     "Finding",
     "GraderError",
     "GraderFailure",
