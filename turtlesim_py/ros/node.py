@@ -6,7 +6,7 @@ import gc
 import sys
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.exceptions import NameValidationException
@@ -18,7 +18,7 @@ from rclpy.time_source import CLOCK_TOPIC, USE_SIM_TIME_NAME
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import Empty
 
-from turtlesim_py.ros import pacer, program, window
+from turtlesim_py.ros import live, pacer, program, window
 from turtlesim_py.ros.executor import TickExecutor
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableParameter
 from turtlesim_py.ros.turtle_endpoints import TurtleEndpoints
@@ -29,9 +29,13 @@ from turtlesim_py.world.parameters import BY_NAME, PARAMETERS
 from turtlesim_py.world.sprites import NAMES
 from turtlesim_py.world.turtle import Reading
 
+if TYPE_CHECKING:
+    from turtlesim_py.live.server import LiveServer
+
 #: For who asks what the program does.
 ABOUT = """\
 The simulator: turtles in a window that is not shown. To see it:
+    turtlesim                               (the simulator with a page for a browser)
     ros2 run rqt_image_view rqt_image_view /turtlesim/image
     ros2 service call /turtlesim/save_canvas std_srvs/srv/Trigger    (writes a PNG)
 
@@ -41,6 +45,10 @@ parameters:
     turtle_image     picture of every turtle (a random one)
     image_rate       pictures a second on ~/image while somebody looks (10)
     canvas_folder    where ~/save_canvas writes (the current folder)
+    view_port        port of a page that shows the turtles; 0: any free one; -1: no page (-1)
+    view_host        address at which the page is served (127.0.0.1)
+    view_token       what opens the page from elsewhere (one is made)
+    view_read_only   whether the page is for looking only (false)
     interfaces       package of the messages: turtlesim or turtlesim_msgs
     use_sim_time     follow /clock (false)"""
 #: The longest name that rotate_absolute's hidden services add to a turtle's.
@@ -61,6 +69,7 @@ class TurtlesimNode(RclcppNode):
         arena: the turtles and what they have drawn.
         interfaces: the classes of the topics, services and actions.
         tick_executor: serves the node, once in a tick.
+        live: serves the page, where one is wanted: the parameter `view_port`.
         follows_ros_clock: whether the time comes from /clock: the parameter `use_sim_time`.
 
     Raises:
@@ -72,6 +81,7 @@ class TurtlesimNode(RclcppNode):
     def __init__(self, arguments: list[str] | None = None) -> None:
         # first, since a node that comes no further is destroyed as well
         self._endpoints: dict[str, TurtleEndpoints] = {}
+        self.live: LiveServer | None = None
         super().__init__("turtlesim", cli_args=arguments)
         for parameter in PARAMETERS:
             low, high = parameter.low, parameter.high
@@ -80,6 +90,7 @@ class TurtlesimNode(RclcppNode):
         sprite = self._declare_sprite()
         self.interfaces = self.declare_interfaces()
         window.declare_parameters(self)
+        live.declare_parameters(self)
         self.get_logger().info(
             f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
         )
@@ -103,9 +114,12 @@ class TurtlesimNode(RclcppNode):
         self.create_service(self.interfaces.Spawn, "spawn", self._on_spawn)
         self.create_service(self.interfaces.Kill, "kill", self._on_kill)
         self.tick_executor = TickExecutor(self, self.on_failure)
+        self.live = live.serve(self, self.arena, self.interfaces.package)
 
     def destroy_node(self) -> None:
         """Leave the graph."""
+        if self.live is not None:
+            self.live.stop()
         self._drop_endpoints(set(self._endpoints))  # rclpy forgets actions
         super().destroy_node()
 
@@ -126,6 +140,8 @@ class TurtlesimNode(RclcppNode):
         if self._logs_positions:
             self._log_positions()
         self._window.publish_if_due()
+        if self.live is not None:
+            self.live.feed.after_tick(readings)
         return readings
 
     def serve(self, now_ns: int | None = None) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import floor
@@ -12,7 +13,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from turtlesim_py.world.stroke import spans
+from turtlesim_py.world.stroke import Span, spans
 
 #: Edge of the original's window [px].
 SIZE_PX = 500
@@ -52,11 +53,15 @@ class Canvas:
 
     A pixel is painted wholly or not at all, and later strokes cover earlier ones. The turtles and
     the background are not in it: see `picture`.
+
+    Attributes:
+        watcher: called with the pen and the runs of each stroke, if there is one; a copy has none.
     """
 
     def __init__(self, width: int = SIZE_PX, height: int = SIZE_PX) -> None:
         self.width = width
         self.height = height
+        self.watcher: Callable[[Pen, Sequence[Span]], None] | None = None
         # One 32-bit item a pixel, row after row, with the bytes r, g, b, a in memory: painting a
         # run is one slice assignment, and numpy reads the same bytes without conversion.
         self._blank = array("I", bytes(UNPAINTED)) * (width * height)
@@ -79,9 +84,12 @@ class Canvas:
         Coordinates may be far outside; with one that is not finite nothing is drawn.
         """
         pixels, width, pixel = self._pixels, self.width, pen._pixel
-        for row, first, last in spans(ax, ay, bx, by, pen.width, width, self.height):
+        runs = spans(ax, ay, bx, by, pen.width, width, self.height)
+        for row, first, last in runs:
             start = row * width
             pixels[start + first : start + last + 1] = pixel * (last - first + 1)
+        if self.watcher is not None:
+            self.watcher(pen, runs)
 
     def color_at(self, x: float, y: float) -> tuple[int, int, int]:
         """Read the colour (r, g, b) under a point [px]: what the colour sensor publishes.

@@ -1,0 +1,108 @@
+// A connection to the simulator, as rosbridge has it: topics in, commands and calls out. It comes
+// back by itself when the server does.
+
+/** The topic that only this server has: what becomes of the arena. */
+export const LIVE = "/turtlesim_live";
+const FIRST_PAUSE_MS = 300;
+const LONGEST_PAUSE_MS = 5000;
+
+export class Rosbridge {
+  /** @param {{open: function(), closed: function(), status: function(string)}} told */
+  constructor(told) {
+    this.told = told;
+    this.listeners = new Map();
+    this.waiting = new Map();
+    this.advertised = new Set();
+    this.number = 0;
+    this.pause = FIRST_PAUSE_MS;
+    this.connect();
+  }
+
+  connect() {
+    // beside the page, whatever stands before it: a forwarded port, a prefix, https
+    const address = new URL("socket", location.href);
+    address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+    address.search = location.search;
+    this.socket = new WebSocket(address);
+    this.socket.addEventListener("open", () => {
+      this.pause = FIRST_PAUSE_MS;
+      for (const [topic, { type }] of this.listeners) this.send({ op: "subscribe", topic, type });
+      for (const [topic, type] of this.advertisedTypes()) this.send({ op: "advertise", topic, type });
+      this.told.open();
+    });
+    this.socket.addEventListener("message", (event) => this.hear(JSON.parse(event.data)));
+    this.socket.addEventListener("close", () => {
+      for (const { fail } of this.waiting.values()) fail(new Error("the connection has ended"));
+      this.waiting.clear();
+      this.told.closed();
+      setTimeout(() => this.connect(), this.pause);
+      this.pause = Math.min(2 * this.pause, LONGEST_PAUSE_MS);
+    });
+  }
+
+  get isOpen() { return this.socket.readyState === WebSocket.OPEN; }
+
+  send(frame) { if (this.isOpen) this.socket.send(JSON.stringify(frame)); }
+
+  hear(frame) {
+    if (frame.op === "publish") {
+      this.listeners.get(frame.topic)?.hear(frame.msg);
+    } else if (frame.op === "service_response" || frame.op === "action_result") {
+      const call = this.waiting.get(frame.id);
+      this.waiting.delete(frame.id);
+      if (frame.result) call?.done(frame.values); else call?.fail(new Error(String(frame.values)));
+    } else if (frame.op === "status") {
+      this.waiting.get(frame.id)?.fail(new Error(frame.msg));
+      this.waiting.delete(frame.id);
+      this.told.status(frame.msg);
+    }
+  }
+
+  subscribe(topic, type, hear) {
+    this.listeners.set(topic, { type, hear });
+    this.send({ op: "subscribe", topic, type, throttle_rate: topic === LIVE ? 0 : 100 });
+  }
+
+  unsubscribe(topic) {
+    if (this.listeners.delete(topic)) this.send({ op: "unsubscribe", topic });
+  }
+
+  advertisedTypes() { return [...this.advertised].map((pair) => pair.split(" ")); }
+
+  advertise(topic, type) {
+    if (this.advertised.has(`${topic} ${type}`)) return;
+    this.advertised.add(`${topic} ${type}`);
+    this.send({ op: "advertise", topic, type });
+  }
+
+  unadvertise(topic, type) {
+    if (this.advertised.delete(`${topic} ${type}`)) this.send({ op: "unadvertise", topic });
+  }
+
+  publish(topic, type, msg) {
+    this.advertise(topic, type);
+    this.send({ op: "publish", topic, type, msg });
+  }
+
+  /** What a service answers; rejected where it does not. */
+  call(service, args = {}, type = undefined) {
+    return this.ask({ op: "call_service", service, args, type });
+  }
+
+  /** What an action ends with; `cancel` ends it. */
+  goal(action, action_type, args) {
+    const id = `goal ${this.number + 1}`;
+    const done = this.ask({ op: "send_action_goal", action, action_type, args, feedback: false });
+    return { done, cancel: () => this.send({ op: "cancel_action_goal", action, id }) };
+  }
+
+  ask(frame) {
+    if (!this.isOpen) return Promise.reject(new Error("there is no connection"));
+    this.number += 1;
+    const id = frame.op === "send_action_goal" ? `goal ${this.number}` : `call ${this.number}`;
+    return new Promise((done, fail) => {
+      this.waiting.set(id, { done, fail });
+      this.send({ ...frame, id });
+    });
+  }
+}

@@ -1,0 +1,287 @@
+"""What a viewer may ask for, as JSON: a part of the rosbridge protocol, version 2.
+
+    advertise, unadvertise, publish, subscribe, unsubscribe, call_service,
+    send_action_goal, cancel_action_goal
+
+and of rosapi's services those that say what there is. Programs that use roslibjs can therefore talk
+to the simulator. What cannot be done is answered with a `status`, and ends nothing.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from turtlesim_py.live import messages
+from turtlesim_py.live.graph import Graph, NotThere
+from turtlesim_py.live.messages import NoSuchType, Unfit
+
+#: Of each kind a viewer may have so many open.
+MOST_OPEN = 32
+#: So many frames a second are heard of a viewer, on average; so many at once.
+FRAMES_PER_S, FRAMES_AT_ONCE = 200.0, 400.0
+#: The topic that only viewers have: what becomes of the arena.
+LIVE = "/turtlesim_live"
+
+
+class Refused(ValueError):
+    """A frame that cannot be followed; the text says why."""
+
+
+_REFUSALS = (Refused, NotThere, NoSuchType, Unfit)
+
+
+class Host(Protocol):
+    """What a session needs of the server that it belongs to."""
+
+    is_read_only: bool
+    about: Mapping[str, Any]
+
+    def graph(self) -> Graph:
+        """The ROS graph; made when it is needed first."""
+
+    def watch(self, session: Session, watches: bool) -> None:
+        """Begin or end to tell a session of the arena."""
+
+
+@dataclass
+class Session:
+    """One viewer's frames.
+
+    Args:
+        host: the server.
+        send: sends an answer; may be called in the loop's thread only.
+        now: a clock [s].
+    """
+
+    host: Host
+    send: Callable[[Mapping[str, Any]], None]
+    now: Callable[[], float]
+    _publishers: dict[str, Any] = field(default_factory=dict)
+    _subscriptions: dict[str, Any] = field(default_factory=dict)
+    _tasks: dict[str, asyncio.Task[None]] = field(default_factory=dict)
+    _number: int = 0
+    _allowed: float = FRAMES_AT_ONCE
+    _heard_at: float = 0.0
+
+    def hear(self, frame: str | bytes) -> None:
+        """Do what a frame says, or answer why not."""
+        said: Any = None
+        try:
+            self._count()
+            said = _object(frame)
+            self._follow(said)
+        except _REFUSALS as error:
+            self._complain(str(error), said)
+
+    def close(self) -> None:
+        """Give back everything that the viewer had."""
+        self.host.watch(self, False)
+        for task in self._tasks.values():
+            task.cancel()
+        if self._publishers or self._subscriptions:
+            node = self.host.graph().node
+            for publisher in self._publishers.values():
+                node.destroy_publisher(publisher)
+            for subscription in self._subscriptions.values():
+                node.destroy_subscription(subscription)
+        self._publishers, self._subscriptions = {}, {}
+
+    # Frames -----------------------------------------------------------------------------------
+
+    def _count(self) -> None:
+        now = self.now()
+        passed, self._heard_at = now - self._heard_at, now
+        self._allowed = min(FRAMES_AT_ONCE, self._allowed + passed * FRAMES_PER_S) - 1.0
+        if self._allowed < 0.0:
+            self._allowed = 0.0
+            raise Refused(f"more than {FRAMES_PER_S:g} frames a second: this one is not heard")
+
+    def _follow(self, said: Mapping[str, Any]) -> None:
+        op = said.get("op")
+        follow = self._FOLLOW.get(op) if isinstance(op, str) else None
+        if follow is None:
+            raise Refused(f"unknown op {op!r:.60}; there are {', '.join(self._FOLLOW)}")
+        if self.host.is_read_only and op not in self._READING:
+            if not (op == "call_service" and str(said.get("service")).startswith("/rosapi/")):
+                raise Refused(f"{op} is refused: this page is for looking only")
+        follow(self, said)
+
+    def _complain(self, text: str, said: Any) -> None:
+        answer = {"op": "status", "level": "error", "msg": text}
+        if isinstance(said, dict) and isinstance(said.get("id"), str | int):
+            answer["id"] = said["id"]
+        self.send(answer)
+
+    def _advertise(self, said: Mapping[str, Any]) -> None:
+        topic = _text(said, "topic")
+        if topic not in self._publishers:
+            self._check_room(self._publishers)
+            self._publishers[topic] = self.host.graph().advertise(topic, _text(said, "type", ""))
+
+    def _unadvertise(self, said: Mapping[str, Any]) -> None:
+        publisher = self._publishers.pop(_text(said, "topic"), None)
+        if publisher is not None:
+            self.host.graph().node.destroy_publisher(publisher)
+
+    def _publish(self, said: Mapping[str, Any]) -> None:
+        self._advertise(said)
+        publisher = self._publishers[_text(said, "topic")]
+        publisher.publish(messages.from_json(publisher.msg_type, said.get("msg", {})))
+
+    def _subscribe(self, said: Mapping[str, Any]) -> None:
+        topic = _text(said, "topic")
+        if topic == LIVE:
+            self.host.watch(self, True)
+            return
+        if topic in self._subscriptions:
+            return
+        self._check_room(self._subscriptions)
+        pause_s = _pause_s(said)
+        loop, last = asyncio.get_running_loop(), [-pause_s]
+
+        def tell(content: Mapping[str, Any]) -> None:
+            if self.now() - last[0] >= pause_s and topic in self._subscriptions:
+                last[0] = self.now()
+                self.send({"op": "publish", "topic": topic, "msg": content})
+
+        self._subscriptions[topic] = self.host.graph().subscribe(
+            topic, _text(said, "type", ""), lambda m: loop.call_soon_threadsafe(tell, m)
+        )
+
+    def _unsubscribe(self, said: Mapping[str, Any]) -> None:
+        topic = _text(said, "topic")
+        if topic == LIVE:
+            self.host.watch(self, False)
+        subscription = self._subscriptions.pop(topic, None)
+        if subscription is not None:
+            self.host.graph().node.destroy_subscription(subscription)
+
+    def _call_service(self, said: Mapping[str, Any]) -> None:
+        service, args = _text(said, "service"), said.get("args", {})
+        self._begin(said, self._answer_call(service, _text(said, "type", ""), args, said.get("id")))
+
+    async def _answer_call(self, service: str, kind: str, args: object, number: object) -> None:
+        answer: dict[str, Any] = {"op": "service_response", "service": service}
+        if number is not None:
+            answer["id"] = number
+        try:
+            if service.startswith("/rosapi/"):
+                values = _rosapi(self.host.graph(), service, args)
+            else:
+                values = await self.host.graph().call(service, kind, args)
+            self.send(answer | {"values": values, "result": True})
+        except _REFUSALS as error:
+            self.send(answer | {"values": str(error), "result": False})
+
+    def _send_goal(self, said: Mapping[str, Any]) -> None:
+        goal = (_text(said, "action"), _text(said, "action_type"), said.get("args", {}))
+        self._begin(said, self._answer_goal(*goal, said.get("id")))
+
+    async def _answer_goal(self, action: str, kind: str, args: object, number: object) -> None:
+        about = {"action": action} | ({} if number is None else {"id": number})
+        loop = asyncio.get_running_loop()
+
+        def feedback(content: Mapping[str, Any]) -> None:
+            told = {"op": "action_feedback", "values": content} | about
+            loop.call_soon_threadsafe(self.send, told)
+
+        answer = {"op": "action_result"} | about
+        try:
+            values, status = await self.host.graph().send_goal(action, kind, args, feedback)
+            self.send(answer | {"values": values, "status": status, "result": status == 4})
+        except _REFUSALS as error:
+            self.send(answer | {"values": str(error), "status": 6, "result": False})
+
+    def _cancel_goal(self, said: Mapping[str, Any]) -> None:
+        task = self._tasks.get(f"send_action_goal {said.get('id')}")
+        if task is not None:
+            task.cancel()
+
+    def _begin(self, said: Mapping[str, Any], work: Any) -> None:
+        """Let something that takes time go on beside the next frames."""
+        self._number += 1
+        name = f"{said['op']} {said.get('id', self._number)}"
+        try:
+            self._check_room(self._tasks)
+        except Refused:
+            work.close()
+            raise
+        task = self._tasks[name] = asyncio.get_running_loop().create_task(work)
+        task.add_done_callback(lambda _: self._tasks.pop(name, None))
+
+    def _check_room(self, there: Mapping[str, Any]) -> None:
+        if len(there) >= MOST_OPEN:
+            raise Refused(f"a viewer may have {MOST_OPEN} at once")
+
+    _FOLLOW = {
+        "advertise": _advertise,
+        "unadvertise": _unadvertise,
+        "publish": _publish,
+        "subscribe": _subscribe,
+        "unsubscribe": _unsubscribe,
+        "call_service": _call_service,
+        "send_action_goal": _send_goal,
+        "cancel_action_goal": _cancel_goal,
+    }
+    _READING = frozenset(("subscribe", "unsubscribe"))
+
+
+def _object(frame: str | bytes) -> dict[str, Any]:
+    if not isinstance(frame, str):
+        raise Refused("expected JSON as text, found bytes")
+    try:
+        said = json.loads(frame)
+    except (ValueError, RecursionError):
+        raise Refused(f"expected JSON, found {frame!r:.60}") from None
+    if not isinstance(said, dict):
+        raise Refused(f"expected a JSON object, found {frame!r:.60}")
+    return said
+
+
+def _text(said: Mapping[str, Any], key: str, default: str | None = None) -> str:
+    value = said.get(key, default)
+    if value is None and default is not None:
+        value = default
+    if not isinstance(value, str):
+        raise Refused(f"{key}: expected a text, found {value!r:.60}")
+    return value
+
+
+def _pause_s(said: Mapping[str, Any]) -> float:
+    pause_ms = said.get("throttle_rate", 0)
+    if isinstance(pause_ms, bool) or not isinstance(pause_ms, int | float) or not pause_ms >= 0:
+        raise Refused(f"throttle_rate: expected milliseconds, found {pause_ms!r:.60}")
+    return pause_ms / 1000.0
+
+
+def _rosapi(graph: Graph, service: str, args: object) -> dict[str, Any]:
+    """What there is in the graph, as rosapi's services of these names tell it."""
+    said = args if isinstance(args, dict) else {}
+    match service.removeprefix("/rosapi/"):
+        case "topics":
+            topics = graph.topics()
+            return {"topics": list(topics), "types": list(topics.values())}
+        case "services":
+            return {"services": list(graph.services())}
+        case "topic_type":
+            return {"type": graph.topic_type(_text(said, "topic"))}
+        case "service_type":
+            return {"type": graph.service_type(_text(said, "service"))}
+        case "publishers":
+            return {"publishers": graph.nodes_of(_text(said, "topic"))[0]}
+        case "subscribers":
+            return {"subscribers": graph.nodes_of(_text(said, "topic"))[1]}
+        case "message_details":
+            name = _text(said, "type")
+            return {"typedefs": messages.typedefs(messages.find(name, "msg"), name)}
+        case "service_request_details":
+            name = _text(said, "type")
+            return {"typedefs": messages.typedefs(messages.find(name, "srv").Request, name)}
+        case "service_response_details":
+            name = _text(said, "type")
+            return {"typedefs": messages.typedefs(messages.find(name, "srv").Response, name)}
+    raise NotThere(f"there is no service {service!r:.80} here")
