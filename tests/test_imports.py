@@ -75,6 +75,10 @@ MAY_IMPORT: dict[str, set[str]] = {
     "turtlesim_py.replay": {"turtlesim_py.world"},
     "turtlesim_py.scenario": below("turtlesim_py", "world", "replay", "png"),
     "turtlesim_py.ros": below("turtlesim_py", "world", "png"),
+    # whose server a node starts where a page is wanted
+    "turtlesim_py.ros.live": below("turtlesim_py", "world", "ros", "live"),
+    "turtlesim_py.ros.node": below("turtlesim_py", "world", "ros", "png", "live"),
+    "turtlesim_py.live": below("turtlesim_py", "world"),
     "turtlesim_py.programs": below("turtlesim_py", "world", "ros"),
     # ... which are nodes as the simulator is one
     "robot_py.ros": {"robot_py", *below("turtlesim_py.ros", "program", "rclcpp_node")},

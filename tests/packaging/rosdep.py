@@ -24,6 +24,7 @@ KEYS = {
     "rich": "python3-rich",
     "rosbags": "python3-rosbags-pip",
     "watchdog": "python3-watchdog",
+    "websockets": "python3-websockets",
     "xacro": "xacro",
 }
 

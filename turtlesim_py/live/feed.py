@@ -114,7 +114,9 @@ class Feed:
     def _state(self) -> tuple[Sequence[int], Sequence[Mapping[str, Any]]]:
         arena = self._arena
         ordered = (arena.turtles[name] for name in sorted(arena.turtles))
-        return arena.background, [_row(turtle, self._readings.get(turtle.name)) for turtle in ordered]
+        return arena.background, [
+            _row(turtle, self._readings.get(turtle.name)) for turtle in ordered
+        ]
 
     def _on_stroke(self, pen: Pen, runs: Sequence[Span]) -> None:
         color = [pen.r, pen.g, pen.b]

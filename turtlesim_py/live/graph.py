@@ -11,6 +11,7 @@ import asyncio
 import os
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, Final
 
 import rclpy
@@ -57,10 +58,8 @@ class Graph:
         self._thread.start()
 
     def _spin(self) -> None:
-        try:
+        with suppress(ExternalShutdownException):
             self._executor.spin()
-        except ExternalShutdownException:
-            pass
 
     def close(self) -> None:
         """Leave the graph."""
@@ -212,10 +211,11 @@ async def _result(future: Any) -> Any:
     loop = asyncio.get_running_loop()
     ours: asyncio.Future[Any] = loop.create_future()
 
-    def hand_on(made: Any) -> None:
-        loop.call_soon_threadsafe(lambda: ours.done() or ours.set_result(made))
+    def take(made: Any) -> None:
+        if not ours.done():  # whoever waited may have given up
+            ours.set_result(made)
 
-    future.add_done_callback(hand_on)
+    future.add_done_callback(lambda made: loop.call_soon_threadsafe(take, made))
     made = await ours
     error = made.exception()
     if error is not None:

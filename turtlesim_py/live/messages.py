@@ -121,7 +121,9 @@ def from_json(message_type: Any, said: object, where: str = "") -> Any:
             try:
                 setattr(message, name, _read(value, fields[name], path))
             except AssertionError:  # ROS's own check: a bound of the type
-                raise Unfit(f"{path}: {_found(value)} is not what {fields[name].kind} holds") from None
+                raise Unfit(
+                    f"{path}: {_found(value)} is not what {fields[name].kind} holds"
+                ) from None
     return message
 
 

@@ -13,7 +13,7 @@ import asyncio
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from turtlesim_py.live import messages
 from turtlesim_py.live.graph import Graph, NotThere
@@ -38,7 +38,6 @@ class Host(Protocol):
     """What a session needs of the server that it belongs to."""
 
     is_read_only: bool
-    about: Mapping[str, Any]
 
     def graph(self) -> Graph:
         """The ROS graph; made when it is needed first."""
@@ -58,7 +57,7 @@ class Session:
     """
 
     host: Host
-    send: Callable[[Mapping[str, Any]], None]
+    send: Callable[[Mapping[str, Any]], object]
     now: Callable[[], float]
     _publishers: dict[str, Any] = field(default_factory=dict)
     _subscriptions: dict[str, Any] = field(default_factory=dict)
@@ -105,9 +104,9 @@ class Session:
         follow = self._FOLLOW.get(op) if isinstance(op, str) else None
         if follow is None:
             raise Refused(f"unknown op {op!r:.60}; there are {', '.join(self._FOLLOW)}")
-        if self.host.is_read_only and op not in self._READING:
-            if not (op == "call_service" and str(said.get("service")).startswith("/rosapi/")):
-                raise Refused(f"{op} is refused: this page is for looking only")
+        asks = op == "call_service" and str(said.get("service")).startswith("/rosapi/")
+        if self.host.is_read_only and op not in self._READING and not asks:
+            raise Refused(f"{op} is refused: this page is for looking only")
         follow(self, said)
 
     def _complain(self, text: str, said: Any) -> None:
@@ -148,8 +147,11 @@ class Session:
                 last[0] = self.now()
                 self.send({"op": "publish", "topic": topic, "msg": content})
 
+        def hear(content: Mapping[str, Any]) -> None:
+            loop.call_soon_threadsafe(tell, content)
+
         self._subscriptions[topic] = self.host.graph().subscribe(
-            topic, _text(said, "type", ""), lambda m: loop.call_soon_threadsafe(tell, m)
+            topic, _text(said, "type", ""), hear
         )
 
     def _unsubscribe(self, said: Mapping[str, Any]) -> None:
@@ -217,7 +219,7 @@ class Session:
         if len(there) >= MOST_OPEN:
             raise Refused(f"a viewer may have {MOST_OPEN} at once")
 
-    _FOLLOW = {
+    _FOLLOW: ClassVar[Mapping[str, Callable[[Session, Mapping[str, Any]], None]]] = {
         "advertise": _advertise,
         "unadvertise": _unadvertise,
         "publish": _publish,
@@ -227,7 +229,7 @@ class Session:
         "send_action_goal": _send_goal,
         "cancel_action_goal": _cancel_goal,
     }
-    _READING = frozenset(("subscribe", "unsubscribe"))
+    _READING: ClassVar = frozenset(("subscribe", "unsubscribe"))
 
 
 def _object(frame: str | bytes) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The parameters of the page on which the turtles can be seen, and its server where one is wanted."""
+"""The parameters of the page on which the turtles can be seen, and its server if one is wanted."""
 
 from __future__ import annotations
 
