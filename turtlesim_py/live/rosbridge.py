@@ -104,7 +104,7 @@ class Session:
         follow = self._FOLLOW.get(op) if isinstance(op, str) else None
         if follow is None:
             raise Refused(f"unknown op {op!r:.60}; there are {', '.join(self._FOLLOW)}")
-        asks = op == "call_service" and str(said.get("service")).startswith("/rosapi/")
+        asks = op == "call_service" and _is_rosapi(str(said.get("service")))
         if self.host.is_read_only and op not in self._READING and not asks:
             raise Refused(f"{op} is refused: this page is for looking only")
         follow(self, said)
@@ -171,7 +171,7 @@ class Session:
         if number is not None:
             answer["id"] = number
         try:
-            if service.startswith("/rosapi/"):
+            if _is_rosapi(service):
                 values = _rosapi(self.host.graph(), service, args)
             else:
                 values = await self.host.graph().call(service, kind, args)
@@ -260,10 +260,14 @@ def _pause_s(said: Mapping[str, Any]) -> float:
     return pause_ms / 1000.0
 
 
+def _is_rosapi(service: str) -> bool:
+    return service.lstrip("/").startswith("rosapi/")  # roslibjs leaves the slash out
+
+
 def _rosapi(graph: Graph, service: str, args: object) -> dict[str, Any]:
     """What there is in the graph, as rosapi's services of these names tell it."""
     said = args if isinstance(args, dict) else {}
-    match service.removeprefix("/rosapi/"):
+    match service.rpartition("/")[2]:
         case "topics":
             topics = graph.topics()
             return {"topics": list(topics), "types": list(topics.values())}

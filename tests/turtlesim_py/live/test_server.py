@@ -99,6 +99,7 @@ def test_what_there_is_can_be_asked_for(page):
         assert types["/seen/turtle1/cmd_vel"] == TWIST
         assert not [name for name in types if "/_" in name]
         assert "/seen/turtle1/set_pen" in ask("services")["services"]
+        assert viewer.ask(op="call_service", service="rosapi/topics", id=0)["values"] == topics
         assert ask("service_type", service="/seen/spawn") == {"type": "turtlesim/srv/Spawn"}
         first, second = ask("message_details", type="geometry_msgs/Twist")["typedefs"]
         assert first["fieldnames"] == ["linear", "angular"]

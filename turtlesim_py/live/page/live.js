@@ -14,6 +14,7 @@ const view = new TurtleWindow(element("canvas"), sprites);
 const marks = new Marks(element("marks"));
 let about = null;
 let isDue = false;
+let calls = [];
 let told = Promise.resolve();
 
 /** Draw once for each picture of the screen, however much has come. */
@@ -25,6 +26,8 @@ function showSoon() {
     view.show();
     marks.show(view.turtles);
     tellTurtles(element("turtles"), view.turtles);
+    tellCalls(element("calls"), calls, view.tick);
+    calls = [];
     document.documentElement.dataset.tick = view.tick;
   });
 }
@@ -44,7 +47,7 @@ async function take(news) {
     view.turtles = news.turtles;
     controls.meet(news.turtles.map((turtle) => turtle.name));
   }
-  if (news.calls?.length) tellCalls(element("calls"), news.calls, news.tick);
+  calls.push(...(news.calls || []));
   showSoon();
 }
 
