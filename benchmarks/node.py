@@ -12,12 +12,14 @@ import math
 import os
 import random
 import signal
+import socket
 import statistics
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +33,8 @@ import rclpy  # noqa: E402
 from geometry_msgs.msg import Twist, Vector3  # noqa: E402
 from turtlesim.msg import Pose  # noqa: E402
 from turtlesim.srv import Spawn  # noqa: E402
+from websockets.exceptions import ConnectionClosed  # noqa: E402
+from websockets.sync.client import ClientConnection, connect  # noqa: E402
 
 from grader.run.processes import domain  # noqa: E402
 from turtlesim_py.world.arena import TICK_NS, Arena  # noqa: E402
@@ -108,9 +112,9 @@ class Subscriber:
 
 
 @contextmanager
-def simulator() -> Iterator[psutil.Process]:
+def simulator(*arguments: str) -> Iterator[psutil.Process]:
     """A turtlesim_node of this checkout."""
-    command = [sys.executable, "-m", "turtlesim_py.ros.node"]
+    command = [sys.executable, "-m", "turtlesim_py.ros.node", *arguments]
     with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL) as process:
         try:
             yield psutil.Process(process.pid)
@@ -183,6 +187,62 @@ def pose_interval(subscriber: Subscriber) -> Iterator[Row]:
         "pose interval over 20 s, standard deviation", "ms", [statistics.stdev(gaps_ms)], "0.65", 2
     )
     yield Row("pose interval over 20 s, longest", "ms", [max(gaps_ms)], "20.4")
+
+
+@contextmanager
+def viewers(port: int, count: int) -> Iterator[None]:
+    """So many who look at the page, and take everything that they are sent."""
+
+    def look(connection: ClientConnection) -> None:
+        with suppress(ConnectionClosed):
+            for _ in connection:
+                pass
+
+    with ExitStack() as stack:
+        for _ in range(count):
+            connection = stack.enter_context(connect(f"ws://127.0.0.1:{port}/socket"))
+            connection.send('{"op": "subscribe", "topic": "/turtlesim_live"}')
+            threading.Thread(target=look, args=(connection,), daemon=True).start()
+        yield
+
+
+def cost_of_page(subscriber: Subscriber) -> Iterator[Row]:
+    """What the page costs the simulator, and whether poses stay as regular, with viewers."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+
+    def share(drive: bool) -> float:
+        return cpu_percent(process, lambda: subscriber.spin_for(WINDOW_S, drive))
+
+    def interval(name: str) -> Iterator[Row]:
+        subscriber.stamps_ns.clear()
+        subscriber.spin_for(10.0, drive=True)
+        gaps_ms = [(b - a) / 1e6 for a, b in pairwise(subscriber.stamps_ns)]
+        yield Row(
+            f"pose interval, driven, {name}, mean", "ms", [statistics.mean(gaps_ms)], digits=4
+        )
+        yield Row("... standard deviation", "ms", [statistics.stdev(gaps_ms)], digits=2)
+
+    with simulator("--ros-args", "-p", f"view_port:={port}") as process:
+        subscriber.stamps_ns.clear()
+        subscriber.spin_until(lambda: subscriber.stamps_ns)
+        subscriber.spin_for(2.0)
+        alone: list[float] = []
+        looked_at: list[float] = []
+        for _ in range(WINDOWS):  # in turns: what else the machine does concerns both
+            alone.append(share(drive=False))
+            with viewers(port, 1):
+                subscriber.spin_for(0.5)
+                looked_at.append(share(drive=False))
+        yield Row("CPU, idle, page that nobody looks at", "%", alone)
+        yield Row("CPU, idle, 1 viewer", "%", looked_at)
+        yield from interval("no viewer")
+        with viewers(port, 1):
+            yield Row("CPU, driven, 1 viewer", "%", [share(drive=True) for _ in range(WINDOWS)])
+        with viewers(port, 10):
+            yield Row("CPU, driven, 10 viewers", "%", [share(drive=True) for _ in range(WINDOWS)])
+            yield from interval("10 viewers")
 
 
 def most_turtles(subscriber: Subscriber) -> Iterator[Row]:
@@ -260,7 +320,7 @@ def main() -> None:
         rclpy.init(args=[])
         for row in start_to_first_pose():
             print(row, flush=True)
-        for part in (cost_of_node, pose_interval, most_turtles):
+        for part in (cost_of_node, pose_interval, cost_of_page, most_turtles):
             subscriber = Subscriber()
             for row in part(subscriber):
                 print(row, flush=True)
