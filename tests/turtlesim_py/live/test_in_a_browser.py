@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import base64
-import shutil
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import PIL.Image
 import pytest
+from playwright.sync_api import expect
 from std_srvs.srv import Trigger
 
+from tests.browser import needs_browser, obstacles, open_browser
 from tests.programs import DEADLINE_S, Program
 from tests.turtlesim_py.live.conftest import Page
 from turtlesim_py.world import picture
 from turtlesim_py.world.canvas import Canvas, Pen
 
-sync_api = pytest.importorskip("playwright.sync_api")
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
-)
-pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+pytestmark = needs_browser
 
 PIXELS = """
 () => {
@@ -38,11 +35,8 @@ PIXELS = """
 
 @pytest.fixture(scope="module")
 def browser():
-    with sync_api.sync_playwright() as playwright:
-        arguments = ["--no-sandbox", "--disable-gpu"]
-        opened = playwright.chromium.launch(executable_path=BROWSER, args=arguments)
+    with open_browser() as opened:
         yield opened
-        opened.close()
 
 
 class Person:
@@ -76,7 +70,7 @@ class Person:
         """Wait until no turtle of the table moves."""
         still = "tr:has(td:nth-child(5):text-is('0.000')):has(td:nth-child(6):text-is('0.000'))"
         rows = self.page.locator("#turtles tr")
-        sync_api.expect(self.page.locator(f"#turtles {still}")).to_have_count(
+        expect(self.page.locator(f"#turtles {still}")).to_have_count(
             rows.count(), timeout=DEADLINE_S * 1000
         )
 
@@ -133,7 +127,7 @@ def test_a_person_draws_a_square_with_the_keys_and_it_is_the_picture_that_is_sav
         person.rests()
         person.fill("spawn", x="2", y="3", theta="1", name="second")
         person.sees_called("Spawning turtle [second]")
-        sync_api.expect(person.page.locator("#turtles tr")).to_have_count(2)
+        expect(person.page.locator("#turtles tr")).to_have_count(2)
         person.page.fill("[data-form=background] [name=color]", "#102030")
         person.fill("background")
         person.sees("background: done")
@@ -147,7 +141,7 @@ def test_a_person_draws_a_square_with_the_keys_and_it_is_the_picture_that_is_sav
     with Program("turtlesim_py.ros.node", "--ros-args", *again, cwd=tmp_path) as program:
         for each in (person, other):
             each.is_connected()
-            sync_api.expect(each.page.locator("#turtles tr")).to_have_count(1)
+            expect(each.page.locator("#turtles tr")).to_have_count(1)
             until_equal(each, saved())
             each.leave()
         assert program.stop() == 0
@@ -225,6 +219,7 @@ def test_nothing_is_wider_than_the_screen_and_what_there_is_can_be_explored(brow
     person.page.wait_for_selector("#detail pre:has-text('theta')")
     person.page.click("#services button:text-is('/seen/clear')")
     person.page.click("#detail button:text-is('Call')")
-    sync_api.expect(person.page.locator("#detail pre")).to_have_text("{}")
+    expect(person.page.locator("#detail pre")).to_have_text("{}")
     assert person.page.evaluate("document.documentElement.scrollWidth") <= width
+    assert obstacles(person.page) == []
     person.leave()
