@@ -41,7 +41,11 @@ class NotThere(ValueError):
 
 
 class Graph:
-    """A node of ROS that does what viewers ask for; methods may be called from one other thread."""
+    """A node of ROS that does what viewers ask for.
+
+    Methods are for the thread of an asyncio loop. What the node has is made and destroyed in its
+    own thread alone: rclpy's executor goes through all of it at any time.
+    """
 
     def __init__(self) -> None:
         self.node = Node(
@@ -68,34 +72,56 @@ class Graph:
         if rclpy.ok():
             self.node.destroy_node()
 
+    async def _do(self, work: Callable[[], Any]) -> Any:
+        """What `work` returns, or raises, in the graph's thread."""
+
+        def kept() -> tuple[Any, Exception | None]:
+            try:
+                return work(), None
+            except Exception as error:  # one that came through would end the thread
+                return None, error
+
+        made, error = await _result(self._executor.create_task(kept))
+        if isinstance(error, _BAD_NAMES):
+            raise NotThere(str(error).replace("\n", " "))
+        if error is not None:
+            raise error
+        return made
+
     # Topics -----------------------------------------------------------------------------------
 
-    def subscribe(self, topic: str, type_name: str, hear: Hear) -> Subscription:
+    async def subscribe(self, topic: str, type_name: str, hear: Hear) -> Subscription:
         """Hear a topic; '' as type takes the one that it has.
 
         Raises:
             NotThere, NoSuchType: there is no such topic, or no such type.
         """
-        type_name = type_name or self.topic_type(topic)
-        kind = messages.find(type_name, "msg")
-        try:
-            return self.node.create_subscription(
+        kind = messages.find(type_name or self.topic_type(topic), "msg")
+        return await self._do(
+            lambda: self.node.create_subscription(
                 kind, topic, lambda m: hear(messages.to_json(m)), qos_profile_best_available
             )
-        except _BAD_NAMES as error:
-            raise NotThere(str(error).replace("\n", " ")) from None
+        )
 
-    def advertise(self, topic: str, type_name: str) -> Publisher:
+    async def advertise(self, topic: str, type_name: str) -> Publisher:
         """A publisher; '' as type takes the one that the topic has.
 
         Raises:
             NotThere, NoSuchType: there is no such topic, or no such type.
         """
         kind = messages.find(type_name or self.topic_type(topic), "msg")
-        try:
-            return self.node.create_publisher(kind, topic, PUBLISHER_QOS)
-        except _BAD_NAMES as error:
-            raise NotThere(str(error).replace("\n", " ")) from None
+        return await self._do(lambda: self.node.create_publisher(kind, topic, PUBLISHER_QOS))
+
+    async def forget(self, subscriptions: list[Any], publishers: list[Any]) -> None:
+        """Give back what `subscribe` and `advertise` have given."""
+
+        def destroy() -> None:
+            for subscription in subscriptions:
+                self.node.destroy_subscription(subscription)
+            for publisher in publishers:
+                self.node.destroy_publisher(publisher)
+
+        await self._do(destroy)
 
     # Services and actions ---------------------------------------------------------------------
 
@@ -110,10 +136,7 @@ class Graph:
         request = messages.from_json(kind.Request, args)
         client = self._clients.get((service, type_name))
         if client is None:
-            try:
-                client = self.node.create_client(kind, service)
-            except _BAD_NAMES as error:
-                raise NotThere(str(error).replace("\n", " ")) from None
+            client = await self._do(lambda: self.node.create_client(kind, service))
             self._clients[service, type_name] = client
         await _until(client.service_is_ready, f"nobody serves {service}")
         future = client.call_async(request)
@@ -141,7 +164,8 @@ class Graph:
         goal = messages.from_json(kind.Goal, args)
         client = self._actions.get((action, type_name))
         if client is None:
-            client = self._actions[action, type_name] = ActionClient(self.node, kind, action)
+            client = await self._do(lambda: ActionClient(self.node, kind, action))
+            self._actions[action, type_name] = client
         await _until(client.server_is_ready, f"nobody serves the action {action}")
         handle = await _result(
             client.send_goal_async(goal, lambda m: feedback(messages.to_json(m.feedback)))

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
@@ -66,28 +67,26 @@ class Session:
     _allowed: float = FRAMES_AT_ONCE
     _heard_at: float = 0.0
 
-    def hear(self, frame: str | bytes) -> None:
+    async def hear(self, frame: str | bytes) -> None:
         """Do what a frame says, or answer why not."""
         said: Any = None
         try:
             self._count()
             said = _object(frame)
-            self._follow(said)
+            await self._follow(said)
         except _REFUSALS as error:
             self._complain(str(error), said)
 
-    def close(self) -> None:
+    async def close(self) -> None:
         """Give back everything that the viewer had."""
         self.host.watch(self, False)
         for task in self._tasks.values():
             task.cancel()
-        if self._publishers or self._subscriptions:
-            node = self.host.graph().node
-            for publisher in self._publishers.values():
-                node.destroy_publisher(publisher)
-            for subscription in self._subscriptions.values():
-                node.destroy_subscription(subscription)
-        self._publishers, self._subscriptions = {}, {}
+        publishers, self._publishers = self._publishers, {}
+        subscriptions, self._subscriptions = self._subscriptions, {}
+        if publishers or subscriptions:
+            given = list(subscriptions.values()), list(publishers.values())
+            await self.host.graph().forget(*given)
 
     # Frames -----------------------------------------------------------------------------------
 
@@ -99,7 +98,7 @@ class Session:
             self._allowed = 0.0
             raise Refused(f"more than {FRAMES_PER_S:g} frames a second: this one is not heard")
 
-    def _follow(self, said: Mapping[str, Any]) -> None:
+    async def _follow(self, said: Mapping[str, Any]) -> None:
         op = said.get("op")
         follow = self._FOLLOW.get(op) if isinstance(op, str) else None
         if follow is None:
@@ -107,7 +106,7 @@ class Session:
         asks = op == "call_service" and _is_rosapi(str(said.get("service")))
         if self.host.is_read_only and op not in self._READING and not asks:
             raise Refused(f"{op} is refused: this page is for looking only")
-        follow(self, said)
+        await follow(self, said)
 
     def _complain(self, text: str, said: Any) -> None:
         answer = {"op": "status", "level": "error", "msg": text}
@@ -115,23 +114,24 @@ class Session:
             answer["id"] = said["id"]
         self.send(answer)
 
-    def _advertise(self, said: Mapping[str, Any]) -> None:
+    async def _advertise(self, said: Mapping[str, Any]) -> None:
         topic = _text(said, "topic")
         if topic not in self._publishers:
             self._check_room(self._publishers)
-            self._publishers[topic] = self.host.graph().advertise(topic, _text(said, "type", ""))
+            graph = self.host.graph()
+            self._publishers[topic] = await graph.advertise(topic, _text(said, "type", ""))
 
-    def _unadvertise(self, said: Mapping[str, Any]) -> None:
+    async def _unadvertise(self, said: Mapping[str, Any]) -> None:
         publisher = self._publishers.pop(_text(said, "topic"), None)
         if publisher is not None:
-            self.host.graph().node.destroy_publisher(publisher)
+            await self.host.graph().forget([], [publisher])
 
-    def _publish(self, said: Mapping[str, Any]) -> None:
-        self._advertise(said)
+    async def _publish(self, said: Mapping[str, Any]) -> None:
+        await self._advertise(said)
         publisher = self._publishers[_text(said, "topic")]
         publisher.publish(messages.from_json(publisher.msg_type, said.get("msg", {})))
 
-    def _subscribe(self, said: Mapping[str, Any]) -> None:
+    async def _subscribe(self, said: Mapping[str, Any]) -> None:
         topic = _text(said, "topic")
         if topic == LIVE:
             self.host.watch(self, True)
@@ -148,21 +148,21 @@ class Session:
                 self.send({"op": "publish", "topic": topic, "msg": content})
 
         def hear(content: Mapping[str, Any]) -> None:
-            loop.call_soon_threadsafe(tell, content)
+            _soon(loop, tell, content)
 
-        self._subscriptions[topic] = self.host.graph().subscribe(
+        self._subscriptions[topic] = await self.host.graph().subscribe(
             topic, _text(said, "type", ""), hear
         )
 
-    def _unsubscribe(self, said: Mapping[str, Any]) -> None:
+    async def _unsubscribe(self, said: Mapping[str, Any]) -> None:
         topic = _text(said, "topic")
         if topic == LIVE:
             self.host.watch(self, False)
         subscription = self._subscriptions.pop(topic, None)
         if subscription is not None:
-            self.host.graph().node.destroy_subscription(subscription)
+            await self.host.graph().forget([subscription], [])
 
-    def _call_service(self, said: Mapping[str, Any]) -> None:
+    async def _call_service(self, said: Mapping[str, Any]) -> None:
         service, args = _text(said, "service"), said.get("args", {})
         self._begin(said, self._answer_call(service, _text(said, "type", ""), args, said.get("id")))
 
@@ -179,7 +179,7 @@ class Session:
         except _REFUSALS as error:
             self.send(answer | {"values": str(error), "result": False})
 
-    def _send_goal(self, said: Mapping[str, Any]) -> None:
+    async def _send_goal(self, said: Mapping[str, Any]) -> None:
         goal = (_text(said, "action"), _text(said, "action_type"), said.get("args", {}))
         self._begin(said, self._answer_goal(*goal, said.get("id")))
 
@@ -189,7 +189,7 @@ class Session:
 
         def feedback(content: Mapping[str, Any]) -> None:
             told = {"op": "action_feedback", "values": content} | about
-            loop.call_soon_threadsafe(self.send, told)
+            _soon(loop, self.send, told)
 
         answer = {"op": "action_result"} | about
         try:
@@ -198,7 +198,7 @@ class Session:
         except _REFUSALS as error:
             self.send(answer | {"values": str(error), "status": 6, "result": False})
 
-    def _cancel_goal(self, said: Mapping[str, Any]) -> None:
+    async def _cancel_goal(self, said: Mapping[str, Any]) -> None:
         task = self._tasks.get(f"send_action_goal {said.get('id')}")
         if task is not None:
             task.cancel()
@@ -219,7 +219,7 @@ class Session:
         if len(there) >= MOST_OPEN:
             raise Refused(f"a viewer may have {MOST_OPEN} at once")
 
-    _FOLLOW: ClassVar[Mapping[str, Callable[[Session, Mapping[str, Any]], None]]] = {
+    _FOLLOW: ClassVar[Mapping[str, Callable[[Session, Mapping[str, Any]], Awaitable[None]]]] = {
         "advertise": _advertise,
         "unadvertise": _unadvertise,
         "publish": _publish,
@@ -230,6 +230,11 @@ class Session:
         "cancel_action_goal": _cancel_goal,
     }
     _READING: ClassVar = frozenset(("subscribe", "unsubscribe"))
+
+
+def _soon(loop: asyncio.AbstractEventLoop, tell: Callable[[Any], object], content: Any) -> None:
+    with suppress(RuntimeError):  # the loop has just ended
+        loop.call_soon_threadsafe(tell, content)
 
 
 def _object(frame: str | bytes) -> dict[str, Any]:

@@ -222,12 +222,12 @@ class LiveServer:
         self._viewers.add(viewer)
         try:
             async for frame in connection:
-                viewer.session.hear(frame)
+                await viewer.session.hear(frame)
         except ConnectionClosed:
             pass
         finally:
-            viewer.session.close()
             self._viewers.discard(viewer)
+            await viewer.session.close()
 
     # From the simulator's thread --------------------------------------------------------------
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 #: Nobody but this machine.
 DEFAULT_HOST = "127.0.0.1"
-#: How long the server's thread may keep a tick waiting [s]; Python's own 5 ms are a third of a tick.
+#: So long the server's thread may keep a tick waiting [s]; Python's 5 ms are a third of a tick.
 SWITCH_S = 0.0005
 
 
