@@ -114,7 +114,11 @@ def ros_dependent() -> dict[str, Any]:
     if COMPILING.intersection(sys.argv) and (line := complaint()):
         sys.exit(line)
     return {
-        "install_requires": REQUIREMENTS["dependencies"] + ROS["run"],
+        "install_requires": [
+            *REQUIREMENTS["dependencies"],
+            *REQUIREMENTS["without_ros"],
+            *ROS["run"],
+        ],
         "setup_requires": ROS["build"],
         "ext_modules": extensions(),
         "packages": [*OWN_PACKAGES, *TF2_PACKAGES],

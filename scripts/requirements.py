@@ -20,13 +20,14 @@ def lowest(requirement: str) -> str:
 pyproject = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))
 ours = pyproject["tool"]["turtlesim-py"]
 build = pyproject["build-system"]["requires"]
-dependencies = ours["dependencies"]
+is_sourced = bool(os.environ.get("ROS_DISTRO"))  # the same rule as in setup.py
+dependencies = ours["dependencies"] + ([] if is_sourced else ours["without_ros"])
 tests = pyproject["project"]["optional-dependencies"]["test"]
 if os.environ.get("BOUNDS") == "lowest":
     build, dependencies = map(lowest, build), map(lowest, dependencies)
     tests = [name for name in tests if not name.startswith(NOT_AT_LOWEST)]
 requirements = [*build, *dependencies, *tests]
-if not os.environ.get("ROS_DISTRO"):  # the same rule as in setup.py
+if not is_sourced:
     release = os.environ.get("ROS") or "jazzy"
     if release not in ours["ros"]:
         sys.exit(f"ROS={release}: pyproject.toml has {' and '.join(ours['ros'])}")

@@ -47,7 +47,8 @@ def dependencies(extra: str = "") -> dict[str, str]:
     """What setup.py tells pip to install, or what an extra adds to it, by name."""
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     extras = pyproject["project"]["optional-dependencies"]
-    wanted = extras[extra] if extra else pyproject["tool"]["turtlesim-py"]["dependencies"]
+    ours = pyproject["tool"]["turtlesim-py"]
+    wanted = extras[extra] if extra else ours["dependencies"] + ours["without_ros"]
     return {_name(line): line for line in wanted}
 
 
