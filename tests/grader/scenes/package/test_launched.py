@@ -60,13 +60,13 @@ def test_what_is_missing_is_marked_where_it_is_named(tmp_path):
         tmp_path,
         """
         return LaunchDescription([
-            Node(package='rviz3', executable='a'),
+            Node(package='walker_descripton', executable='a'),
             Node(package='rviz2', executable='rviz3'),
             Node(package='rviz2', executable='rviz2', arguments=['-d', '/home/me/a.rviz']),
         ])
         """,
     )
-    assert [text[0] for text in texts] == ["rviz3", "rviz2", "rviz2"]
+    assert [text[0] for text in texts] == ["walker_descripton", "rviz2", "rviz2"]
     assert marked == [0, 1, 3]
 
 
