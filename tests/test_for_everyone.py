@@ -1,0 +1,103 @@
+"""Everybody can use every page: axe-core finds no obstacle, on a telephone and on a desk.
+
+The live page is in tests/turtlesim_py/live.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from grader.batch.entry import entries
+from grader.batch.page import html as class_page
+from grader.batch.similar import look
+from grader.exercise.loading import load_exercise
+from grader.reports import Report
+from grader.reports.page import html
+from grader.scenes.robot.driving import drive as drive_robot
+from tests.browser import needs_browser, obstacles, open_browser
+from tests.grader.batch.page.classes import entry, result
+from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in
+from tests.grader.driving import Spiral, drive
+from tests.grader.reports import samples
+from tests.grader.reports.page.test_parts import package_trace, page_of
+from tests.grader.reports.samples import evidence, verdict
+from tests.grader.scenes.robot.robots import walks
+from tests.grader.scenes.robot.test_solid import URDF
+
+pytestmark = needs_browser
+
+FAULT = verdict("stops", "failed", 0, evidence=[evidence("too far", 30.0, run=1)])
+
+
+def report_of_turtles(folder) -> str:
+    good = drive(Spiral())
+    verdicts = (verdict("starts", evidence=[evidence("it starts", 0.16)]), FAULT)
+    return html.render(
+        Report.read(samples.graded(folder, good, *verdicts, varied=(good, good), output="one"))
+    )
+
+
+def report_of_a_crash(folder) -> str:
+    short = drive(Spiral(), 125)
+    run = replace(short.run, outcome="crashed", exit_code=1)
+    recording = replace(short, run=run, output="Traceback (most recent call last):\nNameError")
+    return html.render(Report.read(samples.graded(folder, recording, FAULT)))
+
+
+def report_of_a_robot(folder) -> str:
+    return page_of(folder, drive_robot(walks, 400, URDF), "robot", FAULT)
+
+
+def report_of_a_package(folder) -> str:
+    return page_of(folder, package_trace(), "package", FAULT)
+
+
+def page_of_a_class(folder) -> str:
+    told = "NameError: Zoë is not 1"
+    class_of_three = [
+        entry("zoe17", result({"moves": 0.0}, told), name="Zoë Müller"),
+        entry("bob18", result({"moves": 10.0}), name="Bob Brown"),
+        entry("kim19", state="nothing", message="kim19 handed in nothing.", name="Kim"),
+    ]
+    return class_page.render(class_of_three, load_exercise("turtlesim_challenge"))
+
+
+def page_of_what_is_alike(folder) -> str:
+    for who, handed_in in list(HONEST.items())[:3]:
+        hand_in(folder, who, handed_in, name=f"{who.title()} Ünal")
+    hand_in(folder, "copy", HONEST["quick"], name="Zoë")
+    look.write(entries(folder), CHALLENGE, folder)
+    return (folder / look.PAGE).read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with open_browser() as opened:
+        yield opened
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        report_of_turtles,
+        report_of_a_crash,
+        report_of_a_robot,
+        report_of_a_package,
+        page_of_a_class,
+        page_of_what_is_alike,
+    ],
+    ids=lambda made: made.__name__,
+)
+def test_nothing_stands_in_anybodys_way(made, browser, tmp_path):
+    path = tmp_path / "page.html"
+    path.write_text(made(tmp_path / "of"), encoding="utf-8")
+    page = browser.new_page()
+    for width in (375, 1280):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.goto(path.as_uri())
+        page.wait_for_load_state()
+        assert obstacles(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.close()
