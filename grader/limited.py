@@ -61,7 +61,11 @@ class LimitHit(Exception):
     """The work was ended; the text goes on from its name: 'did not come to an end in 20 s ...'."""
 
 
-class _Slow(LimitHit):
+class NoEnd(LimitHit):
+    """Its time was over: the processor's or that on the wall, which depends on the machine."""
+
+
+class _Slow(NoEnd):
     """The time on the wall is over, though the processor's is not."""
 
 
@@ -174,7 +178,7 @@ class Copy:
         ended_by = os.WTERMSIG(status)
         if ended_by == signal.SIGPROF:
             what = f"{self._limits.cpu_s:g} s of processor time"
-            return LimitHit(f"did not come to an end in {what}")
+            return NoEnd(f"did not come to an end in {what}")
         if ended_by == signal.SIGALRM:
             return _Slow(f"did not come to an end in {self._limits.wall_s:g} s")
         return LimitHit(f"ended the process that it ran in (signal {ended_by})")
@@ -208,7 +212,7 @@ class Copy:
     # In the copy ------------------------------------------------------------------------------
 
     def _be_copy(self, questions: int, answers: int) -> NoReturn:
-        code = 1
+        code, copy = 1, os.getpid()
         try:
             _confine(self._limits, (questions, answers))
             _print_to_standard_error()
@@ -219,6 +223,8 @@ class Copy:
                     mark, body = _DONE, _within_python(self._answer, _NUMBER.unpack(question)[0])
                 except LimitHit as hit:
                     mark, body = _HIT, str(hit).encode()
+                if os.getpid() != copy:
+                    os._exit(1)  # the work has forked, and this one is no copy that was asked
                 signal.setitimer(signal.ITIMER_PROF, 0)
                 signal.setitimer(signal.ITIMER_REAL, 0)
                 with suppress(AttributeError, OSError, ValueError):

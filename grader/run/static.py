@@ -12,11 +12,15 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+import psutil
+
 from grader import scratch
+from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
 from grader.run import stage
 from grader.run.environment import virtual_environment
@@ -25,7 +29,7 @@ from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
 from grader.scenes import load_scene
 from grader.scenes.package.by_itself import unlike_launched
-from grader.scenes.package.trace import PackageTrace
+from grader.scenes.package.trace import FAILED, PackageTrace
 from grader.scenes.scene import Scene, Trace
 from grader.submission.opening import EntryPoint, Submission, Whole
 
@@ -35,10 +39,13 @@ Progress = Callable[[float], None]
 SCENE: Final = "package"
 #: So long may all of it take [s]; each step within has limits of its own.
 PATIENCE_S: Final = 300.0
+#: So often it is looked whether it was stopped [s], and so many times together it has to be.
+EVERY_S, STOPPED_LOOKS = 0.5, 4
 #: The process leaves no more [bytes].
 MOST_BYTES: Final = 32_000_000
 ROOT: Final = Path(__file__).resolve().parents[2]
 TOO_LONG: Final = f"looking at the package took more than {PATIENCE_S:.0f} s"
+STOPPED: Final = "the package's own code has stopped (SIGSTOP) the process that looks at it"
 NOTHING: Final = "the process that looked at the package left nothing that can be read: {}"
 
 
@@ -112,13 +119,44 @@ def _look(submission: Submission, scene: Scene) -> _Looked:
             virtual_environment({}),
         )
         try:
-            exit_code = student.wait(PATIENCE_S)
+            exit_code, why = _wait(student)
         finally:
             student.end(gently=False)
         trace, lost = _fetch(place.recording, scene)
         output = submission.as_handed_in(student.output())
-        flags = _flags(exit_code, lost, output, student)
+        if exit_code == FAILED:
+            raise GraderFailure(_failure(output))
+        flags = (why,) if exit_code is None else _flags(exit_code, lost, output, student)
         return _Looked(trace, exit_code, lost, place.isolation, output, flags)
+
+
+def _wait(student: Watched) -> tuple[int | None, str]:
+    """Its exit code; None where it has to be ended, and why."""
+    end = time.monotonic() + PATIENCE_S
+    stopped = 0
+    while (left_s := end - time.monotonic()) > 0:
+        exit_code = student.wait(min(EVERY_S, left_s))
+        if exit_code is not None:
+            return exit_code, ""
+        stopped = stopped + 1 if _is_stopped(student.pid) else 0
+        if stopped >= STOPPED_LOOKS:
+            return None, STOPPED
+    return None, TOO_LONG
+
+
+def _is_stopped(process: int) -> bool:
+    with suppress(psutil.Error):
+        return bool(psutil.Process(process).status() == psutil.STATUS_STOPPED)
+    return False
+
+
+def _failure(output: str) -> str:
+    """Why the process that looks has failed, which no package should be able to bring about."""
+    last = next((line.strip() for line in reversed(output.splitlines()) if line.strip()), "")
+    return (
+        f"the program that looks at packages failed: {last:.300}. That is no fault of the package; "
+        "please report it, with the package"
+    )
 
 
 def command(submission: Submission, scene: Scene, leaves: int) -> list[str]:
@@ -151,8 +189,6 @@ def _outcome(exit_code: int | None, lost: str) -> Outcome:
     return "killed" if exit_code < 0 else "crashed"
 
 
-def _flags(exit_code: int | None, lost: str, output: str, student: Watched) -> tuple[str, ...]:
-    if exit_code is None:
-        return (TOO_LONG,)
+def _flags(exit_code: int, lost: str, output: str, student: Watched) -> tuple[str, ...]:
     struck = limits_struck(exit_code, output, student.excess)
     return (*struck, *([NOTHING.format(lost)] if lost else []))

@@ -42,7 +42,7 @@ def judge(looked: Looked) -> Finding:
 
 
 def _of(looked: Looked, description: Description) -> Finding:
-    where = description.source or description.by
+    where = description.source or description.by or "the robot of its files"
     text = looked.text(description.text)
     if description.problem is not None:
         if not description.is_launched and looked.not_known is not None:

@@ -19,6 +19,8 @@ LONGEST_TEXT = 2_000_000
 MOST_BYTES = 16_000_000
 #: A surface in base64: 2000 triangles.
 LONGEST_SURFACE = 96_000
+#: How the process that looks ends where it fails itself, rather than the package [exit code].
+FAILED = 70
 #: Where a package is laid out, in the paths of a trace.
 PREFIX = "/prefix"
 #: Where the packages of ROS are said to be, and the current folder of who launches.

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 import zipfile
 
 import pytest
 
 import grader
 from grader import scratch
-from grader.errors import ExerciseError, SubmissionError
+from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
+from grader.run import static
 from grader.run.processes import isolation, levels
+from grader.scenes.package.trace import FAILED
 from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, written
 
 NEVER_ENDS = "while True:\n    pass\n"
@@ -132,6 +135,21 @@ def test_a_set_up_that_kills_who_looks_is_judged_and_gets_nothing(tmp_path):
     assert result.score == 0
     assert result.run.outcome == "killed"
     assert "killed by the signal SIGKILL" in result.diagnosis.cause
+
+
+def test_a_set_up_that_stops_who_looks_is_judged_and_gets_nothing(tmp_path):
+    stop = "import os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
+    result = grader.grade(written(tmp_path, {"setup.py": stop}), EXERCISE)
+    assert result.score == 0
+    assert result.run.outcome == "time_limit"
+    assert result.run.flags == (static.STOPPED,)
+
+
+def test_what_fails_in_the_grader_is_no_fault_of_the_package(monkeypatch):
+    fails = [sys.executable, "-c", f"print('Error: a'); raise SystemExit({FAILED})"]
+    monkeypatch.setattr(static, "command", lambda *_: fails)
+    with pytest.raises(GraderFailure, match=r"failed: Error: a\. That is no fault"):
+        grader.grade(REFERENCE, EXERCISE)
 
 
 def test_an_exercise_without_nodes_has_no_limits(tmp_path):

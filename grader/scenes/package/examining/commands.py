@@ -7,6 +7,7 @@ import io
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
@@ -17,6 +18,8 @@ from grader.scenes.package.examining.steps import NotKnown
 #: Exit code, and what is printed to either side.
 Ended = tuple[int, str, str]
 _COMMAND_S: Final = 20.0
+#: A program prints no more to either side, and writes no longer file [bytes].
+_MOST_BYTES: Final = 8_000_000
 _USUAL: Final = ("xacro", "cat", "ros2", "check_urdf")
 
 
@@ -51,7 +54,7 @@ def other(words: list[str], path: Callable[[str], str]) -> Ended:
 
     Raises:
         NotKnown: there is none here, and there may be one elsewhere.
-        SubstitutionFailure: there is none anywhere, or it does not end.
+        SubstitutionFailure: there is none anywhere, or it does not end, or prints without end.
     """
     from launch.substitutions import SubstitutionFailure
 
@@ -60,9 +63,7 @@ def other(words: list[str], path: Callable[[str], str]) -> Ended:
         texts = [Path(path(word)).read_text(encoding="utf-8") for word in words[1:]]
         return 0, "".join(texts), ""
     try:
-        ended = subprocess.run(
-            words, capture_output=True, text=True, timeout=_COMMAND_S, check=False
-        )
+        return _run(words)
     except (OSError, IndexError) as error:
         is_slip = difflib.get_close_matches(program, _USUAL, 1, 0.7)
         if program and "/" not in program and not is_slip:
@@ -70,7 +71,29 @@ def other(words: list[str], path: Callable[[str], str]) -> Ended:
         raise SubstitutionFailure(f"file not found: {error}") from error
     except subprocess.TimeoutExpired:
         raise SubstitutionFailure(f"{program} did not come to an end") from None
-    return ended.returncode, ended.stdout, ended.stderr
+    except OverflowError:
+        raise SubstitutionFailure(f"{program} prints more than {_MOST_BYTES} bytes") from None
+
+
+def _run(words: list[str]) -> Ended:
+    """Into files, whose length the kernel limits: so much is refused the same way each time."""
+
+    def limit() -> None:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_FSIZE, (_MOST_BYTES, _MOST_BYTES))
+
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as errors:
+        code = subprocess.run(
+            words, stdout=out, stderr=errors, timeout=_COMMAND_S, check=False, preexec_fn=limit
+        ).returncode
+        texts = []
+        for file in (out, errors):
+            if file.seek(0, os.SEEK_END) >= _MOST_BYTES:
+                raise OverflowError
+            file.seek(0)
+            texts.append(file.read().decode("utf-8"))
+    return code, texts[0], texts[1]
 
 
 def ros2(words: list[str], prefix: Callable[[str], str]) -> str | None:

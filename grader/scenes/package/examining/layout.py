@@ -7,14 +7,15 @@ import os
 import re
 import shutil
 import sys
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from grader.scenes.package.examining import cmake, known
+from grader.scenes.package.examining import cmake, known, paths
 from grader.scenes.package.examining.packages import MANIFEST, Package
-from grader.scenes.package.examining.setup_call import run_setup
-from grader.scenes.package.examining.steps import Ended, step
+from grader.scenes.package.examining.setup_call import is_told, run_setup
+from grader.scenes.package.examining.steps import NONSENSE, Ended, step
 from grader.scenes.package.trace import Problem, Script, Setup
 
 MARKS = "share/ament_index/resource_index/packages"
@@ -23,6 +24,8 @@ _SHARED = (
     *("urdf", "meshes", "launch", "rviz", "xacro", "config", "robots", "worlds", "models"),
     *("params", "materials", "textures", "description", "mesh"),
 )
+#: So much of what a set-up says is taken: list entries, files, characters of a name.
+_MOST, _MOST_FILES, _LONGEST = 500, 5000, 500
 _SCRIPT = re.compile(r"\s*(?P<name>[^=\s]+)\s*=\s*(?P<module>[\w.]+)\s*:\s*(?P<function>[\w.]+)")
 
 
@@ -54,15 +57,16 @@ class Installed:
 def lay_out(package: Package, root: Path, prefix: Path) -> Installed:
     """Find out what a package installs, and copy that."""
     said, problem, absent, files, programs = _said(package, prefix)
-    scripts = [_script(line, package, said.get("packages")) for line in said.get("scripts", [])]
-    name = package.name or said.get("name", "") or package.folder.name
+    lines = said.get("scripts", [])[:_MOST]
+    scripts = [_script(line[:_LONGEST], package, said.get("packages")) for line in lines]
+    name = (package.name or said.get("name", "") or package.folder.name)[:_LONGEST]
     folders: list[str] = []
     found: dict[str, str] = {}
-    for where, source in files:
+    for where, source in files[:_MOST_FILES]:
         path = package.folder / source
-        if path.is_dir():
+        if paths.is_folder(path):
             folders.append(source)
-        elif not path.is_file():
+        elif not paths.is_file(path):
             absent.append(source)
         else:
             to = os.path.normpath(os.path.join(where, os.path.basename(source)))
@@ -76,16 +80,16 @@ def lay_out(package: Package, root: Path, prefix: Path) -> Installed:
     _make_known(package, name, prefix)
     setup = Setup(
         name=name,
-        told=said.get("name", ""),
+        told=said.get("name", "")[:_LONGEST],
         folder="" if package.folder == root else os.path.relpath(package.folder, root),
         build_type=package.build_type,
         manifest=package.manifest,
         depends=package.depends,
         problem=problem,
-        absent=tuple(dict.fromkeys(absent)),
-        folders=tuple(dict.fromkeys(folders)),
+        absent=_shown(absent),
+        folders=_shown(folders),
         scripts=tuple(scripts),
-        scripts_folder=said.get("scripts_folder", ""),
+        scripts_folder=said.get("scripts_folder", "")[:_LONGEST],
         installed=tuple(sorted(found)),
         sources=tuple(found[each] for each in sorted(found)),
         left=_left(package, set(found.values())),
@@ -113,11 +117,11 @@ def _said(
 
     try:
         said = step(lambda: run_setup(package.folder), own)
-        files = [(str(where), str(n)) for where, names in said["data_files"] for n in names]
     except Ended as ended:
         return {}, ended.problem, [], [], []
-    except (KeyError, TypeError, ValueError):
-        return {}, Problem("error", "setup.py answered nonsense"), [], [], []
+    if not is_told(said):
+        return {}, Problem("limit", NONSENSE), [], [], []
+    files = [(where, name) for where, names in said["data_files"] for name in names]
     return said, None, [], files, []
 
 
@@ -125,24 +129,39 @@ def _copy(path: Path, prefix: Path, to: str) -> bool:
     target = Path(os.path.normpath(prefix / to))
     if not target.is_relative_to(prefix):
         return False  # somewhere else on the machine: nobody finds it there
-    target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(path, target)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            shutil.copyfile(path, target)
+        except OSError:  # it is longer than a run's files may be, or there is no more room
+            target.unlink(missing_ok=True)
+            target.symlink_to(path)
+    except (OSError, ValueError):  # where it would lie no file can be
+        return False
     return True
+
+
+def _shown(names: list[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(each[:_LONGEST] for each in names))[:_MOST]
 
 
 def _touch(path: Path, prefix: Path) -> None:
     if Path(os.path.normpath(path)).is_relative_to(prefix):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.touch()
+        with suppress(OSError, ValueError):  # its name is none that a file can have
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
 
 
 def _make_known(package: Package, name: str, prefix: Path) -> None:
     """Marker and package.xml, which colcon adds by itself."""
     _touch(prefix / MARKS / name, prefix)
-    share = prefix / "share" / name
-    share.mkdir(parents=True, exist_ok=True)
-    if (package.folder / MANIFEST).is_file() and not (share / MANIFEST).exists():
-        shutil.copyfile(package.folder / MANIFEST, share / MANIFEST)
+    manifest = os.path.normpath(f"share/{name}/{MANIFEST}")
+    if paths.is_file(package.folder / MANIFEST) and not paths.is_file(prefix / manifest):
+        _copy(package.folder / MANIFEST, prefix, manifest)
+    share = Path(os.path.normpath(prefix / "share" / name))
+    if share.is_relative_to(prefix):
+        with suppress(OSError, ValueError):
+            share.mkdir(parents=True, exist_ok=True)
 
 
 def make_stubs(stubs: Path, declared: set[str], own: set[str]) -> None:
@@ -181,7 +200,7 @@ def _script(line: str, package: Package, installed: list[str] | None) -> Script:
     base = module.replace(".", "/")
     for folder in ("", "src/"):
         for file in (f"{folder}{base}.py", f"{folder}{base}/__init__.py"):
-            if (package.folder / file).is_file():
+            if paths.is_file(package.folder / file):
                 fault, source, says = _of(package.folder / file, file, function)
                 parent = module.rpartition(".")[0]
                 if not fault and parent and installed is not None and parent not in installed:
@@ -192,7 +211,10 @@ def _script(line: str, package: Package, installed: list[str] | None) -> Script:
 
 def _of(path: Path, file: str, function: str) -> tuple[str, str, bool]:
     """The fault of a script, its source, and whether that speaks of joint states."""
-    text = path.read_text(encoding="utf-8", errors="replace")[:1_000_000]
+    try:
+        text = paths.read(path, 1_000_000).decode("utf-8", "replace")
+    except OSError:
+        return f"{file} cannot be read", file, False
     says = "JointState" in text or "joint_states" in text
     try:
         tree = ast.parse(text)

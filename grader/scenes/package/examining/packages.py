@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
+
+from grader.scenes.package.examining import paths
 
 MANIFEST = "package.xml"
 _SKIPPED = {"build", "install", "log", "__pycache__", "venv", "env", "node_modules"}
 _DEPENDS = ("depend", "exec_depend", "run_depend", "build_depend", "build_export_depend")
 _REQUIRED = ("name", "version", "description", "maintainer", "license")
 _MOST_BYTES, _MOST_FILES = 1_000_000, 5000
+_MOST_DEPENDS, _LONGEST = 500, 500
 
 
 @dataclass(frozen=True)
@@ -54,8 +58,10 @@ class Package:
     def _is_one(self, name: str) -> bool:
         if not name.startswith("launch/") or not name.endswith(".py"):
             return False
-        text = (self.folder / name).read_bytes()[:_MOST_BYTES]
-        return b"def generate_launch_description" in text
+        with suppress(OSError):
+            text = paths.read(self.folder / name, _MOST_BYTES)
+            return b"def generate_launch_description" in text
+        return False
 
 
 def is_description(name: str) -> bool:
@@ -90,25 +96,25 @@ def read(folder: Path) -> Package:
     if not (folder / MANIFEST).is_file():
         return Package(folder, manifest="there is none", files=files)
     try:
-        data = (folder / MANIFEST).read_bytes()
+        data = paths.read(folder / MANIFEST, _MOST_BYTES + 1)
         if len(data) > _MOST_BYTES or b"<!DOCTYPE" in data:
             raise ValueError("it is larger than any, or has a DOCTYPE")
         root = ElementTree.fromstring(data)
     except (OSError, ValueError, LookupError, ElementTree.ParseError) as error:
         return Package(folder, manifest=f"it does not parse: {error}"[:300], files=files)
-    name = (root.findtext("name") or "").strip()
+    name = (root.findtext("name") or "").strip()[:_LONGEST]
     lacking = [tag for tag in _REQUIRED if root.find(tag) is None]
     types = root.findall("export/build_type")
     return Package(
         folder,
         name=name,
-        build_type="".join((types[0].text or "").split()) if types else "",
+        build_type="".join((types[0].text or "").split())[:_LONGEST] if types else "",
         manifest=f"it has no <{lacking[0]}>" if lacking else "",
         depends=tuple(
             dict.fromkeys(
-                (each.text or "").strip() for each in root if each.tag in _DEPENDS and each.text
+                each.text.strip()[:_LONGEST] for each in root if each.tag in _DEPENDS and each.text
             )
-        ),
+        )[:_MOST_DEPENDS],
         files=files,
     )
 

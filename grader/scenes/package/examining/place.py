@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from grader.scenes.package.examining import paths
 from grader.scenes.package.examining.layout import Installed
 from grader.scenes.package.trace import EMPTY, PREFIX, ROS
 
@@ -44,11 +45,20 @@ class Place:
             text = text.replace(str(path), shown)
         for each in self.all:
             text = text.replace(str(each.package.folder), f"/source/{each.name}")
-        return text.replace(str(self.empty), EMPTY)
+        text = text.replace(str(self.empty), EMPTY)
+        return text.replace(str(self.asked.parent), "/elsewhere")
 
     def own(self, path: str) -> str:
         """A file of any package of the submission; '' for others."""
         return next((f for each in self.all if (f := each.own(path, self.prefix))), "")
+
+    def taken_away(self) -> str:
+        """What was laid out and is not there any more, as everybody knows it; '' for nothing."""
+        files = [file for each in self.all for file in each.files]
+        gone = [file for file in files if not paths.is_file(self.prefix / file)]
+        folders = [each for each in (self.home, self.stubs / "share") if not paths.is_folder(each)]
+        gone.sort(key=lambda file: "/ament_index/" in file)  # nobody knows those
+        return next(iter([*gone, *(self.told(str(each)) for each in folders)]), "")
 
     def borrowed(self, wanted: str) -> tuple[str, str]:
         """A package that is not there, and the file of the submission that is asked for as its.

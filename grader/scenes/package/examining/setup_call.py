@@ -71,6 +71,25 @@ def told(arguments: dict[str, Any], folder: Path) -> dict[str, Any]:
     }
 
 
+def is_told(said: Any) -> bool:
+    """Whether an answer is one of `told`: a set-up may have written another in its place."""
+
+    def are_texts(value: Any) -> bool:
+        return isinstance(value, list) and all(isinstance(each, str) for each in value)
+
+    def is_entry(value: Any) -> bool:
+        return isinstance(value, list) and len(value) == 2 and isinstance(value[0], str)
+
+    return (
+        isinstance(said, dict)
+        and all(isinstance(said.get(key), str) for key in ("name", "scripts_folder"))
+        and all(are_texts(said.get(key)) for key in ("scripts", "plain_scripts"))
+        and (said.get("packages") is None or are_texts(said["packages"]))
+        and isinstance(said.get("data_files"), list)
+        and all(is_entry(each) and are_texts(each[1]) for each in said["data_files"])
+    )
+
+
 def _packages(given: Any) -> list[str] | None:
     """The names of those that are listed; None where others may say them (setup.cfg)."""
     if not isinstance(given, list | tuple):

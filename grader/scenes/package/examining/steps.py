@@ -10,12 +10,24 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from grader import limited
+from grader.scenes.package import strict
 from grader.scenes.package.examining import leftovers
 from grader.scenes.package.trace import Problem
 
-LIMITS: Final = limited.Limits(cpu_s=20.0, wall_s=40.0, memory_bytes=2**30, answer_bytes=16_000_000)
+#: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
+LIMITS: Final = limited.Limits(
+    cpu_s=20.0, wall_s=40.0, memory_bytes=3 * 2**28, answer_bytes=16_000_000
+)
+#: Of the processes that a run may have, so many are none of a step's: a step that starts others
+#: without end is refused more long before these have all the memory of the run.
+_NOT_OF_A_STEP: Final = 160
+_NO_END: Final = (
+    f"it did not come to an end in {LIMITS.cpu_s:.0f} s of processor time, or {LIMITS.wall_s:.0f} s"
+)
 _LONGEST: Final = 400
 NONSENSE: Final = "it spoils what is taken down of it"
+#: What reading an answer of another form than was expected ends in.
+SPOILT: Final = (ValueError, LookupError, TypeError, AttributeError, RecursionError)
 #: Names a file of the package's own by its path; '' for others.
 Own = Callable[[str], str]
 
@@ -43,6 +55,7 @@ def step(work: Callable[[], Any], own: Own) -> Any:
     """
 
     def answer() -> bytes:
+        _limit_processes()
         try:
             made = {"made": work()}
         except MemoryError:
@@ -52,18 +65,43 @@ def step(work: Callable[[], Any], own: Own) -> Any:
         return json.dumps(made).encode("ascii")
 
     try:
-        said = json.loads(limited.call(answer, LIMITS).decode("ascii"))
+        said = _read(limited.call(answer, LIMITS))
+    except limited.NoEnd:
+        raise Ended(Problem("limit", _NO_END)) from None
     except limited.LimitHit as hit:
-        raise Ended(Problem("limit", f"it {hit}")) from None
+        raise Ended(Problem("limit", f"it {hit!s:.400}")) from None
     except OSError as error:
         raise Ended(Problem("limit", f"it could not be started: {error.strerror}")) from None
     except (ValueError, RecursionError):
         raise Ended(Problem("limit", NONSENSE)) from None
     finally:
         leftovers.end()
+    if isinstance(said, Problem):
+        raise Ended(said)
+    return said[0]
+
+
+def _read(answer: bytes) -> Problem | tuple[Any]:
+    """An answer, which the stranger's code could have written itself.
+
+    Raises:
+        ValueError, RecursionError: it is none.
+    """
+    said = json.loads(answer.decode("ascii"))
+    if not isinstance(said, dict) or said.keys() not in ({"made"}, {"problem"}):
+        raise ValueError(NONSENSE)
     if "problem" in said:
-        raise Ended(Problem(**said["problem"]))
-    return said["made"]
+        return strict.from_json(Problem, said["problem"])
+    return (said["made"],)
+
+
+def _limit_processes() -> None:
+    import resource  # here: Windows has none
+
+    soft, _ = resource.getrlimit(resource.RLIMIT_NPROC)
+    if soft != resource.RLIM_INFINITY and soft > _NOT_OF_A_STEP:
+        most = soft - _NOT_OF_A_STEP
+        resource.setrlimit(resource.RLIMIT_NPROC, (most, most))
 
 
 def problem_of(error: BaseException, own: Own) -> Problem:

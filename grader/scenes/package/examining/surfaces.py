@@ -20,7 +20,9 @@ MOST_MESHES: Final = 30
 #: A coarser mesh has its corners on a grid of so many steps.
 _STEPS: Final = (96, 64, 44, 30, 20, 14, 10)
 _HEADER: Final = 84
-_VERTEX: Final = re.compile(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)\s*$", re.MULTILINE)
+_VERTEX: Final = re.compile(
+    rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)[ \t\r]*$", re.MULTILINE
+)
 
 
 def surface(path: str) -> str:

@@ -1,0 +1,339 @@
+"""One package that is laid out, looked at: one step of a stranger's code after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from difflib import get_close_matches
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from grader.scenes.package import strict, trace
+from grader.scenes.package.examining import descriptions, launches, paths, surfaces
+from grader.scenes.package.examining.layout import Installed
+from grader.scenes.package.examining.place import Place
+from grader.scenes.package.examining.steps import NONSENSE, SPOILT, Ended, problem_of, step
+from grader.scenes.package.trace import (
+    Description,
+    Launch,
+    Mesh,
+    PackageTrace,
+    Problem,
+    Varied,
+)
+
+_MOST_LAUNCHES, _MOST_TEXTS = 40, 20
+#: Of a launch file so much is looked at for a line [bytes].
+_LONGEST_FILE = 1_000_000
+
+
+class _TooMuch(ValueError):
+    """More than is taken of a package; the text completes "it hands on"."""
+
+
+class Looking:
+    """One package that is laid out, looked at."""
+
+    def __init__(self, place: Place, scratch: Path) -> None:
+        self._place = place
+        self._scratch = scratch
+        self._texts: list[str] = []
+        self._triangles: list[str] = []
+        self._surfaces: dict[str, int] = {}
+        self._descriptions: list[Description] = []
+        self._commands: dict[int, list[str]] = {}
+        self._files: dict[str, tuple[Installed, str]] = {}
+        #: why no launch file is evaluated any more; '' for nothing
+        self._gone = ""
+
+    def trace(self) -> PackageTrace:
+        """All of it."""
+        place = self._place
+        self._files = _launch_files(place)
+        self._miss("a setup.py")
+        found = [self._launch(told) for told in self._files]
+        if not any(each.text >= 0 for each in self._descriptions):
+            found += self._from_files(found)
+        varied = self._varied()
+        self._elsewhere(found)
+        return PackageTrace(
+            setup=strict.from_json(trace.Setup, _cleaned(self._setup(), place)),
+            others=tuple(each.name[:200] for each in place.all if each is not place.judged)[:100],
+            launches=tuple(found),
+            descriptions=tuple(self._descriptions),
+            varied=tuple(varied),
+            texts=tuple(self._texts),
+            surfaces=tuple(self._triangles),
+        )
+
+    def _setup(self) -> dict[str, Any]:
+        """The judged package's; with the dependencies of those whose launch files count."""
+        setups = [of.setup for of, _ in self._files.values()]
+        names = [n for each in (self._place.judged.setup, *setups) for n in each.depends]
+        return {**strict.to_json(self._place.judged.setup), "depends": list(dict.fromkeys(names))}
+
+    def _launch(self, file: str) -> Launch:
+        place, (of, name) = self._place, self._files[file]
+        if self._gone:
+            return _ended(file, vars(Problem("limit", f"it cannot be evaluated: {self._gone}")))
+        try:
+            said = _cleaned(step(lambda: _evaluated(place, of, name), place.own), place)
+        except Ended as ended:
+            said = ended.problem
+        except SPOILT:
+            said = Problem("limit", NONSENSE)
+        if gone := self._miss(file):
+            said = Problem("limit", f"it takes away {gone}")
+        if isinstance(said, Problem):
+            return _ended(file, _cleaned(vars(said), place))
+        try:
+            return self._taken(file, said)
+        except _TooMuch as much:
+            return _ended(file, vars(Problem("limit", f"it hands on {much}")))
+        except SPOILT:
+            return _ended(file, vars(Problem("limit", NONSENSE)))
+
+    def _miss(self, by: str) -> str:
+        """What is not there any more, after a file was evaluated; '' for nothing."""
+        if gone := self._place.taken_away()[:200]:
+            self._gone = f"{by:.200} has taken away {gone}"
+        return gone
+
+    def _taken(self, file: str, said: dict[str, Any]) -> Launch:
+        """A launch file as what was taken down of it."""
+        numbers = [self._number(text) for text in said["texts"]]
+        for node in said["nodes"]:
+            for parameter in node["parameters"]:
+                if parameter["text"] >= 0:
+                    parameter["text"] = numbers[parameter["text"]]
+        there, missing = said["asked"]
+        there, missing = self._used_and_wrong(there, missing, said["borrowed"])
+        lacking = [{**each, "by": each["by"] or file} for each in said["lacking"]]
+        lacking += [{"kind": "package", "name": n, "source": "", "by": file} for n in missing]
+        lacking = [{**each, "line": self._line(file, each["name"])} for each in lacking]
+        launch = strict.from_json(
+            Launch,
+            {
+                "file": file,
+                "problem": said["problem"],
+                "lacking": lacking,
+                "packages": there,
+                "moved": "",
+                **{key: said[key] for key in ("nodes", "skipped", "processes", "includes")},
+                "declared": said["declared"],
+                "remarks": [*said["remarks"], *_unwrapped(file, said["nodes"])],
+            },
+        )
+        for node in launch.nodes:
+            if "robot_state_publisher" in (node.executable, node.package):
+                for each in node.parameters:
+                    if each.name == "robot_description":
+                        refused = "" if self._texts[each.text].strip() else _first(said["refused"])
+                        self._describe(each.text, launch.file, said["source"], refused)
+        return launch
+
+    def _line(self, file: str, name: str) -> int:
+        """The one line of a launch file that has the last part of a path or name; 0 for none."""
+        of, own = self._files[file]
+        try:
+            text = paths.read(of.package.folder / own, _LONGEST_FILE).decode("utf-8", "replace")
+        except OSError:  # its own code has taken it away
+            return 0
+        word = name.replace(" ", "/").rstrip("/").rsplit("/", 1)[-1]
+        found = [n for n, line in enumerate(text.splitlines(), 1) if word and word in line]
+        return found[0] if len(found) == 1 else 0
+
+    def _used_and_wrong(
+        self, there: list[str], missing: list[str], borrowed: list[str]
+    ) -> tuple[list[str], list[str]]:
+        """Packages that are used, and names that are wrong: of a package whose files are ours."""
+        ours = [each.name for each in self._place.all]
+        wrong = [n for n in missing if n in borrowed or get_close_matches(n, ours, 1, 0.85)]
+        return [*there, *(name for name in missing if name not in wrong)], wrong
+
+    def _number(self, text: str) -> int:
+        if len(text) > trace.LONGEST_TEXT:
+            raise _TooMuch(
+                f"a text of {len(text):,} characters; {trace.LONGEST_TEXT:,} at most are taken"
+            )
+        if text in self._texts:
+            return self._texts.index(text)
+        if len(self._texts) >= _MOST_TEXTS:
+            raise _TooMuch(f"more than {_MOST_TEXTS} descriptions and long texts")
+        self._texts.append(text)
+        return len(self._texts) - 1
+
+    def _describe(
+        self, number: int, by: str, sources: Sequence[str], refused: str = "", launched: bool = True
+    ) -> None:
+        """Take down a description, once; `refused`: why xacro has made none."""
+        if any(each.text == number for each in self._descriptions):
+            return
+        text = self._texts[number] if number >= 0 else ""
+        real = self._real(text)
+        named = descriptions.meshes(real, self._place)
+        made = Description(
+            text=number,
+            by=by,
+            is_launched=launched,
+            source=next((each for each in map(self._own, sources) if each), ""),
+            problem=Problem("error", refused) if refused else None,
+            meshes=tuple(strict.from_json(Mesh, each) for each in self._with_surfaces(named)),
+            is_xml=named is not None,
+        )
+        if sources and sources[0].startswith("/prefix/"):
+            self._commands[len(self._descriptions)] = [self._real(sources[0])]
+        self._descriptions.append(made)
+
+    def _with_surfaces(self, named: list[dict[str, Any]] | None) -> list[dict[str, Any]]:
+        """The meshes of a description, each with the number of what it looks like."""
+        for each in named or ():
+            each["surface"] = self._surface(each.pop("real"))
+        return named or []
+
+    def _surface(self, path: str) -> int:
+        """The number of a mesh's triangles; -1 where nobody can read it."""
+        if path and path not in self._surfaces and len(self._surfaces) < surfaces.MOST_MESHES:
+            self._surfaces[path] = -1
+            with suppress(Ended, *SPOILT):
+                said = str(step(partial(surfaces.surface, path), self._place.own))
+                if said and len(said) <= trace.LONGEST_SURFACE:
+                    self._surfaces[path] = len(self._triangles)
+                    self._triangles.append(said)
+        return self._surfaces.get(path, -1)
+
+    def _own(self, told: str) -> str:
+        return self._place.own(self._real(told))
+
+    def _real(self, text: str) -> str:
+        """A text with the places as they are here."""
+        for each in self._place.all:
+            text = text.replace(f"/source/{each.name}", str(each.package.folder))
+        places = {trace.PREFIX: self._place.prefix, trace.ROS: self._place.stubs}
+        for told, path in places.items():
+            text = text.replace(f"{told}/", f"{path}/")
+        return text
+
+    def _from_files(self, found: Sequence[Launch]) -> list[Launch]:
+        """Descriptions that no launch file hands on; they stand in for one that should."""
+        place = self._place
+        if self._gone:
+            problem = Problem("limit", f"nobody can look at it: {self._gone}")
+            self._descriptions.append(Description(-1, "", False, "", problem, (), False))
+            return []
+        try:
+            said = _cleaned(step(lambda: descriptions.from_files(place), place.own), place)
+            for each in said["made"]:
+                file = str(each["file"])
+                self._from_file(file, str(each["text"]), str(each["errors"]))
+        except Ended as ended:
+            problem = Problem(**_cleaned(vars(ended.problem), place))
+            self._descriptions.append(Description(-1, "", False, "", problem, (), False))
+        except SPOILT:
+            pass
+        return []
+
+    def _from_file(self, file: str, text: str, errors: str) -> None:
+        """What xacro makes of a file, or says of it."""
+        problem = Problem("error", f"xacro: {errors}"[:400], file, 0)
+        if text:
+            try:
+                self._describe(self._number(text), file, [file], launched=False)
+                return
+            except _TooMuch as much:
+                problem = Problem("limit", f"it is {much}", file, 0)
+        self._descriptions.append(Description(-1, file, False, file, problem, (), False))
+
+    def _varied(self) -> list[Varied]:
+        place, made = self._place, []
+        for of, words in list(self._commands.items())[:1]:
+            if not words[0].endswith((".xacro", ".xml", ".urdf")):
+                continue
+            try:
+                said = step(partial(descriptions.varied, place, words[0], []), place.own)
+                for each in said:
+                    text = str(each["text"])
+                    if len(text) > trace.LONGEST_TEXT or len(self._texts) > 100:
+                        continue
+                    if text and text not in self._texts:
+                        self._texts.append(text)
+                    number = self._texts.index(text) if text else -1
+                    made.append(Varied(of, str(each["name"])[:200], number))
+            except (Ended, *SPOILT):
+                continue
+        return made
+
+    def _elsewhere(self, found: list[Launch]) -> None:
+        """The same at another place: what is found there no more was named by its whole path."""
+        before = self._place
+        moved = self._scratch / "moved"
+        try:
+            before.prefix.rename(moved)
+        except OSError:  # what was evaluated last has taken it away
+            return
+        place = Place(moved, before.stubs, before.empty, before.asked, before.judged, before.all)
+        for number, launch in enumerate(found):
+            if launch.problem is not None:
+                continue
+            try:
+                said = _cleaned(
+                    step(partial(_evaluated, place, *self._files[launch.file]), place.own), place
+                )
+                again = [str(each["name"]) for each in said["lacking"] if each["kind"] == "file"]
+            except (Ended, *SPOILT):
+                again = []
+            known = {each.name for each in launch.lacking}
+            other = next((name for name in again if name not in known), "")
+            if other:
+                found[number] = Launch(**{**vars(launch), "moved": other[:1000]})
+
+
+def _launch_files(place: Place) -> dict[str, tuple[Installed, str]]:
+    """As it is told of -> a launch file; of the packages beside the judged one if it has none."""
+    own = {file: (place.judged, file) for file in place.judged.package.launch_files}
+    beside = {
+        f"{each.name}/{file}": (each, file)
+        for each in place.all
+        if each is not place.judged
+        for file in each.package.launch_files
+    }
+    return dict(list((own or beside).items())[:_MOST_LAUNCHES])
+
+
+def _evaluated(place: Place, of: Installed, file: str) -> dict[str, Any]:
+    """In a copy: a launch file evaluated, as JSON."""
+    said = launches.evaluate(place, of, file)
+    error = said["problem"]
+    said["problem"] = None if error is None else vars(problem_of(error, place.own))
+    return {**said, "asked": launches.asked(place)}
+
+
+def _first(texts: Sequence[Any]) -> str:
+    return str(texts[0])[:400] if texts else ""
+
+
+def _ended(file: str, problem: dict[str, Any]) -> Launch:
+    return Launch(file, Problem(**problem), (), (), (), (), (), (), (), "")
+
+
+def _unwrapped(file: str, nodes: Sequence[dict[str, Any]]) -> list[str]:
+    given = [each for node in nodes for each in node["parameters"]]
+    if all(each["wrapped"] for each in given if each["name"] == "robot_description"):
+        return []
+    wrapped = "ParameterValue(..., value_type=str)" if file.endswith(".py") else 'type="str"'
+    return [
+        "robot_description is put through YAML, which takes most descriptions and not all: "
+        f"{wrapped} keeps it as it is"
+    ]
+
+
+def _cleaned(value: Any, place: Place) -> Any:
+    """JSON with the places as everybody knows them."""
+    if isinstance(value, str):
+        return place.told(value)
+    if isinstance(value, dict):
+        return {str(key): _cleaned(each, place) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_cleaned(each, place) for each in value]
+    return value

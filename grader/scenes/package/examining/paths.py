@@ -1,0 +1,35 @@
+"""Files that a stranger's code may have put anywhere: looked for and read, and never waited for."""
+
+from __future__ import annotations
+
+import os
+import stat
+from contextlib import suppress
+from pathlib import Path
+
+
+def is_file(path: Path) -> bool:
+    """Whether it is a file, whatever its name is."""
+    with suppress(OSError, ValueError):  # a name that is too long, a folder that is closed
+        return path.is_file()
+    return False
+
+
+def is_folder(path: Path) -> bool:
+    """Whether it is a folder, whatever its name is."""
+    with suppress(OSError, ValueError):
+        return path.is_dir()
+    return False
+
+
+def read(path: Path, most: int) -> bytes:
+    """The first bytes of a file.
+
+    Raises:
+        OSError: it is not there, or it is a pipe or a device, which might have no end.
+    """
+    found = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+    with open(found, "rb") as file:
+        if not stat.S_ISREG(os.fstat(found).st_mode):
+            raise OSError(f"it is no file: {path.name}")
+        return file.read(most)

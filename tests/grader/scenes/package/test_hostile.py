@@ -1,0 +1,149 @@
+"""A package that does what none should: a line says what, and nothing of ours fails."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.scenes.package.examining import main, paths
+from grader.scenes.package.examining.setup_call import is_told
+from grader.scenes.package.examining.steps import NONSENSE, Ended, step
+from grader.scenes.package.trace import FAILED, PackageTrace, decode, encode
+from tests.submissions.packages import REFERENCE, looked_at, written
+
+DISPLAY, SPAWN = "launch/display.launch.py", "launch/spawn.launch.py"
+SETUP = (REFERENCE / "setup.py").read_text(encoding="utf-8")
+LISTS = "data_files=["
+ANSWER = {
+    "name": "a",
+    "data_files": [["share/a", ["package.xml"]]],
+    "scripts": ["a = a:main"],
+    "plain_scripts": [],
+    "packages": None,
+    "scripts_folder": "lib/a",
+}
+
+
+def found(folder: Path, files: dict[str, str]) -> PackageTrace:
+    """What is found of the reference with other files, as it comes through to the grader."""
+    trace = looked_at(written(folder, files))
+    assert decode(encode(trace)) == trace
+    return trace
+
+
+def before(file: str, code: str) -> str:
+    return f"{code}\n{(REFERENCE / file).read_text(encoding='utf-8')}"
+
+
+@pytest.mark.parametrize("folder", ["", "/share", "/../empty", "/.."])
+def test_a_launch_file_that_takes_away_what_is_installed_is_named(folder, tmp_path):
+    code = (
+        "import os, shutil\n"
+        "shutil.rmtree(os.environ['AMENT_PREFIX_PATH'].split(':')[0] "
+        f"+ {folder!r}, ignore_errors=True)\n"
+    )
+    first, then = found(tmp_path, {DISPLAY: before(DISPLAY, code)}).launches
+    gone = "~" if "empty" in folder else "share/walker_description/package.xml"
+    assert first.problem.text == f"it takes away {gone}"
+    assert then.problem.text == f"it cannot be evaluated: {DISPLAY} has taken away {gone}"
+
+
+def test_names_that_no_file_can_have_are_files_that_are_not_there(tmp_path):
+    odd = (
+        f'{LISTS}("share/" + "x" * 5000, ["setup.py"]), ("share/y", ["y" * 5000, "a\\0b"]), '
+        '("share/walker_description/package.xml/a", ["setup.py"]),'
+    )
+    scripts = 'scripts=["s" * 5000], entry_points={"console_scripts": ["a = " + "b.c" * 900]} or {'
+    text = SETUP.replace(LISTS, odd).replace("entry_points={", scripts)
+    trace = found(tmp_path, {"setup.py": text})
+    assert trace.setup.problem is None
+    assert [name[:1] for name in trace.setup.absent] == ["y", "a"]
+    assert trace.setup.scripts[0].fault
+
+
+def test_a_package_xml_that_is_longer_than_any_is_taken_in_part(tmp_path):
+    text = (REFERENCE / "package.xml").read_text(encoding="utf-8")
+    more = "".join(f"<depend>d{n}</depend>" for n in range(9000))
+    name = f"<name>../../../{'a' * 5000}"
+    text = text.replace("</package>", f"{more}</package>")
+    trace = found(tmp_path, {"package.xml": text.replace("<name>walker_description", name)})
+    assert trace.setup.name.startswith("../../../aaa") and len(trace.setup.depends) <= 1000
+
+
+def test_a_description_that_is_longer_than_any_is_told_so(tmp_path):
+    code = (
+        "from launch import LaunchDescription\n"
+        "from launch_ros.actions import Node\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription([Node(package='robot_state_publisher',\n"
+        "        executable='robot_state_publisher',\n"
+        "        parameters=[{'robot_description': 'a' * 3_000_000}])])\n"
+    )
+    problem = found(tmp_path, {DISPLAY: code}).launches[0].problem
+    assert "a text of 3,000,000 characters; 2,000,000 at most" in problem.text
+
+
+@pytest.mark.parametrize(
+    "forged",
+    [b"[1]", b"{}", b'{"problem": {"x": 1}}', b'{"problem": 3}', b"\xff", b"[" * 100_000],
+)
+def test_an_answer_that_is_forged_is_none(forged):
+    def forge():
+        for descriptor in range(3, 64):
+            try:
+                os.write(descriptor, b"=" + len(forged).to_bytes(8, "little") + forged)
+            except OSError:
+                continue
+
+    with pytest.raises(Ended) as ended:
+        step(forge, str)
+    assert ended.value.problem.text == NONSENSE
+
+
+def test_what_a_step_forks_does_not_answer_for_it():
+    def fork():
+        child = os.fork()
+        if child:
+            os.waitpid(child, 0)
+        return child > 0
+
+    assert step(fork, str) is True
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("name", 3),
+        ("scripts", 5),
+        ("scripts", [5]),
+        ("packages", 1),
+        ("scripts_folder", None),
+        ("data_files", [["share/a", "package.xml"]]),
+        ("data_files", [["share/a"]]),
+    ],
+)
+def test_only_what_has_the_form_of_an_answer_is_one(key, value):
+    assert is_told(ANSWER)
+    assert not is_told({**ANSWER, key: value})
+    assert not is_told([])
+
+
+def test_nothing_is_waited_for_that_is_no_file(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for path in (pipe, Path("/dev/zero"), tmp_path, tmp_path / "none"):
+        with pytest.raises(OSError, match=r".+"):
+            paths.read(path, 10)
+    assert not paths.is_file(tmp_path / ("a" * 5000))
+    assert not paths.is_folder(tmp_path / "a\0b")
+
+
+def test_what_fails_in_the_grader_ends_with_a_code_of_its_own():
+    order = json.dumps({"root": str(REFERENCE)})
+    ended = subprocess.run([sys.executable, main.__file__, order], capture_output=True, check=False)
+    assert ended.returncode == FAILED
