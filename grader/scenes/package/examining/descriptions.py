@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 from grader.scenes.package.examining.launches import prepare, watch_files
 from grader.scenes.package.examining.packages import is_description
 from grader.scenes.package.examining.place import Place
+from grader.scenes.package.examining.steps import end_of
 from grader.scenes.package.examining.taken import Taken
 
 _MOST_FILES: Final = 500
@@ -105,7 +106,7 @@ def from_files(place: Place) -> dict[str, Any]:
         code, errors = 0, ""
         if "xacro" in text:
             code, text, errors = taken.xacro([str(path)])
-        made.append({"file": file, "text": "" if code else text, "errors": errors[-400:]})
+        made.append({"file": file, "text": "" if code else text, "errors": end_of(errors, 400)})
     return {"made": made, "lacking": taken.found["lacking"]}
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
@@ -272,7 +273,7 @@ class Looking:
             before.prefix.rename(moved)
         except OSError:  # what was evaluated last has taken it away
             return
-        place = Place(moved, before.stubs, before.empty, before.asked, before.judged, before.all)
+        place = replace(before, prefix=moved)
         for number, launch in enumerate(found):
             if launch.problem is not None:
                 continue

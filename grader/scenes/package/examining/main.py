@@ -67,7 +67,8 @@ def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> P
     declared = {name for each in everything for name in each.setup.depends}
     layout.make_stubs(stubs, declared, {each.name for each in everything})
     (scratch / "empty" / "home").mkdir(parents=True)
-    place = Place(prefix, stubs, scratch / "empty", scratch / "asked", judged, everything)
+    empty, asked_for = scratch / "empty", scratch / "asked"
+    place = Place(prefix, stubs, empty, asked_for, judged, everything, root.resolve())
     return Looking(place, scratch).trace()
 
 

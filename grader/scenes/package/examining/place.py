@@ -25,6 +25,7 @@ class Place:
         empty: an empty folder, to stand in; `asked` is the file that takes down packages.
         judged: the package that is looked at.
         all: all packages of the submission.
+        root: the folder that holds them.
     """
 
     prefix: Path
@@ -33,6 +34,7 @@ class Place:
     asked: Path
     judged: Installed
     all: tuple[Installed, ...]
+    root: Path
 
     @property
     def home(self) -> Path:
@@ -45,6 +47,7 @@ class Place:
             text = text.replace(str(path), shown)
         for each in self.all:
             text = text.replace(str(each.package.folder), f"/source/{each.name}")
+        text = text.replace(str(self.root), "/source")
         text = text.replace(str(self.empty), EMPTY)
         return text.replace(str(self.asked.parent), "/elsewhere")
 

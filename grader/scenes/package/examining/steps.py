@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import traceback
 from collections.abc import Callable
@@ -26,6 +27,8 @@ _NO_END: Final = (
 )
 _LONGEST: Final = 400
 NONSENSE: Final = "it spoils what is taken down of it"
+#: Where an object lies in memory, which is another place each time.
+_ADDRESS: Final = re.compile(r"\bat 0x[0-9a-fA-F]+")
 #: What reading an answer of another form than was expected ends in.
 SPOILT: Final = (ValueError, LookupError, TypeError, AttributeError, RecursionError)
 #: Names a file of the package's own by its path; '' for others.
@@ -121,7 +124,20 @@ def problem_of(error: BaseException, own: Own) -> Problem:
         file, line = own(error.filename), error.lineno or 0
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     name = "" if isinstance(error, NotKnown) else f"{type(error).__name__}: "
-    return Problem(kind, f"{name}{' '.join(words.split())}"[:_LONGEST].rstrip(": "), file, line)
+    text = start_of(_ADDRESS.sub("at 0x...", f"{name}{' '.join(words.split())}"), _LONGEST)
+    return Problem(kind, text.rstrip(": "), file, line)
+
+
+def start_of(text: str, most: int) -> str:
+    """A text cut at its end, and not within a path: part of one, nobody knows for what it is."""
+    cut = text[:most]
+    before, _, last = cut.rpartition(" ")
+    return before if len(text) > most and "/" in last else cut
+
+
+def end_of(text: str, most: int) -> str:
+    """The same at its start."""
+    return start_of(text[-most - 1 :][::-1], most)[::-1]
 
 
 def _is_of_environment(error: BaseException) -> bool:

@@ -7,9 +7,9 @@ import os
 from pathlib import Path
 from typing import Any, Final
 
-from grader.scenes.package.examining import commands, foreign, known
+from grader.scenes.package.examining import commands, foreign, known, paths
 from grader.scenes.package.examining.place import Place
-from grader.scenes.package.examining.steps import NotKnown
+from grader.scenes.package.examining.steps import NotKnown, end_of
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
@@ -110,13 +110,13 @@ class Taken:
             return
         ours = [each.name for each in self._place.all]
         if package in ours:
-            there = (Path(prefix) / "lib" / package / name).exists()
+            there = paths.is_file(Path(prefix) / "lib" / package / name)
         else:
             programs = known.PROGRAMS.get(package)
             there = programs is None or name in programs
             programs_of = (self._place.prefix / "lib" / each / name for each in ours)
             is_known = (self._place.stubs / "share" / package).is_dir()
-            if not is_known and any(each.exists() for each in programs_of):
+            if not is_known and any(map(paths.is_file, programs_of)):
                 self._add("borrowed", package)
         if not there:
             self._lack("executable", f"{package} {name}", "")
@@ -315,4 +315,4 @@ def _python(path: str, read: str) -> Any:
 
 
 def _end(text: str) -> str:
-    return " ".join(text.split())[-300:]
+    return end_of(" ".join(text.split()), 300)

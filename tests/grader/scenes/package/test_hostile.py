@@ -12,7 +12,14 @@ import pytest
 
 from grader.scenes.package.examining import main, paths
 from grader.scenes.package.examining.setup_call import is_told
-from grader.scenes.package.examining.steps import NONSENSE, Ended, step
+from grader.scenes.package.examining.steps import (
+    NONSENSE,
+    Ended,
+    end_of,
+    problem_of,
+    start_of,
+    step,
+)
 from grader.scenes.package.trace import FAILED, PackageTrace, decode, encode
 from tests.submissions.packages import REFERENCE, looked_at, written
 
@@ -131,6 +138,16 @@ def test_only_what_has_the_form_of_an_answer_is_one(key, value):
     assert is_told(ANSWER)
     assert not is_told({**ANSWER, key: value})
     assert not is_told([])
+
+
+def test_texts_that_are_cut_have_no_part_of_a_path_and_no_address():
+    path = "/tmp/package-abcdefgh/prefix/a.xacro"
+    assert start_of(f"in {path} there", 20) == "in"
+    assert end_of(f"there in {path} is", 20) == "is"
+    assert start_of("a" * 30, 20) == end_of("a" * 30, 20) == "a" * 20
+    assert start_of(path, 50) == end_of(path, 50) == path
+    problem = problem_of(ValueError(f"found {object()}"), str)
+    assert problem.text == "ValueError: found <object object at 0x...>"
 
 
 def test_nothing_is_waited_for_that_is_no_file(tmp_path):
