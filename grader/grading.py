@@ -248,6 +248,10 @@ def start(
             return run(submission, again, show)
 
     looks = plans[0].looks_at_package
+    if looks:
+        # Here, since two threads that import rosbags at once, each from another end, lock each
+        # other out: Python ends one of them by a _DeadlockError.
+        load_scene(static.SCENE)
     at_once = min(len(plans) + looks, max(LEAST_AT_ONCE, math.ceil(cores.share())))
     pool = ThreadPoolExecutor(max_workers=at_once)
     try:

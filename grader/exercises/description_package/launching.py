@@ -8,6 +8,7 @@ from typing import NamedTuple
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, how_it_ends, not_judged, shown
 from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
+from grader.scenes.package.launch_errors import advice
 from grader.scenes.package.trace import Launch, Node
 from robot_py.urdf import parse
 
@@ -55,7 +56,7 @@ def judge(looked: Looked) -> Finding:
         return Finding(
             min(share, BROKEN) if launch.file != best else 0.0,
             f"{launch.file} {how_it_ends(launch.problem)}.",
-            _advice(launch.problem.text),
+            advice(launch.problem.text),
         )
     strange = next((each for each in looked.launches if each.file == best), None)
     if share <= DESCRIPTION and strange and (include := _not_followed(strange)):
@@ -211,20 +212,3 @@ def _has_file(node: Node) -> bool:
         return True
     at = next((n for n, w in enumerate(words) if w in ("-d", "--display-config")), len(words))
     return len(words) > at + 1 and words[at + 1].strip() != ""
-
-
-def _advice(text: str) -> str:
-    if "file not found" in text and "xacro/" in text:
-        return (
-            "Command joins its parts as they stand: a blank is missing, Command(['xacro ', path])."
-        )
-    if "keyword" in text and ("unexpected" in text or "'executable'" in text):
-        return (
-            "Compare the names of the arguments with those of your ROS release: node_executable "
-            "and node_name are called executable and name since Foxy."
-        )
-    if "xacro" in text:
-        return "Run xacro by hand on the same file: it says the same, with file and line."
-    if "as yaml" in text:
-        return "Wrap it: ParameterValue(Command([...]), value_type=str)."
-    return "`ros2 launch` says the same, with all lines of the traceback."

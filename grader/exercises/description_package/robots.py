@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from grader.exercise.verdict import Finding
+from grader.exercises.description_package import xacro_said
 from grader.exercises.description_package.looked import Looked, not_judged, nothing_started, shown
 from grader.scenes.package.trace import Description, Mesh
 from robot_py.findings import Consequence
@@ -47,11 +48,8 @@ def _of(looked: Looked, description: Description) -> Finding:
     if description.problem is not None:
         if not description.is_launched and looked.not_known is not None:
             return not_judged(looked.not_known, f"{where} alone gives no robot")
-        return Finding(
-            0,
-            f"{where}: {shown(description.problem.text)}.",
-            "Run xacro by hand on the file: it says the same, with file and line.",
-        )
+        refused = xacro_said.told(description.problem.text, looked.name)
+        return Finding(0, f"{where}: {shown(refused)}.", xacro_said.advice(refused))
     if not text.strip():
         return Finding(0, f"{where}: the description is empty.", "Which file does it come from?")
     if "<" not in text:
@@ -100,6 +98,8 @@ def _help(text: str) -> str:
         return (
             "Every link but one is the child of exactly one joint. Which has none, or is misspelt?"
         )
+    if "is not unique" in text:
+        return "Each name is given once: two parts are called the same, or a macro is used twice."
     if "limit" in text:
         return 'Such a joint needs <limit lower="" upper="" effort="" velocity=""/>.'
     if "PARSING_DECLARATION" in text:

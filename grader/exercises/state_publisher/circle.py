@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from grader.exercise.check import Tolerances
+from grader.exercise.sentences import counted
 from grader.exercise.verdict import Evidence, Expected, Finding
 from grader.exercises.state_publisher.seen import Seen, sentence
 from grader.scenes.robot.motion import ODOM, Floats, Way, bare, fitted
@@ -75,6 +76,7 @@ def _wanted(tolerances: Tolerances) -> tuple[Expected, ...]:
 
 
 def _absent(seen: Seen) -> Finding:
+    way = seen.way
     wanted = f"from {ODOM!r} to {seen.root!r}"
     others = list(dict.fromkeys((t.topic, bare(t.parent), bare(t.child)) for t in seen.sent))
     if (swapped := ("/tf", seen.root, ODOM)) in others:
@@ -83,10 +85,13 @@ def _absent(seen: Seen) -> Finding:
     elif any(each == ("/tf_static", ODOM, seen.root) for each in others):
         told = f"The transform {wanted} came on /tf_static, and what is static never moves"
         help = "Send what moves by a TransformBroadcaster: it goes to /tf."
-    elif others:
+    elif others and not len(way):
         _, parent, child = others[0]
         told = f"No transform {wanted} came on /tf, but one from {parent!r:.40} to {child!r:.40}"
         help = f"The robot stands in the world by {ODOM!r} and the root link of its URDF."
+    elif ("/tf", ODOM, seen.root) in others:
+        told = f"Only {counted(len(way), 'transform')} {wanted} came on /tf: too few to see a way"
+        help = "Does your node go on to send its TransformStamped, time after time?"
     else:
         told = f"No transform {wanted} came on /tf"
         help = "Does your node send its TransformStamped each time, by a TransformBroadcaster?"

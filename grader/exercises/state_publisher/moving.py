@@ -43,10 +43,14 @@ def judge_moves(seen: Seen, tolerances: Tolerances) -> Finding:
         else:
             told.append(f"{name!r} {seen_of_it}")
     share = len(told) / max(len(seen.moving), 1)
+    help = HELP
+    if wrong and all("stays at" in each for each in wrong):
+        help = "What makes the position grow each time: is it there, and is it ever reached?"
     if wrong and (seldom := too_seldom(seen, tolerances)):
         wrong.insert(0, seldom)
+        help = "create_timer() takes seconds: 1 / 30 calls you thirty times a second."
     wanted = tuple(_wanted(seen, name, tolerances) for name in seen.moving)
-    return Finding(share, sentence([*wrong, *told]), HELP, tuple(where), expected=wanted)
+    return Finding(share, sentence(wrong or told), help, tuple(where), expected=wanted)
 
 
 def _wanted(seen: Seen, name: str, tolerances: Tolerances) -> Expected:

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from grader.exercise.verdict import Finding
 from grader.exercises.state_publisher.seen import sentence
 from grader.recording.recording import Recording
+from grader.scenes.package.launch_errors import advice
 from grader.scenes.package.trace import (
+    EMPTY,
     PREFIX,
     Lacking,
     Launch,
@@ -53,6 +55,9 @@ def judge_package(recording: Recording) -> Finding:
 
 def _wrong(setup: Setup) -> Iterator[str]:
     """What keeps colcon from building it, or `ros2 run` from starting something of it."""
+    if setup.problem is not None and setup.problem.text.startswith("there is no"):
+        yield f"the package cannot be built: {_shown(setup.problem.text)}"
+        return
     if setup.problem is not None:
         yield f"setup.py ends with {_shown(setup.problem.text)}{_placed(setup.problem)}"
         return
@@ -110,7 +115,7 @@ def _judge(launch: Launch, setup: Setup, trace: PackageTrace) -> Finding:
             0,
             f"`ros2 launch` starts nothing of {launch.file}: "
             f"{_shown(launch.problem.text)}{_placed(launch.problem)}.",
-            _advice(launch.problem.text),
+            advice(launch.problem.text),
         )
     asked = ((ROBOT, _robot(launch, trace)), (OWN, _own(launch, setup)))
     faults = [*asked, (PLACES, _places(launch, setup))]
@@ -130,16 +135,6 @@ def _judge(launch: Launch, setup: Setup, trace: PackageTrace) -> Finding:
         f"{launch.file}: {'; '.join(told)}.",
         nodes if any(why for _, why in asked) else places,
     )
-
-
-def _advice(problem: str) -> str:
-    """What to do about an error that a launch file ends with."""
-    if "argument" in problem and ("unexpected" in problem or "'executable'" in problem):
-        return (
-            "Compare the names of the arguments with those of your ROS release: node_executable "
-            "and node_name are called executable and name since Foxy."
-        )
-    return "`ros2 launch` says the same, with all lines of the traceback."
 
 
 def _robot(launch: Launch, trace: PackageTrace) -> str:
@@ -199,6 +194,9 @@ def _places(launch: Launch, setup: Setup) -> str:
 
 
 def _absent(file: Lacking, setup: Setup) -> str:
+    if file.name.startswith(f"{EMPTY}/"):
+        name = file.name.removeprefix(f"{EMPTY}/")
+        return f"it reads {_shown(name)!r}, a path from the current folder, which may be any"
     name = file.name.removeprefix(f"{PREFIX}/")
     if name == file.name:
         return f"the path {_shown(name)!r} is there on one computer only"

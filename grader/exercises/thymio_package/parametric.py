@@ -10,12 +10,15 @@ import numpy as np
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, shown
 from robot_py import kinematics
+from robot_py.findings import Consequence
 from robot_py.model import Box, Model, Pose
 from robot_py.urdf import parse
 
 _MOVED_M = 1e-6
 #: What hangs on a part so far from its middle, as a share of half of its size, is at its side.
 _ASIDE = 0.25
+#: The masses of so many links are told one by one.
+_FEW = 6
 
 
 class _Shape(NamedTuple):
@@ -27,9 +30,7 @@ def judge(looked: Looked, names: Sequence[str]) -> Finding:
     """Whether doubling a number moves what depends on it."""
     model = _model(looked)
     if model is None:
-        return Finding(
-            0, "There is no robot to vary.", "See what is said of the description first."
-        )
+        return _no_robot("vary")
     good, told, help_ = 0, "", ""
     texts = _varied(looked)
     for name in names:
@@ -40,9 +41,20 @@ def judge(looked: Looked, names: Sequence[str]) -> Finding:
             fault, advice = _fault(name, model, texts[name])
         good += not fault
         told, help_ = told or fault, help_ or advice
+    if told and not good and _is_incomplete(looked):
+        return _no_robot("vary: parts of it are dropped")
     if not told:
         return Finding(1, f"What hangs on {', '.join(names)} moves along with them.")
     return Finding(good / max(len(names), 1), f"In the xacro, {told}.", help_)
+
+
+def _no_robot(what: str) -> Finding:
+    return Finding(
+        0,
+        f"Not judged: there is no robot to {what}.",
+        "See what is said of the description first.",
+        judged=False,
+    )
 
 
 def _fault(name: str, model: Model, text: str) -> tuple[str, str]:
@@ -79,6 +91,13 @@ def _varied(looked: Looked) -> dict[str, str]:
 def _model(looked: Looked) -> Model | None:
     texts = [looked.text(each.text) for each in looked.descriptions if each.text >= 0]
     return parse(texts[0]).model if texts else None
+
+
+def _is_incomplete(looked: Looked) -> bool:
+    """Whether urdfdom drops a part, and with it what should change."""
+    texts = [looked.text(each.text) for each in looked.descriptions if each.text >= 0]
+    found = parse(texts[0]).findings if texts else ()
+    return any(each.consequence is Consequence.DROPPED for each in found)
 
 
 def _sizes(model: Model) -> list[object]:
@@ -135,9 +154,7 @@ def judge_masses(looked: Looked, mass_kg: float, error: float) -> Finding:
     """Whether the robot weighs what it should."""
     model = _model(looked)
     if model is None:
-        return Finding(
-            0, "There is no robot to weigh.", "See what is said of the description first."
-        )
+        return _no_robot("weigh")
     bare = [each.name for each in model.links.values() if each.collisions and not each.inertial]
     if bare:
         return Finding(
@@ -149,8 +166,22 @@ def judge_masses(looked: Looked, mass_kg: float, error: float) -> Finding:
     if abs(mass - mass_kg) > error * mass_kg:
         return Finding(
             0.5 if mass else 0,
-            f"The robot weighs {1000 * mass:.0f} g in all; expected {1000 * mass_kg:.0f} g, give "
-            f"or take {100 * error:g} %.",
-            "Add up the masses of all links.",
+            f"The robot weighs {_grams(mass)} in all{_each(model)}; expected {_grams(mass_kg)}, "
+            f"give or take {100 * error:g} %.",
+            "<mass value=...> is in kilograms: 1 g is 0.001."
+            if mass > 100 * mass_kg
+            else "Add up the masses of all links. Is each link there, and has it its mass?",
         )
-    return Finding(1, f"The robot weighs {1000 * mass:.0f} g in all.")
+    return Finding(1, f"The robot weighs {_grams(mass)} in all.")
+
+
+def _each(model: Model) -> str:
+    """' (base_link 200 g, wheel 30 g)': which link weighs what, where that fits into a line."""
+    masses = [(each.name, each.inertial.mass) for each in model.links.values() if each.inertial]
+    if not 0 < len(masses) <= _FEW:
+        return ""
+    return f" ({', '.join(f'{shown(name)} {_grams(mass)}' for name, mass in masses)})"
+
+
+def _grams(mass_kg: float) -> str:
+    return f"{1000 * mass_kg:.0f} g"

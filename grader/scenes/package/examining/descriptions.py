@@ -106,7 +106,7 @@ def from_files(place: Place) -> dict[str, Any]:
         code, errors = 0, ""
         if "xacro" in text:
             code, text, errors = taken.xacro([str(path)])
-        made.append({"file": file, "text": "" if code else text, "errors": end_of(errors, 400)})
+        made.append({"file": file, "text": "" if code else text, "errors": end_of(errors, 1000)})
     return {"made": made, "lacking": taken.found["lacking"]}
 
 
@@ -122,8 +122,13 @@ def varied(place: Place, source: str, words: list[str]) -> list[dict[str, str]]:
     watch_files(taken, place)
     found: list[dict[str, str]] = []
     size = 0
-    share = place.prefix / "share" / place.judged.name
-    for path in sorted(share.rglob("*")):
+    share = place.prefix / "share"
+    if Path(source).is_relative_to(share):  # setup.py may call the package by another name
+        share /= Path(source).relative_to(share).parts[0]
+    folder = place.judged.package.folder
+    own = sorted(folder / file for file in place.judged.package.files)
+    # what is not installed is read where it lies in the package
+    for path in own if source.startswith(f"{folder}/") else sorted(share.rglob("*")):
         if path.suffix not in (".xacro", ".urdf", ".xml") or not path.is_file():
             continue
         text = path.read_text(encoding="utf-8", errors="replace")

@@ -212,7 +212,7 @@ def _script(line: str, package: Package, installed: list[str] | None) -> Script:
 def _of(path: Path, file: str, function: str) -> tuple[str, str, bool]:
     """The fault of a script, its source, and whether that speaks of joint states."""
     try:
-        text = paths.read(path, 1_000_000).decode("utf-8", "replace")
+        text = paths.read(path, 1_000_000).decode("utf-8-sig", "replace")
     except OSError:
         return f"{file} cannot be read", file, False
     says = "JointState" in text or "joint_states" in text

@@ -183,7 +183,7 @@ class Looking:
             meshes=tuple(strict.from_json(Mesh, each) for each in self._with_surfaces(named)),
             is_xml=named is not None,
         )
-        if sources and sources[0].startswith("/prefix/"):
+        if sources and sources[0].startswith((f"{trace.PREFIX}/", "/source/")):
             self._commands[len(self._descriptions)] = [self._real(sources[0])]
         self._descriptions.append(made)
 
@@ -237,7 +237,7 @@ class Looking:
 
     def _from_file(self, file: str, text: str, errors: str) -> None:
         """What xacro makes of a file, or says of it."""
-        problem = Problem("error", f"xacro: {errors}"[:400], file, 0)
+        problem = Problem("error", f"xacro: {errors}"[:1000], file, 0)
         if text:
             try:
                 self._describe(self._number(text), file, [file], launched=False)

@@ -14,6 +14,8 @@ from grader.scenes.package.examining.steps import NotKnown, end_of
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
 _MOST: Final = 200
+#: So much of what a program says is kept, from its end.
+_LONGEST_SAID: Final = 1000
 _FILE_OPTIONS: Final = ("-d", "--display-config", "-file", "--file")
 #: How the names of files end that a node may be told to read.
 SUFFIXES: Final = (
@@ -293,7 +295,7 @@ def _python(path: str, read: str) -> Any:
     """The launch description of a launch file in Python."""
     from launch.launch_description_sources import InvalidPythonLaunchFileError
 
-    with open(read, encoding="utf-8") as file:
+    with open(read, "rb") as file:  # as bytes: a byte order mark is no fault
         code = compile(file.read(), read, "exec")
     names: dict[str, Any] = {"__name__": "python_launch_file", "__file__": path}
     exec(code, names)
@@ -315,4 +317,4 @@ def _python(path: str, read: str) -> Any:
 
 
 def _end(text: str) -> str:
-    return end_of(" ".join(text.split()), 300)
+    return end_of(" ".join(text.split()), _LONGEST_SAID)

@@ -132,6 +132,11 @@ def test_rviz_as_a_plain_program_is_rviz(tmp_path):
         assert lost(graded(written(tmp_path / str(len(words)), {DISPLAY: changed}))) == left
 
 
+def test_a_byte_order_mark_is_no_fault_of_a_launch_file(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    assert lost(graded(written(tmp_path, {DISPLAY: f"\ufeff{text}"}))) == {}
+
+
 def test_the_starter_is_told_what_to_begin_with():
     result = graded(EXERCISE.starter)
     assert lost(result)["launch"] == 0

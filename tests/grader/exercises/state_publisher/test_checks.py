@@ -113,6 +113,38 @@ def test_each_mistake_loses_what_it_should(controller, losses):
     assert lost(controller) == losses
 
 
+def said(controller, check, package=PACKAGE):
+    """What a check says, and its help."""
+    trace = drive(controller, 1000, EXERCISE.setting)
+    recording = Recording(trace, scene="robot", package=package)
+    found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
+    return next((v.rationale, v.help) for v in found if v.check == check)
+
+
+def test_who_sends_a_single_transform_is_not_told_that_it_is_another():
+    send = walker()
+    rationale, _ = said(lambda tick, now: send(tick, now) if tick < 4 else (), "odometry")
+    assert rationale.startswith("Only 1 transform from 'odom' to 'axis' came on /tf")
+
+
+def test_joints_that_stand_are_not_told_of_radians():
+    still = dict.fromkeys(("swivel", "tilt", "periscope"), 0.0)
+    rationale, help_ = said(walker(joints=lambda t: still), "joints_move")
+    assert "stays at 0" in rationale and help_.startswith("What makes the position grow")
+
+
+def test_what_is_wrong_is_not_mixed_with_what_is_right():
+    rationale, _ = said(walker(joints=lambda t: {"periscope": 0.0}), "joints_move")
+    assert rationale == "'periscope' stays at 0."
+
+
+def test_a_path_from_the_current_folder_is_called_one():
+    lacking = Lacking("file", "/somewhere/urdf/walker.urdf", "", LAUNCH.file)
+    package = replace(PACKAGE, launches=(replace(LAUNCH, lacking=(lacking,)),))
+    rationale, _ = said(walker(), "launch", package)
+    assert "'urdf/walker.urdf', a path from the current folder" in rationale
+
+
 @pytest.mark.parametrize(
     ("setup", "losses"),
     [

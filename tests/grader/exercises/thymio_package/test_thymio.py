@@ -9,9 +9,10 @@ from grader.grading import judge
 from grader.testing.odd_packages import odd_packages
 from grader.testing.sanity import examine
 from grader.testing.solutions import read_solutions
-from tests.submissions.packages import looked_at, recorded
+from tests.submissions.packages import looked_at, recorded, written
 
 EXERCISE = load_exercise("thymio_package")
+REFERENCE = EXERCISE.folder / "reference"
 SOLUTIONS = {solution.name: solution for solution in read_solutions(EXERCISE)}
 FIRST_LINES = {
     "wheels_stay_beside": "base_width changes the size of a part, and left_wheel_link does not",
@@ -42,3 +43,20 @@ def test_the_first_line_of_a_wrong_thymio_names_its_mistake(name, tmp_path):
 def test_its_checks_survive_whatever_a_package_is():
     for what, recordings in odd_packages().items():
         assert examine(EXERCISE, recordings)[1] == [], what
+
+
+def lost(path):
+    result = judge(recorded(looked_at(path)), EXERCISE)
+    return {verdict.check: verdict.status for verdict in result.verdicts if not verdict.passed}
+
+
+def test_a_xacro_that_is_not_installed_has_its_numbers_all_the_same(tmp_path):
+    cmake = (REFERENCE / "CMakeLists.txt").read_text().replace(" urdf", "")
+    assert lost(written(tmp_path, {"CMakeLists.txt": cmake}, REFERENCE)) == {"installed": "failed"}
+
+
+def test_what_waits_for_a_robot_is_not_judged_where_xacro_makes_none(tmp_path):
+    xacro = (REFERENCE / "urdf/thymio.urdf.xacro").read_text().replace("</robot>", "")
+    left = lost(written(tmp_path, {"urdf/thymio.urdf.xacro": xacro}, REFERENCE))
+    waits = ("meshes", "parameters", "masses")
+    assert left == {"urdf": "failed"} | dict.fromkeys(waits, "not_judged")
