@@ -65,7 +65,8 @@ def urdf(recordings: Recordings, tolerances: Tolerances) -> Finding:
     - urdfdom refuses it, or xacro has not been run on it: 0.
     - urdfdom drops a part (it says so, and the robot shows without it), or accepts what cannot be
       meant (limits with lower above upper, an axis 0 0 0, a link with two parents, a mimic of no
-      joint, a mass or moment of inertia that no body has): half of the points.
+      joint, a mass or moment of inertia that no body has, an rpy of more than a turn): half of
+      the points.
     """
     return looked_at(recordings, robots.judge)
 

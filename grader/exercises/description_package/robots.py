@@ -12,13 +12,15 @@ from grader.exercises.description_package import xacro_said
 from grader.exercises.description_package.looked import Looked, not_judged, nothing_started, shown
 from grader.scenes.package.trace import Description, Mesh
 from robot_py.findings import Consequence
-from robot_py.model import Inertial, Joint, JointType, Model
+from robot_py.model import Inertial, Joint, JointType, Model, Pose
 from robot_py.urdf import parse
 
 #: What is left where a robot is there, and something of it is wrong or dropped.
 FAULTY = 0.5
 #: Moments of inertia may miss the triangle inequality by so much: they are rounded.
 ROUNDED = 0.01
+#: Who means an angle in radians turns something once round at most [rad], with some rounding.
+ONCE_ROUND = math.tau + 0.02
 _XACRO = re.compile(r"</?xacro:\w+|\$\{[^}]*\}|\$\((?:arg|find|env|optenv|eval|dirname)\b[^)]*\)")
 
 
@@ -118,6 +120,8 @@ def faults(model: Model) -> Iterator[str]:
     for joint in model.joints.values():
         yield from _of_joint(joint, model)
     for link in model.links.values():
+        for shape in (*link.visuals, *link.collisions):
+            yield from _turned(f"a shape of the link {shown(link.name)!r}", shape.origin)
         if link.name != link.name.strip() or " " in link.name:
             yield f"the link {shown(link.name)!r} has a blank in its name, which is no frame's."
         if link.inertial is not None:
@@ -126,6 +130,7 @@ def faults(model: Model) -> Iterator[str]:
 
 def _of_joint(joint: Joint, model: Model) -> Iterator[str]:
     named = f"the joint {shown(joint.name)!r}"
+    yield from _turned(named, joint.origin)
     if joint.parent == joint.child:
         yield f"{named} joins {shown(joint.child)!r} to itself."
     if joint.type.is_movable and not any(joint.axis):
@@ -139,6 +144,13 @@ def _of_joint(joint: Joint, model: Model) -> Iterator[str]:
             yield f"{named} cannot move: its <limit> has no lower and no upper, which are then 0."
     if joint.mimic is not None and joint.mimic.joint not in model.joints:
         yield f"{named} mimics {shown(joint.mimic.joint)!r}, and there is no such joint."
+
+
+def _turned(what: str, origin: Pose) -> Iterator[str]:
+    """An angle that nobody means in radians."""
+    most = max(origin.rpy, key=abs)
+    if abs(most) > ONCE_ROUND:
+        yield f"{what} is turned by {most:g} rad, as if in degrees: 90 degrees are 1.5708."
 
 
 def _of_mass(inertial: Inertial) -> Iterator[str]:

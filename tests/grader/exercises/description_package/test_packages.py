@@ -132,6 +132,18 @@ def test_rviz_as_a_plain_program_is_rviz(tmp_path):
         assert lost(graded(written(tmp_path / str(len(words)), {DISPLAY: changed}))) == left
 
 
+def test_an_angle_in_degrees_is_told_as_one(tmp_path):
+    file = "urdf/walker.urdf.xacro"
+    joint = (
+        '<link name="fin"/><joint name="fin_joint" type="fixed"><parent link="base_link"/>'
+        '<child link="fin"/><origin rpy="90 0 0"/></joint></robot>'
+    )
+    text = (REFERENCE / file).read_text().replace("</robot>", joint)
+    result = graded(written(tmp_path, {file: text}))
+    assert lost(result) == {"urdf": 0.5}
+    assert "'fin_joint' is turned by 90 rad, as if in degrees" in result.diagnosis.cause
+
+
 def test_a_byte_order_mark_is_no_fault_of_a_launch_file(tmp_path):
     text = (REFERENCE / DISPLAY).read_text()
     assert lost(graded(written(tmp_path, {DISPLAY: f"\ufeff{text}"}))) == {}
