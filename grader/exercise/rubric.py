@@ -28,6 +28,8 @@ def in_force(text: str, tolerances: Mapping[str, Any]) -> str:
 
     def put_in(found: re.Match[str]) -> str:
         value = tolerances.get(found["name"])
+        if isinstance(value, list):
+            return ", ".join(map(str, value))
         if isinstance(value, bool) or not isinstance(value, int | float):
             return found[0] if value is None else str(value)
         return f"{100 * value:g} %" if found["percent"] else f"{value:g}"

@@ -58,7 +58,9 @@ def _stops(looked: Looked) -> Finding | None:
             return Finding(
                 0,
                 f"The package cannot be built: {problem.text}.",
-                "`ros2 pkg create --build-type ament_python NAME` shows what a package needs.",
+                f"<build_type> in package.xml is {shown(setup.build_type) or 'ament_python'!r}: "
+                "ament_python wants a setup.py, ament_cmake a CMakeLists.txt. Correct the one, or "
+                "add the other.",
             )
         return Finding(
             0,

@@ -120,8 +120,9 @@ def faults(model: Model) -> Iterator[str]:
     for joint in model.joints.values():
         yield from _of_joint(joint, model)
     for link in model.links.values():
-        for shape in (*link.visuals, *link.collisions):
-            yield from _turned(f"a shape of the link {shown(link.name)!r}", shape.origin)
+        origins = [*(v.origin for v in link.visuals), *(c.origin for c in link.collisions)]
+        for origin in origins:
+            yield from _turned(f"a shape of the link {shown(link.name)!r}", origin)
         if link.name != link.name.strip() or " " in link.name:
             yield f"the link {shown(link.name)!r} has a blank in its name, which is no frame's."
         if link.inertial is not None:

@@ -135,8 +135,13 @@ def judged(found: list[Package], asked: str, folder: Path | None = None) -> Pack
 
 
 def _files(folder: Path) -> tuple[str, ...]:
+    """All but those of a package within it, of which colcon builds nothing."""
     found: list[str] = []
+    is_one = (folder / MANIFEST).is_file()
     for at, folders, files in os.walk(folder):
+        if is_one and MANIFEST in files and Path(at) != folder:
+            folders.clear()
+            continue
         folders[:] = sorted(
             each for each in folders if each not in _SKIPPED and not each.startswith(".")
         )

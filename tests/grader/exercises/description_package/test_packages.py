@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -142,6 +143,12 @@ def test_an_angle_in_degrees_is_told_as_one(tmp_path):
     result = graded(written(tmp_path, {file: text}))
     assert lost(result) == {"urdf": 0.5}
     assert "'fin_joint' is turned by 90 rad, as if in degrees" in result.diagnosis.cause
+
+
+def test_a_copy_of_the_package_that_was_left_within_it_costs_nothing(tmp_path):
+    package = written(tmp_path, {})
+    shutil.copytree(REFERENCE, package / "old", ignore=shutil.ignore_patterns("__pycache__"))
+    assert lost(graded(package)) == {}
 
 
 def test_a_byte_order_mark_is_no_fault_of_a_launch_file(tmp_path):
