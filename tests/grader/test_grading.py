@@ -198,3 +198,24 @@ def test_importing_it_costs_nothing_until_something_is_asked_for():
 def test_a_seed_that_is_no_whole_number_is_refused(drives, seed):
     with pytest.raises(UsageError, match="seed: expected a whole number"):
         grader.grade(drives, seed=seed)
+
+
+#: Prints whether a run's thread finds the modules that the look at the package needs as well.
+LOADED = """
+import sys
+from grader import grading
+from grader.run.plan import Plan
+
+def run(submission, plan, progress=None):
+    print("grader.scenes.package.scene" in sys.modules)
+
+with grading.start(None, [Plan(None, scene="robot", looks_at_package=True)], run):
+    pass
+"""
+
+
+def test_what_two_threads_need_is_imported_before_they_begin():
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout == "True\n"
