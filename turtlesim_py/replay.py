@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.canvas import Canvas
@@ -32,7 +33,7 @@ from turtlesim_py.world.floats import float32, json_number
 from turtlesim_py.world.notices import GoalFeedback, GoalResult, LogLine, Notice
 from turtlesim_py.world.parameters import BY_NAME, refusal
 from turtlesim_py.world.trajectory import COLUMNS
-from turtlesim_py.world.turtle import METER_PX, SIZE_M, TICK_S
+from turtlesim_py.world.turtle import METER_PX, SIZE_M, TICK_S, Reading
 
 INTERNAL_COLUMNS = ["tick", "pos_x", "pos_y_down", "orient", "lin_vel_x", "lin_vel_y", "ang_vel"]
 #: Where the things of one tick stand in a recording: a goal's result reaches its client last.
@@ -62,20 +63,31 @@ class Replay:
     snapshots: dict[str, Canvas] = field(default_factory=dict)
 
 
-def replay(scenario: dict[str, Any]) -> Replay:
+class Onlooker(Protocol):
+    """Who wants to see a replay while it runs."""
+
+    def begin(self, arena: Arena) -> None:
+        """The arena, before the first tick; what is changed in it is where the replay begins."""
+
+    def after_tick(self, arena: Arena, readings: Mapping[str, Reading]) -> None:
+        """The arena after a tick, and what every turtle has published in it."""
+
+
+def replay(scenario: dict[str, Any], onlooker: Onlooker | None = None) -> Replay:
     """Run a scenario from its first to its last tick.
 
     Raises:
         ScenarioError: an event is unknown, incomplete or outside the scenario's ticks.
     """
-    return _Player(scenario).play()
+    return _Player(scenario, onlooker).play()
 
 
 class _Player:
     """One replay: the arena, and the notes taken while it runs."""
 
-    def __init__(self, scenario: dict[str, Any]) -> None:
+    def __init__(self, scenario: dict[str, Any], onlooker: Onlooker | None) -> None:
         self.scenario = scenario
+        self.onlooker = onlooker
         self.tick = 0
         self.logs: list[list[Any]] = [
             [0, "INFO", "turtlesim", "Starting turtlesim with node name /turtlesim"]
@@ -90,6 +102,8 @@ class _Player:
 
     def play(self) -> Replay:
         by_tick = self._events_by_tick()
+        if self.onlooker is not None:
+            self.onlooker.begin(self.arena)
         for tick in range(1, self.scenario["ticks"] + 1):
             self.tick = tick
             for index, event in by_tick[tick]:
@@ -190,7 +204,8 @@ class _Player:
         self.snapshots[name] = self.arena.canvas.copy()
 
     def _advance(self) -> None:
-        for name, ((*pose,), color) in self.arena.tick().items():
+        readings = self.arena.tick()
+        for name, ((*pose,), color) in readings.items():
             turtle = self.arena.turtles[name]
             self.published[name].append([self.tick, *map(json_number, pose), *color])
             inside = (turtle.x_m, turtle.y_down_m, turtle.heading_rad)
@@ -199,6 +214,8 @@ class _Player:
         for entry in self.action:
             if entry["type"] == "result":
                 self.known_goals.discard(entry["id"])
+        if self.onlooker is not None:
+            self.onlooker.after_tick(self.arena, readings)
 
     def _listen(self, notice: Notice) -> None:
         match notice:

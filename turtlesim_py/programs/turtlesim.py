@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import socket
 import sys
-import webbrowser
 from collections.abc import Callable
 
+from turtlesim_py import browser
 from turtlesim_py.ros import node, program
 
 #: Where the page is, unless somebody has that port.
@@ -52,16 +51,8 @@ def _show(simulator: node.TurtlesimNode, stopped: Callable[[], bool]) -> None:
             "Ctrl-C ends it.\n",
             flush=True,
         )
-        if _has_browser():
-            webbrowser.open(page.address)
+        browser.show(page.address)
     node.simulate(simulator, stopped)
-
-
-def _has_browser() -> bool:
-    """Whether a browser would show on this machine's screen, and not in this terminal."""
-    if os.name == "nt" or sys.platform == "darwin":
-        return True
-    return any(os.environ.get(name) for name in ("BROWSER", "DISPLAY", "WAYLAND_DISPLAY"))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from grader.scenes.scene import Reason, Start
 from grader.scenes.turtlesim.recorder import Recorder
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import Pose
 
@@ -26,7 +26,7 @@ def drive(
 
     Who has not driven yet may stand for longer, as in a run of a submission.
     """
-    arena = Arena(sprite="rolling")
+    arena = Arena(sprite=SPRITE)
     if start is not None:
         arena.turtles[FIRST_TURTLE].place(start.x, start.y, start.theta)
     recorder = Recorder(arena)

@@ -27,6 +27,7 @@ from grader.scenes.turtlesim.allowance import (
     MOST_PICTURES,
     Allowance,
 )
+from grader.scenes.turtlesim.trace import SPRITE
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.ros.turtle_endpoints import pose_bytes
 from turtlesim_py.world.arena import TICK_NS
@@ -36,8 +37,6 @@ from turtlesim_py.world.turtle import Pose, Reading
 
 #: How often the node is served although nothing has come [ticks]: goals expire.
 SERVE_TICKS = 63
-#: What every turtle looks like; the node would choose one of many.
-SPRITE = "rolling"
 #: Where the entries of a request to a service for parameters are.
 ENTRIES = {
     SetParameters: "parameters",
@@ -59,7 +58,7 @@ class GradedNode(TurtlesimNode):
     def __init__(self, hooks: Hooks, interfaces: str) -> None:
         self._hooks = hooks
         self.allowance = Allowance()
-        parameters = [f"turtle_image:={SPRITE}"]
+        parameters = [f"turtle_image:={SPRITE}"]  # the node would choose one of many
         if interfaces:
             parameters.append(f"interfaces:={interfaces}")
         super().__init__(["--ros-args", *(word for text in parameters for word in ("-p", text))])

@@ -28,7 +28,7 @@ from grader.scenes.turtlesim import (
     trying,
     view,
 )
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace
 from grader.scenes.view import Pictures, View
 from turtlesim_py.world import sprites
 from turtlesim_py.world.arena import TICK_NS
@@ -85,7 +85,7 @@ class Turtlesim:
         """Import the node, decode the picture of the turtle."""
         from grader.scenes.turtlesim import graded_node, simulation  # noqa: F401
 
-        sprites.sprite(graded_node.SPRITE)
+        sprites.sprite(SPRITE)
 
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str

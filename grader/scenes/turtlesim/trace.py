@@ -23,6 +23,8 @@ Pixels = npt.NDArray[np.uint8]
 Value = TypeVar("Value", int, str)
 #: The turtle that exercises are about.
 FIRST_TURTLE = "turtle1"
+#: How every turtle of a graded run looks.
+SPRITE = "rolling"
 
 
 class Log(NamedTuple):

@@ -7,14 +7,15 @@ import re
 import socket
 
 from tests.programs import Program
+from turtlesim_py import browser
 from turtlesim_py.programs import turtlesim
 
 
 def test_it_says_where_the_page_is_and_opens_it(tmp_path, monkeypatch):
-    browser = tmp_path / "browser"
-    browser.write_text(f'#!/bin/sh\necho "$1" >"{tmp_path}/opened"\n')
-    browser.chmod(0o755)
-    monkeypatch.setenv("BROWSER", f"{browser} %s")
+    opener = tmp_path / "browser"
+    opener.write_text(f'#!/bin/sh\necho "$1" >"{tmp_path}/opened"\n')
+    opener.chmod(0o755)
+    monkeypatch.setenv("BROWSER", f"{opener} %s")
     arguments = ("--ros-args", "-p", "view_port:=0", "-r", "__ns:=/desk")
     with Program("turtlesim_py.programs.turtlesim", *arguments, cwd=tmp_path) as program:
         program.wait_for_line("This turtlesim shows no window")
@@ -38,4 +39,4 @@ def test_where_somebody_has_the_usual_port_another_is_taken(monkeypatch):
 def test_on_a_machine_without_a_screen_no_browser_is_started(monkeypatch):
     for name in ("BROWSER", "DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
-    assert not turtlesim._has_browser()
+    assert not browser.has_browser()
