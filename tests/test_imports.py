@@ -72,6 +72,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "turtlesim_py.__init__": set(),
     "turtlesim_py.world": set(),
     "turtlesim_py.png": {"turtlesim_py.world"},
+    "turtlesim_py.browser": set(),
     "turtlesim_py.replay": {"turtlesim_py.world"},
     "turtlesim_py.scenario": below("turtlesim_py", "world", "replay", "png"),
     "turtlesim_py.ros": below("turtlesim_py", "world", "png"),
@@ -79,7 +80,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "turtlesim_py.ros.live": below("turtlesim_py", "world", "ros", "live"),
     "turtlesim_py.ros.node": below("turtlesim_py", "world", "ros", "png", "live"),
     "turtlesim_py.live": below("turtlesim_py", "world"),
-    "turtlesim_py.programs": below("turtlesim_py", "world", "ros"),
+    "turtlesim_py.programs": below("turtlesim_py", "world", "ros", "browser"),
     # ... which are nodes as the simulator is one
     "robot_py.ros": {"robot_py", *below("turtlesim_py.ros", "program", "rclcpp_node")},
     **dict.fromkeys(GROUND, GROUND),
@@ -131,6 +132,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     | STATIONS
     | {"grader.__init__", "grader.grading", "turtlesim_py", "robot_py"},
     "grader.cli": GROUND | STATIONS | below("grader", "__init__", "grading", "testing", "batch"),
+    # a page is shown as the simulator's is
+    "grader.cli.view": GROUND
+    | STATIONS
+    | below("grader.cli", "place", "error_file")
+    | {"turtlesim_py.browser"},
     "grader.__main__": {"grader.cli"},
 }
 

@@ -30,6 +30,7 @@ except KeyboardInterrupt:
 VERBS = {
     "run": "Run a submission and judge it.",
     "check": "Judge a saved recording again.",
+    "view": "Play a graded run: the window at every moment, what came in, what the checks say.",
     "report": "Show a result in another format.",
     "new": "Write the exercise sheet and the starter package of the challenge, or of another "
     "exercise.",

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from grader import files, grading
 from grader.cli import error_file
+from grader.cli.place import Place, find
 from grader.cli.run import points
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
@@ -18,7 +19,7 @@ from grader.recording.folder import WINDOW_PICTURE, load_all
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings
 from grader.reports import Report
-from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
+from grader.result.result import FAMILY, PAGE, RESULT, Result
 from grader.text import for_terminal
 
 
@@ -44,37 +45,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-@dataclass(frozen=True)
-class Place:
-    """Where a recording lies.
-
-    Attributes:
-        recording: its folder.
-        older: the result that it lies beside; None where there is none.
-    """
-
-    recording: Path
-    older: Result | None
-
-    @property
-    def folder(self) -> Path:
-        """That of the older result."""
-        return self.recording.parent
-
-    @property
-    def name(self) -> str:
-        """What the folder is called that somebody would look for it by."""
-        at = Path(os.path.abspath(self.recording))  # noqa: PTH100  a link keeps its own name
-        return at.parent.name if at.name == ARTIFACTS["recording"] else at.name
-
-
 def main(args: argparse.Namespace) -> int:
     """Judge without running anything; see `grader.cli` for the exit codes."""
     asked, args.exercise = args.exercise, args.exercise or DEFAULT
     if args.json:
         files.check_writable(args.json)
         files.check_replaceable(args.json, FAMILY, error_file.inputs(args))
-    place = _place(args.recording)
+    place = find(args.recording)
     recordings = load_all(place.recording)
     exercise = _exercise(asked, place, recordings)
     origin = recordings.nominal.provenance
@@ -123,23 +100,6 @@ def _show(
             "say with --exercise which one you mean"
         )
     showing.show(Report.of(result, folder, recordings), page)
-
-
-def _place(given: Path) -> Place:
-    """What is meant: the folder of a recording, that of its result, or a file in one of them."""
-    folder = given if given.is_dir() else given.parent
-    if (folder / ARTIFACTS["recording"]).is_dir():
-        folder /= ARTIFACTS["recording"]
-    elif not given.exists():
-        return Place(given, None)
-    beside = folder.parent / RESULT
-    try:
-        older = Result.read(beside) if beside.is_file() else None
-    except UsageError:  # somebody else's, or too damaged to be one
-        older = None
-    if older is not None and older.artifacts.get("recording") != folder.name:
-        older = None
-    return Place(folder, older)
 
 
 def _exercise(asked: str | None, place: Place, recordings: Recordings) -> Exercise:

@@ -57,7 +57,7 @@ def look_for(words: Sequence[str]) -> argparse.Namespace:
 
 def inputs(args: argparse.Namespace) -> Iterator[Path]:
     """The files and folders that a call reads."""
-    for name in ("submission", "recording", "result", "exercise", "mutants"):
+    for name in ("submission", "recording", "compare", "result", "exercise", "mutants"):
         given = getattr(args, name, None)
         for one in given if isinstance(given, list) else [given]:
             if one is not None:

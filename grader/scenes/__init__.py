@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from grader.scenes.playback import Playback
     from grader.scenes.scene import Scene
 
 #: The scenes that there are; each is a module of this package with an object `SCENE`.
@@ -27,3 +30,17 @@ def load_scene(name: str) -> Scene:
         raise KeyError(f"there is no scene {name!r}; there are: {', '.join(NAMES)}")
     scene: Scene = importlib.import_module(f"{__name__}.{name}.scene").SCENE
     return scene
+
+
+def load_player(name: str) -> Callable[[Playback], str] | None:
+    """What makes a page that plays runs of a scene; None where it has no such page.
+
+    The page is HTML that needs nothing beside it. What makes it raises RecordingError where a run
+    cannot be played.
+    """
+    if name not in NAMES or importlib.util.find_spec(f"{__name__}.{name}.player") is None:
+        return None
+    render: Callable[[Playback], str] = importlib.import_module(
+        f"{__name__}.{name}.player.page"
+    ).render
+    return render

@@ -12,7 +12,7 @@ const shown = (value) => (typeof value === "number" ? value.toFixed(3) : value);
 
 /** The quadrant of a place [m], as in the course: counted from the top right, against the clock. */
 export function quadrantOf(x, y) {
-  if (typeof x !== "number" || typeof y !== "number") return "none";
+  if (!Number.isFinite(x) || !Number.isFinite(y)) return "none";
   const isRight = x >= SIZE_M / 2;
   if (y >= SIZE_M / 2) return isRight ? "I, top right" : "II, top left";
   return isRight ? "IV, bottom right" : "III, bottom left";
@@ -51,14 +51,19 @@ const WORDS = {
   kill: (c) => `kill: ${c.name}`,
   clear: () => "clear",
   reset: () => "reset",
-  set_parameter: (c) => `parameter ${c.name}: ${c.value}`,
+  param: (c) => `parameter ${c.name}: ${c.value}`,
   log: (c) => `${c.severity}: ${c.text}`,
 };
+
+/** What was called, in words. */
+export function callText(call) {
+  return (WORDS[call.op] || ((c) => c.op))(call);
+}
 
 /** Put the newest on top; a stream of commands of one kind keeps one line. */
 export function tellCalls(list, calls, tick) {
   for (const call of calls) {
-    const text = (WORDS[call.op] || ((c) => c.op))(call);
+    const text = callText(call);
     const kind = JSON.stringify([call.op, call.turtle, call.linear, call.angular]);
     const newest = list.firstElementChild;
     const item = newest && call.op === "cmd_vel" && newest.dataset.kind === kind

@@ -1,0 +1,51 @@
+"""Where a recording lies that somebody has named, and the result beside it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.errors import UsageError
+from grader.result.result import ARTIFACTS, RESULT, Result
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a recording lies.
+
+    Attributes:
+        recording: its folder.
+        older: the result that it lies beside; None where there is none.
+    """
+
+    recording: Path
+    older: Result | None
+
+    @property
+    def folder(self) -> Path:
+        """That of the older result."""
+        return self.recording.parent
+
+    @property
+    def name(self) -> str:
+        """What the folder is called that somebody would look for it by."""
+        at = Path(os.path.abspath(self.recording))  # noqa: PTH100  a link keeps its own name
+        return at.parent.name if at.name == ARTIFACTS["recording"] else at.name
+
+
+def find(given: Path) -> Place:
+    """What is meant: the folder of a recording, that of its result, or a file in one of them."""
+    folder = given if given.is_dir() else given.parent
+    if (folder / ARTIFACTS["recording"]).is_dir():
+        folder /= ARTIFACTS["recording"]
+    elif not given.exists():
+        return Place(given, None)
+    beside = folder.parent / RESULT
+    try:
+        older = Result.read(beside) if beside.is_file() else None
+    except UsageError:  # somebody else's, or too damaged to be one
+        older = None
+    if older is not None and older.artifacts.get("recording") != folder.name:
+        older = None
+    return Place(folder, older)

@@ -1,0 +1,112 @@
+"""Play a graded run: the window at every moment, what came in, what the checks say."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from grader import files
+from grader.cli import error_file
+from grader.cli.place import Place, find
+from grader.errors import UsageError
+from grader.recording.folder import load_all
+from grader.recording.recording import Recordings
+from grader.reports import Report, playback
+from grader.result.result import ARTIFACTS, PAGE, RESULT
+from grader.result.visible import View
+from grader.scenes import load_player
+from grader.scenes.playback import Playback
+from grader.text import for_terminal
+from turtlesim_py import browser
+
+#: What the page is called that lies beside a result.
+NAME = "view.html"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the verb's arguments."""
+    parser.add_argument(
+        "recording",
+        type=Path,
+        help="the folder of a result, the result in it, or a recording anywhere else",
+    )
+    parser.add_argument(
+        "--compare",
+        type=Path,
+        metavar="OTHER",
+        help="another one, as a last attempt: both ways in one window, how far apart, and the "
+        "first input that differs",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help=f"default: {NAME} beside the result"
+    )
+    parser.add_argument(
+        "--no-open", action="store_true", help="do not show the page in a browser, only write it"
+    )
+    who = parser.add_mutually_exclusive_group()
+    who.add_argument(
+        "--after-due",
+        action="store_true",
+        help="what students see when the exercise is over; default: what they see before",
+    )
+    who.add_argument(
+        "--whole", action="store_true", help="for teachers: also what the exercise hides"
+    )
+
+
+def main(args: argparse.Namespace) -> int:
+    """Write the page, and show it; see `grader.cli` for the exit codes."""
+    seen: View = "whole" if args.whole else "after_due" if args.after_due else "student"
+    place = find(args.recording)
+    if args.out is not None:
+        files.check_writable(args.out)
+        _check_is_no_part(args.out, args)
+    recordings = load_all(place.recording)
+    render = load_player(recordings.nominal.scene)
+    if render is None:
+        raise UsageError(_not_played(place, recordings))
+    other = None if args.compare is None else _other(args.compare, recordings, seen)
+    content = render(_playback(place, recordings, seen, other))
+    page = place.folder / NAME if args.out is None else args.out
+    if args.out is None:
+        files.put(page, content.encode("utf-8"))
+    else:
+        files.write(page, content)
+    print(for_terminal(f"The page that plays it: {page}"))
+    if not args.no_open and page.is_file():
+        browser.show(page.resolve().as_uri())
+    return 0
+
+
+def _check_is_no_part(out: Path, args: argparse.Namespace) -> None:
+    """Refuse to write over what the page is made from."""
+    for given in error_file.inputs(args):
+        place = find(given)
+        beside = (place.folder / name for name in (RESULT, PAGE, *ARTIFACTS.values()))
+        files.check_is_no_input(out, [given, *beside, *place.recording.rglob("*")])
+
+
+def _not_played(place: Place, recordings: Recordings) -> str:
+    scene = recordings.nominal.scene
+    page = place.folder / PAGE
+    instead = f"look at {page}" if page.is_file() else f"{PAGE} beside its result shows it"
+    return f"a recording of the scene {scene!r} cannot be played; {instead}"
+
+
+def _other(given: Path, recordings: Recordings, seen: View) -> Playback:
+    place = find(given)
+    other = load_all(place.recording)
+    if other.nominal.scene != recordings.nominal.scene:
+        raise UsageError(
+            f"cannot compare recordings of the scenes {recordings.nominal.scene!r} and "
+            f"{other.nominal.scene!r}; give two of one scene"
+        )
+    return _playback(place, other, seen, None)
+
+
+def _playback(place: Place, recordings: Recordings, seen: View, other: Playback | None) -> Playback:
+    older = place.older
+    report = None if older is None else Report.of(older, place.folder, recordings, seen)
+    origin = recordings.nominal.provenance
+    name = (origin and origin.submission) or place.name
+    return playback.of(name, recordings, report, other)

@@ -1,0 +1,101 @@
+"""What a page that plays runs is made from: the runs, and what was found in them, as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grader.scenes.scene import Start, Trace
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A piece of evidence.
+
+    Attributes:
+        number: 1, 2, ... over all checks.
+        run: 0 for the nominal run, 1, 2, ... for the varied ones.
+        tick: when.
+        x, y: where [m]; None for nowhere.
+        text: when, where and what, in words.
+    """
+
+    number: int
+    run: int
+    tick: int
+    x: float | None
+    y: float | None
+    text: str
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What a check says.
+
+    Attributes:
+        title: what it asks for.
+        status: `passed`, `failed` or `not_judged`.
+        word: the same for people, with its points.
+        rationale, help: what was seen, what to look at.
+        moments: where to see it.
+    """
+
+    title: str
+    status: str
+    word: str
+    rationale: str
+    help: str
+    moments: tuple[Moment, ...]
+
+
+@dataclass(frozen=True)
+class Line:
+    """The line of a submission that something was sent from.
+
+    Attributes:
+        name: of the topic, service or action, with its namespace.
+        file, line, text: where it stands, and what.
+    """
+
+    name: str
+    file: str
+    line: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Take:
+    """A run.
+
+    Attributes:
+        number: 0 for the nominal one.
+        title: 'Nominal run', 'Varied run 1'.
+        outcome: how it ended, in a word or two.
+        lines: from where things were sent first, as the submission's process has told.
+        start: where it began; None for the usual place.
+    """
+
+    number: int
+    title: str
+    outcome: str
+    trace: Trace
+    start: Start | None = None
+    lines: tuple[Line, ...] = ()
+
+
+@dataclass(frozen=True)
+class Playback:
+    """All that is played.
+
+    Attributes:
+        title: whose it is, in a line.
+        summary: what came of it, in a line; '' where nobody has judged it.
+        takes: the nominal run, and the varied ones.
+        judged: what the checks say, in their order.
+        other: what it is to be compared with.
+    """
+
+    title: str
+    summary: str
+    takes: tuple[Take, ...]
+    judged: tuple[Judged, ...] = ()
+    other: Playback | None = None

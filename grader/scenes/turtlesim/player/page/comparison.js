@@ -1,0 +1,87 @@
+// Another recording over ours: both ways, both turtles, how far apart, where the inputs part.
+
+import { Film } from "./film.js";
+import { svg } from "./plots.js";
+import { callText } from "./words.js";
+
+export class Comparison {
+  constructor(data, films, element) {
+    this.films = films;
+    this.others = data.other.runs.map((run) => new Film(run, data.sprite));
+    this.title = data.other.title;
+    this.differences = data.other.differences;
+    this.tickS = data.tick_s;
+    this.element = element;
+    element("compared").hidden = false;
+    element("show-ways").addEventListener("change", (event) => {
+      element("ways").style.display = event.target.checked ? "" : "none";
+    });
+    element("compared-with").textContent = `${data.title} — with — ${this.title}`;
+  }
+
+  /** The first turtle of the other run; nothing where there is no such run. */
+  curves(run) {
+    const film = this.others[run];
+    return film && film.turtles[0] ? [[film, film.turtles[0]]] : [];
+  }
+
+  last(run) { return this.others[run] ? this.others[run].last : 0; }
+
+  turtles(run, frame) {
+    const film = this.others[run];
+    if (!film) return [];
+    const there = film.turtlesAt(Math.min(frame, film.last));
+    return there.map((turtle) => ({ ...turtle, name: `${turtle.name} (other)` }));
+  }
+
+  /** How far apart the two are over time, as a curve. */
+  difference(run, turtle) {
+    const [other] = this.curves(run);
+    if (!other || !turtle) return [];
+    const [film, mine] = [this.films[run], turtle];
+    const line = [];
+    for (let frame = 0; frame <= Math.min(film.last, other[0].last); frame += 1) {
+      const [a, b] = [film.pose(mine, frame), other[0].pose(other[1], frame)];
+      const apart = a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : NaN;
+      line.push(Number.isFinite(apart) ? [frame, apart] : null);
+    }
+    return [{ words: "apart", unit: "m", lines: [line] }];
+  }
+
+  show(run) {
+    const other = this.others[run];
+    const ways = this.element("ways");
+    ways.replaceChildren();
+    this.element("parts").textContent = this.told(run);
+    if (!other) return;
+    for (const [film, kind] of [[this.films[run], "mine"], [other, "other"]]) {
+      const turtle = film.turtles[0];
+      if (!turtle) continue;
+      const d = wayOf(turtle);
+      ways.prepend(svg("path", { d, class: "casing" }));  // below both lines
+      ways.append(svg("path", { d, class: kind }));
+    }
+  }
+
+  told(run) {
+    if (!this.others[run]) return "The other recording has no such run.";
+    const found = this.differences[run];
+    if (!found) return "The same came in at every tick.";
+    const words = (calls) => (calls.length ? calls.map(callText).join("; ") : "nothing");
+    return `The inputs differ first at ${(found.tick * this.tickS).toFixed(3)} s, tick ${found.tick}: `
+      + `here ${words(found.mine)}; in the other ${words(found.other)}.`;
+  }
+}
+
+function wayOf(turtle) {
+  let d = "";
+  for (const [first, last, row] of turtle.stretches) {
+    let isOn = false;
+    for (let i = row; i <= row + last - first; i += 1) {
+      const [x, y] = turtle.places.subarray(3 * i, 3 * i + 2);
+      if (Number.isFinite(x) && Number.isFinite(y)) d += `${isOn ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`;
+      isOn = Number.isFinite(x) && Number.isFinite(y);
+    }
+  }
+  return d;
+}

@@ -1,0 +1,210 @@
+"""The films of runs that a page plays: every stroke, every place, and where two runs part."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from grader.errors import RecordingError
+from grader.scenes.playback import Judged, Playback, Take
+from grader.scenes.scene import Start
+from grader.scenes.turtlesim.driving import drive
+from grader.scenes.turtlesim.player import modules, page
+from grader.scenes.turtlesim.player.differences import first_difference
+from grader.scenes.turtlesim.player.film import MOST_TICKS, film
+from grader.scenes.turtlesim.player.reel import WIPED
+from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.testing import pen, twist
+from tests.grader.driving import Spiral
+from tests.grader.scenes.turtlesim.traces import odd_traces
+from turtlesim_py.world.arena import TICK_NS
+
+
+def numbers(text: str, kind: str) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(text), kind)
+
+
+def painted(made: dict[str, Any], frame: int) -> np.ndarray:
+    """The canvas of a frame, as the page paints it."""
+    canvas = np.zeros((500, 500, 4), np.uint8)
+    canvas[..., :3] = 255
+    runs = numbers(made["runs"], "<u2").reshape(-1, 3).tolist()
+    ops = np.array(made["ops"]).reshape(-1, 3).tolist()
+    for at, color, count in ops:
+        stroke, runs = runs[:count], runs[count:]
+        if at > frame:
+            break
+        if color == WIPED:
+            canvas[...] = (255, 255, 255, 0)
+        for row, first, last in stroke:
+            canvas[row, first : last + 1] = (*made["colors"][color], 255)
+    return canvas
+
+
+def poses(made: dict[str, Any], name: str) -> np.ndarray:
+    """What a turtle published, (n, 6): tick, and the columns of the pose."""
+    turtle = next(each for each in made["turtles"] if each["name"] == name)
+    columns = numbers(turtle["poses"], "<f4").reshape(-1, 5)
+    frames = [f for first, last in turtle["stretches"] for f in range(first, last + 1)]
+    assert len(frames) == len(columns) == len(numbers(turtle["places"], "<f8")) / 3
+    return np.column_stack((frames, columns))
+
+
+def eventful(tick, pose, arena):
+    """Something of everything that leaves or removes paint."""
+    twist(arena, 2.0, 0.7)
+    match tick:
+        case 20:
+            pen(arena, (255, 0, 0), 9)
+        case 40:
+            arena.spawn(2.0, 3.0, 1.0, "other")
+        case 60:
+            arena.teleport_absolute("turtle1", 1.0, 9.0, 0.25)  # singles, as ROS has them
+        case 80:
+            arena.clear()
+        case 90:
+            arena.set_parameter("background_r", 200)
+            arena.teleport_relative("other", 3.0, 0.5)
+        case 120:
+            arena.kill("other")
+        case 130:
+            arena.reset()
+        case 150:
+            arena.set_pen("turtle1", 0, 0, 0, 1, 1)
+            arena.spawn(9.0, 9.0, 0.0, "other")
+
+
+RUNS = {
+    "spiral": (Spiral(), 2500, None),
+    "eventful": (eventful, 200, None),
+    "elsewhere": (eventful, 200, Start(3.3, 7.1, 1.1)),
+    "nothing": (lambda *_: None, 0, None),
+}
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_the_inputs_played_again_paint_the_recorded_picture_byte_for_byte(name):
+    controller, ticks, start = RUNS[name]
+    trace, _ = drive(controller, ticks, start)
+    made = film(trace, start)
+    assert made["exact"]
+    assert made["last"] == trace.ticks
+    assert (painted(made, trace.ticks) == trace.canvas).all()
+
+
+def test_each_frame_is_the_picture_after_its_tick():
+    made = film(drive(eventful, 200)[0], None)
+    for ticks in (0, 1, 59, 60, 79, 80, 131, 199):
+        assert (painted(made, ticks) == drive(eventful, ticks)[0].canvas).all()
+
+
+def test_every_pose_that_was_published_is_in_it():
+    trace, _ = drive(eventful, 200)
+    made = film(trace, None)
+    for name, way in trace.trajectories.items():
+        shown = poses(made, name)
+        assert (shown[shown[:, 0] > 0] == way.rows()[:, :6]).all()
+    other = next(each for each in made["turtles"] if each["name"] == "other")
+    assert other["stretches"] == [[40, 119], [150, 200]]
+    assert made["backgrounds"] == [[0, [69, 86, 255]], [90, [200, 86, 255]]]
+
+
+def test_before_the_first_tick_the_turtle_is_where_it_began():
+    start = Start(3.0, 7.0, 1.0)
+    made = film(drive(eventful, 5, start)[0], start)
+    assert poses(made, "turtle1")[0] == pytest.approx([0, 3.0, 7.0, 1.0, 0, 0], abs=1e-6)
+
+
+def test_where_a_clock_of_its_own_ended_commands_the_film_follows_the_poses():
+    def late(tick, pose, arena):
+        if tick == 1:
+            twist(arena, 2.0, 0.5)
+        if tick == 20:
+            arena.now_ns += 60 * TICK_NS  # the watchdog strikes earlier than ticks tell
+
+    trace, _ = drive(late, 100)
+    made = film(trace, None)
+    assert not made["exact"]
+    assert (painted(made, 100) == trace.canvas).all()
+    shown = poses(made, "turtle1")
+    assert (shown[1:] == trace.trajectory().rows()[:, :6]).all()
+    assert painted(made, 15)[..., 3].any()
+
+
+@given(odd_traces())
+@settings(max_examples=30, deadline=None)
+def test_whatever_a_recording_holds_becomes_a_film_that_is_json(trace):
+    made = film(trace, None)
+    json.dumps(made, allow_nan=False)
+    assert len(numbers(made["runs"], "<u2")) == 3 * sum(made["ops"][2::3])
+
+
+def test_a_command_that_is_no_number_is_played_too():
+    def lost(tick, pose, arena):
+        twist(arena, math.nan if tick == 30 else 1.0)
+
+    trace, _ = drive(lost, 60)
+    made = film(trace, None)
+    assert made["exact"]
+    assert (painted(made, 60) == trace.canvas).all()
+    assert np.isnan(poses(made, "turtle1")[-1, 1])
+
+
+def test_what_takes_hours_is_refused():
+    trace, _ = drive(eventful, 3)
+    with pytest.raises(RecordingError, match=r"225001 ticks; expected 225000 at most"):
+        film(replace(trace, ticks=MOST_TICKS + 1), None)
+
+
+def test_calls_and_log_stand_by_tick():
+    calls = film(drive(eventful, 200)[0], None)["calls"]
+    assert [call["op"] for call in calls if call["tick"] == 80] == ["cmd_vel", "clear", "log"]
+    assert [call["tick"] for call in calls] == sorted(call["tick"] for call in calls)
+
+
+def test_the_first_input_that_differs_is_named():
+    def later(tick, pose, arena):
+        eventful(tick, pose, arena)
+        if tick == 50:
+            arena.clear()
+
+    one, two = (drive(each, 100)[0] for each in (eventful, later))
+    found = first_difference(one, two)
+    assert found is not None
+    assert found["tick"] == 50
+    assert [call["op"] for call in found["mine"]] == ["cmd_vel"]
+    assert [call["op"] for call in found["other"]] == ["cmd_vel", "clear"]
+    assert first_difference(one, one) is None
+
+
+def test_one_that_ended_earlier_differs_where_the_other_goes_on():
+    one, two = (drive(eventful, ticks)[0] for ticks in (100, 90))
+    found = first_difference(one, two)
+    assert found is not None
+    assert (found["tick"], found["other"]) == (91, [])
+
+
+def test_what_stands_in_a_result_ends_no_element_of_the_page():
+    evil = "</script><script>alert(1)</script><!-- $data & co"
+    trace: TurtleTrace = drive(eventful, 3)[0]
+    judged = Judged(evil, "failed", evil, evil, evil, ())
+    made = page.render(Playback(evil, evil, (Take(0, evil, evil, trace),), (judged,)))
+    assert made.count("<script") == 2
+    assert made.count("</script>") == 2
+    assert "alert(1)</" not in made
+
+
+def test_a_module_that_cannot_be_joined_is_named(tmp_path):
+    (tmp_path / "a.js").write_text('import { b } from "./b.js";\nb();\n')
+    with pytest.raises(ValueError, match=r"no module b\.js"):
+        modules.joined("a", [tmp_path])
+    (tmp_path / "b.js").write_text("export default 3;\n")
+    with pytest.raises(ValueError, match=r"b\.js: cannot be joined: export default"):
+        modules.joined("a", [tmp_path])
