@@ -17,6 +17,8 @@ from grader.text import one_line, without_controls
 
 #: So many of a kind are kept; what comes later is not.
 MOST = 100
+#: So many times of one end the line changes that it is used at.
+MOST_SENT = 200
 #: So many characters of a text.
 LONGEST = 300
 
@@ -53,6 +55,19 @@ class Place:
 
 
 @dataclass(frozen=True)
+class Sent:
+    """Messages or requests that were sent one after another from one line.
+
+    Attributes:
+        line: which of the end's lines, from 0.
+        times: how many.
+    """
+
+    line: int
+    times: int
+
+
+@dataclass(frozen=True)
 class End:
     """One end of a topic, service or action that the submission has made.
 
@@ -64,6 +79,9 @@ class End:
             by force, so many at least.
         place: where it was made.
         used_at: where it was used first, to send something.
+        lines: from where it was used to send something.
+        sent: from which of them what was sent, in order, from the first on; all of it is there only
+            if these are as many as were `used`.
     """
 
     kind: EndKind
@@ -73,6 +91,8 @@ class End:
     used: int
     place: Place | None = None
     used_at: Place | None = None
+    lines: tuple[Place, ...] = ()
+    sent: tuple[Sent, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -254,12 +274,13 @@ class Conduct:
 #: What older recordings do not have.
 _LATER: Mapping[type[Any], Mapping[str, Any]] = {
     Conduct: {"timers": [], "caught": [], "slips": []},
-    End: {"used_at": None},
+    End: {"used_at": None, "lines": [], "sent": []},
 }
 
 
 def _end(data: Any) -> End:
     data = _object(data, End)
+    lines = tuple(map(_place, _list(data["lines"])))
     return End(
         _one_of(data["kind"], EndKind),
         _text(data["name"]),
@@ -268,7 +289,17 @@ def _end(data: Any) -> End:
         _count(data["used"]),
         _perhaps_place(data["place"]),
         _perhaps_place(data["used_at"]),
+        lines,
+        tuple(_sent(each, len(lines)) for each in _list(data["sent"], MOST_SENT)),
     )
+
+
+def _sent(data: Any, lines: int) -> Sent:
+    data = _object(data, Sent)
+    line = _count(data["line"])
+    if line >= lines:
+        raise ValueError(f"expected one of {lines} lines, found {line!r:.80}")
+    return Sent(line, _count(data["times"]))
 
 
 def _wait(data: Any) -> Wait:
@@ -333,9 +364,9 @@ def _object(data: Any, kind: type[Any]) -> Mapping[str, Any]:
     return {**later, **data}
 
 
-def _list(data: Any) -> list[Any]:
-    if not isinstance(data, list) or len(data) > MOST:
-        raise ValueError(f"expected a list of {MOST} at most, found {data!r:.80}")
+def _list(data: Any, most: int = MOST) -> list[Any]:
+    if not isinstance(data, list) or len(data) > most:
+        raise ValueError(f"expected a list of {most} at most, found {data!r:.80}")
     return data
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from grader import text
+from grader.recording.conduct import Place
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
 from grader.reports.report import Report
-from grader.scenes.playback import Judged, Line, Moment, Playback, Take
+from grader.scenes.playback import Judged, Line, Moment, Playback, Sent, Take
 
 
 def of(
@@ -43,18 +44,30 @@ def _take(number: int, recording: Recording) -> Take:
         f"{outcome}, after {recording.run.simulated_s:.1f} s",
         recording.trace,
         start,
-        _lines(recording),
+        _sent(recording),
     )
 
 
-def _lines(recording: Recording) -> tuple[Line, ...]:
-    """Of each name the line that it was first sent from, as the submission's process has told."""
-    found: dict[str, Line] = {}
+def _sent(recording: Recording) -> tuple[Sent, ...]:
+    """From where things were sent, as the submission's process has told.
+
+    Nothing of a name that it has several ends of: nobody knows in which order these sent.
+    """
+    found: dict[str, list[Sent]] = {}
     for end in recording.conduct.ends:
-        place = end.used_at
-        if place is not None and end.kind != "subscription":
-            found.setdefault(end.name, Line(end.name, place.file, place.line, place.text))
-    return tuple(found.values())
+        if end.lines:
+            order = tuple((burst.line, burst.times) for burst in end.sent)
+            sent = Sent(end.name, end.used, tuple(map(_line, end.lines)), order)
+        elif end.used_at is not None:
+            sent = Sent(end.name, end.used, (_line(end.used_at),), ((0, 1),))
+        else:
+            continue
+        found.setdefault(end.name, []).append(sent)
+    return tuple(several[0] for several in found.values() if len(several) == 1)
+
+
+def _line(place: Place) -> Line:
+    return Line(place.file, place.line, place.text)
 
 
 def _judged(report: Report, index: int, runs: int) -> Judged:

@@ -136,13 +136,18 @@ def _add(told: dict[str, Any], line: Any) -> None:
     ((what, value),) = line.items()
     match what:
         case "end":
-            told["ends"].append({**value, "is_met": False, "used": 0, "used_at": None})
+            unsent: dict[str, Any] = {"used_at": None, "lines": [], "sent": []}
+            told["ends"].append({**value, "is_met": False, "used": 0, **unsent})
         case "used":
             number, used, is_met = value
             told["ends"][number].update(used=used, is_met=is_met)
         case "used_at":
             number, place = value
             told["ends"][number].update(used_at=place)
+        case "sent":
+            number, lines, sent = value
+            bursts = [{"line": line, "times": times} for line, times in sent]
+            told["ends"][number].update(lines=lines, sent=bursts)
         case "slip":
             told["slips"].append(value)
         case "wait" | "slow" | "timer" | "caught":
@@ -168,6 +173,8 @@ def _places(told: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """Every place in it that there is."""
     lists = (told[name] for name in ("ends", "slips", *_LISTS.values()))
     ends = [end for end in (told["stop"], told["raised"]) if end is not None]
+    for end in told["ends"]:
+        yield from end["lines"]
     for entry in (*chain.from_iterable(lists), *ends):
         for name in ("place", "used_at", "by"):
             if entry.get(name) is not None:

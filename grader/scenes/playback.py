@@ -49,17 +49,33 @@ class Judged:
 
 @dataclass(frozen=True)
 class Line:
-    """The line of a submission that something was sent from.
+    """A line of a submission.
 
     Attributes:
-        name: of the topic, service or action, with its namespace.
         file, line, text: where it stands, and what.
     """
 
-    name: str
     file: str
     line: int
     text: str
+
+
+@dataclass(frozen=True)
+class Sent:
+    """From where what was sent by one name, as the submission's process has told.
+
+    Attributes:
+        name: of a topic or service, with its namespace.
+        times: how often it was sent.
+        lines: from where it was sent.
+        order: (which of the lines, how often in a row), from the first that was sent on; not
+            always to the last.
+    """
+
+    name: str
+    times: int
+    lines: tuple[Line, ...]
+    order: tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True)
@@ -70,7 +86,7 @@ class Take:
         number: 0 for the nominal one.
         title: 'Nominal run', 'Varied run 1'.
         outcome: how it ended, in a word or two.
-        lines: from where things were sent first, as the submission's process has told.
+        sent: from where things were sent, one for a name at most.
         start: where it began; None for the usual place.
     """
 
@@ -79,7 +95,7 @@ class Take:
     outcome: str
     trace: Trace
     start: Start | None = None
-    lines: tuple[Line, ...] = ()
+    sent: tuple[Sent, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -85,10 +85,15 @@ class Teller:
                 return at
         return -1
 
-    def place(self, frame: FrameType | None) -> dict[str, Any] | None:
-        """The line of the submission's own that has led to this frame."""
+    def own_frame(self, frame: FrameType | None) -> FrameType | None:
+        """The innermost frame of the submission's own that has led to this one."""
         while frame is not None and not self.is_own(frame.f_code.co_filename):
             frame = frame.f_back
+        return frame
+
+    def place(self, frame: FrameType | None) -> dict[str, Any] | None:
+        """The line of the submission's own that has led to this frame."""
+        frame = self.own_frame(frame)
         return None if frame is None else self.line(frame.f_code, frame.f_lineno)
 
     def line(self, code: CodeType, number: int) -> dict[str, Any]:

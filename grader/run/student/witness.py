@@ -16,6 +16,7 @@ from grader.run.lockstep import faults
 from grader.run.student import loops, telling
 from grader.run.student.catching import Catching
 from grader.run.student.delays import Callbacks, Timers, Waits
+from grader.run.student.sending import Sending
 from grader.run.student.sources import Sources
 from grader.run.student.telling import Line, Teller
 
@@ -58,6 +59,7 @@ class End:
     ask: Callable[[], bool]
     used: int = 0
     is_met: bool = False
+    sending: Sending = field(default_factory=Sending)
     told: tuple[int, bool] = field(default=(0, False))
 
 
@@ -110,9 +112,12 @@ class Witness:
         end: End | None = getattr(entity, "_witnessed", None)
         if end is None:
             return
-        if is_sent and end.used == 0:
-            place = self._teller.place(sys._getframe())
-            self._teller.tell("used_at", [end.number, place])
+        if is_sent:
+            frame = self._teller.own_frame(sys._getframe())
+            if end.used == 0:
+                place = None if frame is None else self._teller.line(frame.f_code, frame.f_lineno)
+                self._teller.tell("used_at", [end.number, place])
+            end.sending.count(frame)
         self._count(end)
 
     def heard(self, topic: str) -> None:
@@ -256,6 +261,9 @@ class Witness:
         quietly(self.sources.look)
         for end in self._ends:
             self._tell_of(end, is_last=True)
+            if end.sending.sent:
+                lines = [self._teller.line(*line) for line in end.sending.lines]
+                self._teller.tell("sent", [end.number, lines, end.sending.sent])
         self.waits.look(is_last=True)
         self.callbacks.sum_up()
         self.timers.sum_up()

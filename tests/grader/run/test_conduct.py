@@ -8,7 +8,7 @@ import pytest
 
 from grader.diagnosis import standstill
 from grader.diagnosis.case import Case
-from grader.recording.conduct import Conduct, End, Place, Slow, Stop, Wait
+from grader.recording.conduct import Conduct, End, Place, Sent, Slow, Stop, Wait
 from grader.recording.recording import Recording
 from grader.run import real_time
 from grader.run.plan import Plan
@@ -30,12 +30,13 @@ def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
     def place(line: int, text: str) -> Place:
         return Place("wrong_ends.py", line, "Controller.__init__", text)
 
+    published = Place("wrong_ends.py", 28, "main", "node.velocity.publish(TwistStamped())")
     cmd_vel = 'self.velocity = self.create_publisher(TwistStamped, "/turtle1/cmd_vel", 10)'
     rotation = 'self.rotation = ActionClient(self, RotateAbsolute, "/turtle1/rotate_absolute")'
     assert conduct.ends == (
         End("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped", False, 6,
             place(17, cmd_vel),
-            Place("wrong_ends.py", 28, "main", "node.velocity.publish(TwistStamped())")),
+            published, (published,), (Sent(0, 6),)),
         End("subscription", "/pose", "turtlesim/msg/Pose", False, 0,
             place(18, 'self.create_subscription(Pose, "/pose", print, 10)')),
         End("subscription", "/turtle1/pose", "turtlesim/msg/Pose", True, 0,

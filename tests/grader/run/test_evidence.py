@@ -44,6 +44,35 @@ def test_what_was_told_line_by_line_is_put_together(submission: Submission) -> N
     assert (conduct.spun_s, conduct.returned_s) == (0.5, 1.0)
 
 
+def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission) -> None:
+    other = {**PLACE, "line": 1}
+    sent = [0, [PLACE, other], [[0, 104], [1, 1]]]
+    conduct = told(submission, say(end=END), say(used=[0, 105, True]), say(sent=sent))
+    (end,) = conduct.ends
+    assert [place.line for place in end.lines] == [2, 1]
+    assert [(burst.line, burst.times) for burst in end.sent] == [(0, 104), (1, 1)]
+
+
+@pytest.mark.parametrize(
+    "sent",
+    [
+        [0, [PLACE], [[1, 1]]],
+        [0, [PLACE], [[0, -1]]],
+        [0, [PLACE], [[0, 1.5]]],
+        [0, [PLACE], [[True, 1]]],
+        [0, [PLACE], [[0, 1]] * 201],
+        [0, [{**PLACE, "file": "../b.py"}], [[0, 1]]],
+        [1, [PLACE], [[0, 1]]],
+        [0, PLACE, [[0, 1]]],
+        [0, [PLACE], 7],
+    ],
+)
+def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
+    submission: Submission, sent: object
+) -> None:
+    assert told(submission, say(end=END), say(sent=sent)) == Conduct()
+
+
 def test_what_was_seen_of_sources_timers_and_exceptions_is_believed_by_its_form(
     submission: Submission,
 ) -> None:

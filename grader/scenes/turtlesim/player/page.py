@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Mapping
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -13,8 +12,8 @@ from string import Template
 from typing import Any
 
 import turtlesim_py
-from grader.scenes.playback import Judged, Line, Playback, Take
-from grader.scenes.turtlesim.player import modules
+from grader.scenes.playback import Judged, Playback, Take
+from grader.scenes.turtlesim.player import modules, sources
 from grader.scenes.turtlesim.player.differences import first_difference
 from grader.scenes.turtlesim.player.film import film
 from grader.scenes.turtlesim.trace import SPRITE, TurtleTrace
@@ -54,16 +53,13 @@ def render(playback: Playback) -> str:
 
 
 def _run(take: Take) -> dict[str, Any]:
+    made = film(TurtleTrace.of(take.trace), take.start)
     return {
         "title": take.title,
         "outcome": take.outcome,
-        "lines": {line.name: _line(line) for line in take.lines},
-        **film(TurtleTrace.of(take.trace), take.start),
+        **made,
+        **sources.of(made["calls"], take.sent),
     }
-
-
-def _line(line: Line) -> Mapping[str, Any]:
-    return {"file": line.file, "line": line.line, "text": line.text}
 
 
 def _judged(item: Judged) -> dict[str, Any]:

@@ -13,10 +13,10 @@ import pytest
 from hypothesis import given, settings
 
 from grader.errors import RecordingError
-from grader.scenes.playback import Judged, Playback, Take
+from grader.scenes.playback import Judged, Line, Playback, Sent, Take
 from grader.scenes.scene import Start
 from grader.scenes.turtlesim.driving import drive
-from grader.scenes.turtlesim.player import modules, page
+from grader.scenes.turtlesim.player import modules, page, sources
 from grader.scenes.turtlesim.player.differences import first_difference
 from grader.scenes.turtlesim.player.film import MOST_TICKS, film
 from grader.scenes.turtlesim.player.reel import WIPED
@@ -189,6 +189,37 @@ def test_one_that_ended_earlier_differs_where_the_other_goes_on():
     found = first_difference(one, two)
     assert found is not None
     assert (found["tick"], found["other"]) == (91, [])
+
+
+COMMANDS = [{"op": "cmd_vel", "turtle": "turtle1", "tick": tick} for tick in (1, 2, 3)]
+LINES = (Line("a.py", 5, "go"), Line("a.py", 9, "stop"))
+
+
+def lines_of(sent: Sent) -> list[int | None]:
+    made = sources.of([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
+    lines = [line["line"] for line in made["lines"]]
+    found = [call.get("line") for call in made["calls"]]
+    return [None if each is None else lines[each] for each in found]
+
+
+def test_as_many_as_were_sent_have_come_and_each_has_its_line():
+    sent = Sent("/turtle1/cmd_vel", 3, LINES, ((0, 2), (1, 1)))
+    assert lines_of(sent) == [None, 5, 5, 9]
+
+
+def test_what_was_not_told_to_the_end_is_known_as_far_as_it_was_told():
+    assert lines_of(Sent("/turtle1/cmd_vel", 3, LINES, ((0, 2),))) == [None, 5, 5, None]
+
+
+@pytest.mark.parametrize("times", [2, 4])
+def test_where_not_as_many_came_only_the_first_is_known(times):
+    sent = Sent("/turtle1/cmd_vel", times, LINES, ((0, 2), (1, 10**15)))
+    assert lines_of(sent) == [None, 5, None, None]
+
+
+def test_nothing_is_known_of_what_was_sent_by_another_name():
+    assert lines_of(Sent("/turtle2/cmd_vel", 3, LINES, ((0, 3),))) == [None] * 4
+    assert lines_of(Sent("/clear", 1, LINES, ((1, 1),))) == [9, None, None, None]
 
 
 def test_what_stands_in_a_result_ends_no_element_of_the_page():

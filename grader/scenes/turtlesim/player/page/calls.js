@@ -5,12 +5,10 @@ import { lastUpTo } from "./film.js";
 
 /** So many are shown before the cursor, and as many after it. */
 const AROUND = 40;
-const SERVICES = new Set(["clear", "reset", "spawn", "kill"]);
 
 /** Equal commands that follow each other are one entry. */
 export function folded(calls) {
   const entries = [];
-  const known = new Set();
   let kind = "";
   for (const call of calls) {
     const { tick, ...rest } = call;
@@ -20,18 +18,11 @@ export function folded(calls) {
       entry.times += 1;
       entry.until = tick;
     } else {
-      entries.push({ tick, until: tick, call, times: 1, isFirst: !known.has(nameOf(call)) });
-      known.add(nameOf(call));
+      entries.push({ tick, until: tick, call, times: 1 });
     }
     kind = now;
   }
   return entries;
-}
-
-/** The topic, service or action that a call came by. */
-function nameOf(call) {
-  if (SERVICES.has(call.op)) return `/${call.op}`;
-  return call.turtle ? `/${call.turtle}/${call.op}` : "";
 }
 
 export class Calls {
@@ -75,7 +66,7 @@ export class Calls {
     return this.entries[index] ? this.entries[index].tick : null;
   }
 
-  item({ tick, until, call, times, isFirst }, isCurrent) {
+  item({ tick, until, call, times }, isCurrent) {
     const item = document.createElement("li");
     const button = document.createElement("button");
     button.type = "button";
@@ -85,8 +76,7 @@ export class Calls {
     time.textContent = `${(tick * this.tickS).toFixed(2)} s`;
     const many = times > 1 ? ` (${times} times, until ${(until * this.tickS).toFixed(2)} s)` : "";
     button.append(time, `${isCurrent ? "▶ " : ""}${callText(call)}${many}`);
-    // of what comes later nobody knows whether the same line has sent it
-    const line = isFirst && this.lines[nameOf(call)];
+    const line = this.lines[call.line];
     if (line) button.append(place(line));
     button.addEventListener("click", () => this.onFrame(tick));
     item.append(button);
