@@ -121,7 +121,9 @@ def test_the_tf2_of_ros_is_not_hidden(workspace: Workspace) -> None:
 
 
 def test_launch_file_is_where_ros2_launch_looks(workspace: Workspace) -> None:
-    names = [path.name for path in workspace.installed if path.parent.name == "launch"]
+    folders = {path.parent for path in workspace.installed if path.parent.name == "launch"}
+    shared = [folder for folder in folders if folder.parents[1].name == "share"]
+    names = [path.name for path in workspace.installed if path.parent in shared]
     assert sorted(names) == ["multisim.launch.py", "turtlesim_challenge.launch.py"]
 
 

@@ -82,7 +82,8 @@ class Call:
     def wait_for(self, words: str) -> None:
         """Wait until it has said something."""
         until(lambda: words in self.text() or self.process.poll() is not None)
-        assert words in self.text()
+        said = self.text()
+        assert words in said, said
 
     def wait(self) -> int:
         """Wait for its end; the exit code."""

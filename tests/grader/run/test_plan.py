@@ -31,7 +31,14 @@ def test_a_plan_survives_the_way_to_another_process(plan):
 
 def test_every_field_and_its_type_survive():
     plan = Plan(
-        Limits(1.0, 2.0, 3.0), Start(-0.1, 1 / 3, 5e-324), "moon", 42, ("odd", "ü\n"), "i", "s"
+        Limits(1.0, 2.0, 3.0),
+        Start(-0.1, 1 / 3, 5e-324),
+        "moon",
+        42,
+        ("odd", "ü\n"),
+        "i",
+        "s",
+        True,
     )
     usual = Plan(Limits(0.0, 0.0, 0.0))
     assert all(getattr(plan, f.name) != getattr(usual, f.name) for f in fields(Plan))
