@@ -94,6 +94,8 @@ def test_processes_are_found_without_proc(monkeypatch, tmp_path: Path) -> None:
     monkeypatch.setattr(system, "PROC", tmp_path)
     process = watched.Watched(["sleep", "1000"], {"PATH": os.environ["PATH"]})
     assert process.pid in watched._all_processes()
+    while psutil.Process(process.pid).name() != "sleep":  # it still has our environment till then
+        os.sched_yield()
     assert process._owns(process.pid)
     assert not process._owns(os.getpid())
     process._sweep(20.0)

@@ -55,6 +55,8 @@ class GradedNode(TurtlesimNode):
         allowance: the limits, and what has been refused.
     """
 
+    MAY_BE_SEEN = False
+
     def __init__(self, hooks: Hooks, interfaces: str) -> None:
         self._hooks = hooks
         self.allowance = Allowance()

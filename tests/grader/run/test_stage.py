@@ -168,7 +168,8 @@ if folder != "/tmp":
     folder = os.path.dirname(folder)
 for _ in range(20):
     time.sleep(0.1)
-    found = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
+    found = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names
+             if "site-packages" not in at]
     found += glob.glob("/proc/self/fd/*")
     found = [path for path in found if "recording" in os.path.basename(os.path.realpath(path))]
     if found:

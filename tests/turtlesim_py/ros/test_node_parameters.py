@@ -44,7 +44,7 @@ def get(graph: Graph, *names: str) -> list[Any]:
     return [value.integer_value for value in answer.values]
 
 
-def test_it_has_the_originals_parameters_and_four_of_its_own(graph: Graph) -> None:
+def test_it_has_the_originals_parameters_and_some_of_its_own(graph: Graph) -> None:
     names = graph.call(ListParameters, "/turtlesim/list_parameters").result.names
     assert sorted(names) == [
         "background_b",
@@ -57,6 +57,10 @@ def test_it_has_the_originals_parameters_and_four_of_its_own(graph: Graph) -> No
         "start_type_description_service",
         "turtle_image",
         "use_sim_time",
+        "view_host",
+        "view_port",
+        "view_read_only",
+        "view_token",
     ]
 
 
