@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
@@ -92,7 +93,16 @@ class Call:
 
 def held(worker: subprocess.Popen[bytes]) -> psutil.Process:
     """The process that does a worker's task, as soon as there is one, stopped in the middle."""
-    grading: psutil.Process = until(lambda: next(iter(psutil.Process(worker.pid).children()), None))
+
+    def grades(child: psutil.Process) -> bool:  # others come and go while a worker starts
+        with suppress(psutil.Error):
+            return any("grader.batch" in word for word in child.cmdline())
+        return False
+
+    def look() -> psutil.Process | None:
+        return next(filter(grades, psutil.Process(worker.pid).children()), None)
+
+    grading: psutil.Process = until(look)
     grading.suspend()
     return grading
 
