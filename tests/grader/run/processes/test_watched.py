@@ -201,12 +201,14 @@ def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
 @pytest.mark.skipif(not system.has_proc(), reason="descriptors are not told")
 def test_what_it_held_is_given_back_at_its_end() -> None:
     looks = """
-import gc, os, sys
+import gc, os, sys, threading
 from grader.run.processes.family import Student
 gc.disable()  # what knows itself would be found only by a search for garbage
 for _ in range(2):
     before = set(os.listdir("/proc/self/fd"))
     Student([sys.executable, "-c", "pass"], os.environ).end()
+    for thread in set(threading.enumerate()) - {threading.main_thread()}:
+        thread.join()  # who reads its output sees the end of it in its own time
 print(set(os.listdir("/proc/self/fd")) - before)
 """
     words = [sys.executable, "-c", looks]
