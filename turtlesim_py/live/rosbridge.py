@@ -43,9 +43,6 @@ class Host(Protocol):
     def graph(self) -> Graph:
         """The ROS graph; made when it is needed first."""
 
-    def watch(self, session: Session, watches: bool) -> None:
-        """Begin or end to tell a session of the arena."""
-
 
 @dataclass
 class Session:
@@ -54,11 +51,13 @@ class Session:
     Args:
         host: the server.
         send: sends an answer; may be called in the loop's thread only.
+        watch: begins, or ends, to tell this viewer of the arena.
         now: a clock [s].
     """
 
     host: Host
     send: Callable[[Mapping[str, Any]], object]
+    watch: Callable[[bool], None]
     now: Callable[[], float]
     _publishers: dict[str, Any] = field(default_factory=dict)
     _subscriptions: dict[str, Any] = field(default_factory=dict)
@@ -79,7 +78,7 @@ class Session:
 
     async def close(self) -> None:
         """Give back everything that the viewer had."""
-        self.host.watch(self, False)
+        self.watch(False)
         for task in self._tasks.values():
             task.cancel()
         publishers, self._publishers = self._publishers, {}
@@ -134,7 +133,7 @@ class Session:
     async def _subscribe(self, said: Mapping[str, Any]) -> None:
         topic = _text(said, "topic")
         if topic == LIVE:
-            self.host.watch(self, True)
+            self.watch(True)
             return
         if topic in self._subscriptions:
             return
@@ -157,7 +156,7 @@ class Session:
     async def _unsubscribe(self, said: Mapping[str, Any]) -> None:
         topic = _text(said, "topic")
         if topic == LIVE:
-            self.host.watch(self, False)
+            self.watch(False)
         subscription = self._subscriptions.pop(topic, None)
         if subscription is not None:
             await self.host.graph().forget([subscription], [])

@@ -14,7 +14,7 @@ import threading
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
@@ -77,7 +77,6 @@ class _Viewer:
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
         self.is_behind = False
-        self.session: Session
 
     @property
     def is_slow(self) -> bool:
@@ -113,7 +112,7 @@ class LiveServer:
         )
         self._files = {path.name: path.read_bytes() for path in _PAGE.iterdir()}
         self._viewers: set[_Viewer] = set()
-        self._watching: dict[int, _Viewer] = {}
+        self._watching: set[_Viewer] = set()
         self._graph: Graph | None = None
         self._loop: asyncio.AbstractEventLoop
         self._begun = threading.Event()
@@ -155,17 +154,6 @@ class LiveServer:
         if self._graph is None:
             self._graph = Graph()
         return self._graph
-
-    def watch(self, session: Session, watches: bool) -> None:
-        """Begin or end to tell a session of the arena."""
-        if watches:
-            viewer = next(v for v in self._viewers if v.session is session)
-            self._watching[id(session)] = viewer
-            viewer.is_behind = True
-            self.feed.ask(viewer)
-        else:
-            self._watching.pop(id(session), None)
-        self.feed.is_watched = bool(self._watching)
 
     # The thread -------------------------------------------------------------------------------
 
@@ -215,19 +203,30 @@ class LiveServer:
             return _response(404, "Not Found", b"There is no such page.", "text/plain")
         return _response(200, "OK", self._files[name], _TYPES[Path(name).suffix])
 
+    def _watch(self, viewer: _Viewer, watches: bool) -> None:
+        """Begin or end to tell a viewer of the arena."""
+        if watches:
+            self._watching.add(viewer)
+            viewer.is_behind = True
+            self.feed.ask(viewer)
+        else:
+            self._watching.discard(viewer)
+        self.feed.is_watched = bool(self._watching)
+
     async def _on_viewer(self, connection: ServerConnection) -> None:
         viewer = _Viewer(connection)
         loop = asyncio.get_running_loop()
-        viewer.session = Session(self, lambda said: viewer.send(_encoded(said)), loop.time)
+        watch = partial(self._watch, viewer)
+        session = Session(self, lambda said: viewer.send(_encoded(said)), watch, loop.time)
         self._viewers.add(viewer)
         try:
             async for frame in connection:
-                await viewer.session.hear(frame)
+                await session.hear(frame)
         except ConnectionClosed:
             pass
         finally:
             self._viewers.discard(viewer)
-            await viewer.session.close()
+            await session.close()
 
     # From the simulator's thread --------------------------------------------------------------
 
@@ -240,13 +239,13 @@ class LiveServer:
             self._hand_on_whole(news)
             return
         text = _live(news.content)
-        for viewer in list(self._watching.values()):
+        for viewer in list(self._watching):
             if not viewer.is_behind and not viewer.send(text):
                 self._catch_up(viewer)
 
     def _catch_up(self, viewer: _Viewer) -> None:
         """Ask for all of the arena as soon as the viewer has taken what waits for him."""
-        if viewer not in self._watching.values():
+        if viewer not in self._watching:
             return
         if viewer.is_slow:
             self._loop.call_later(RETRY_S, self._catch_up, viewer)
@@ -255,7 +254,7 @@ class LiveServer:
 
     def _hand_on_whole(self, whole: Whole) -> None:
         viewer = whole.viewer
-        if not isinstance(viewer, _Viewer) or viewer not in self._watching.values():
+        if not isinstance(viewer, _Viewer) or viewer not in self._watching:
             return
         file = BytesIO()
         PIL.Image.fromarray(whole.canvas.rgba()).save(file, format="PNG", compress_level=1)

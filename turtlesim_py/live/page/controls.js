@@ -51,7 +51,7 @@ export class Controls {
   advertise() {
     const topic = this.full(`${this.turtle}/cmd_vel`);
     if (this.topic === topic) return;
-    if (this.topic) this.bridge.unadvertise(this.topic, TWIST);
+    if (this.topic) this.bridge.unadvertise(this.topic);
     this.topic = topic;
     this.bridge.advertise(topic, TWIST);
   }

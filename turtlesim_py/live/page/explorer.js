@@ -9,7 +9,9 @@ const UNITS = {
   "turtlesim/Spawn": { x: "m", y: "m", theta: "rad" },
   "turtlesim/SetPen": { r: "0 to 255", g: "0 to 255", b: "0 to 255", width: "px", off: "0 or 1" },
 };
-const unitsOf = (type) => UNITS[type.replace(/_msgs(?=\/)/, (s, at, all) => (all.startsWith("turtlesim_msgs") ? "" : s)).replace(/\/(msg|srv)\//, "/")] || {};
+const unitsOf = (type) => (
+  UNITS[type.replace(/\/(msg|srv)\//, "/").replace("turtlesim_msgs/", "turtlesim/")] || {}
+);
 const ZEROS = { string: "", boolean: false };
 
 function made(tag, text = "", ...children) {

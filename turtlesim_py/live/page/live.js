@@ -60,12 +60,12 @@ function state(lost = false) {
 }
 
 const bridge = new Rosbridge({
-  open: () => bridge.subscribe(LIVE, undefined, (news) => { told = told.then(() => take(news)); }),
   closed: () => { state(true); controls.rest(); },
   status: (text) => controls.answer(text, true),
 });
 const controls = new Controls(bridge, element);
 const explorer = new Explorer(bridge, element);
+bridge.subscribe(LIVE, undefined, (news) => { told = told.then(() => take(news)); });
 for (const id of ["show-grid", "show-quadrants", "show-names"]) {
   element(id).addEventListener("change", () => {
     marks.choose({

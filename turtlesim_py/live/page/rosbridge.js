@@ -7,12 +7,12 @@ const FIRST_PAUSE_MS = 300;
 const LONGEST_PAUSE_MS = 5000;
 
 export class Rosbridge {
-  /** @param {{open: function(), closed: function(), status: function(string)}} told */
+  /** @param {{closed: function(), status: function(string)}} told */
   constructor(told) {
     this.told = told;
     this.listeners = new Map();
     this.waiting = new Map();
-    this.advertised = new Set();
+    this.advertised = new Map();
     this.number = 0;
     this.pause = FIRST_PAUSE_MS;
     this.connect();
@@ -26,9 +26,8 @@ export class Rosbridge {
     this.socket = new WebSocket(address);
     this.socket.addEventListener("open", () => {
       this.pause = FIRST_PAUSE_MS;
-      for (const [topic, { type }] of this.listeners) this.send({ op: "subscribe", topic, type });
-      for (const [topic, type] of this.advertisedTypes()) this.send({ op: "advertise", topic, type });
-      this.told.open();
+      for (const [topic, { type }] of this.listeners) this.askFor(topic, type);
+      for (const [topic, type] of this.advertised) this.send({ op: "advertise", topic, type });
     });
     this.socket.addEventListener("message", (event) => this.hear(JSON.parse(event.data)));
     this.socket.addEventListener("close", () => {
@@ -60,6 +59,10 @@ export class Rosbridge {
 
   subscribe(topic, type, hear) {
     this.listeners.set(topic, { type, hear });
+    this.askFor(topic, type);
+  }
+
+  askFor(topic, type) {
     this.send({ op: "subscribe", topic, type, throttle_rate: topic === LIVE ? 0 : 100 });
   }
 
@@ -67,16 +70,14 @@ export class Rosbridge {
     if (this.listeners.delete(topic)) this.send({ op: "unsubscribe", topic });
   }
 
-  advertisedTypes() { return [...this.advertised].map((pair) => pair.split(" ")); }
-
   advertise(topic, type) {
-    if (this.advertised.has(`${topic} ${type}`)) return;
-    this.advertised.add(`${topic} ${type}`);
+    if (this.advertised.has(topic)) return;
+    this.advertised.set(topic, type);
     this.send({ op: "advertise", topic, type });
   }
 
-  unadvertise(topic, type) {
-    if (this.advertised.delete(`${topic} ${type}`)) this.send({ op: "unadvertise", topic });
+  unadvertise(topic) {
+    if (this.advertised.delete(topic)) this.send({ op: "unadvertise", topic });
   }
 
   publish(topic, type, msg) {
@@ -91,15 +92,18 @@ export class Rosbridge {
 
   /** What an action ends with; `cancel` ends it. */
   goal(action, action_type, args) {
-    const id = `goal ${this.number + 1}`;
-    const done = this.ask({ op: "send_action_goal", action, action_type, args, feedback: false });
+    const id = this.nextId();
+    const done = this.ask({ op: "send_action_goal", action, action_type, args, feedback: false }, id);
     return { done, cancel: () => this.send({ op: "cancel_action_goal", action, id }) };
   }
 
-  ask(frame) {
-    if (!this.isOpen) return Promise.reject(new Error("there is no connection"));
+  nextId() {
     this.number += 1;
-    const id = frame.op === "send_action_goal" ? `goal ${this.number}` : `call ${this.number}`;
+    return `call ${this.number}`;
+  }
+
+  ask(frame, id = this.nextId()) {
+    if (!this.isOpen) return Promise.reject(new Error("there is no connection"));
     return new Promise((done, fail) => {
       this.waiting.set(id, { done, fail });
       this.send({ ...frame, id });
