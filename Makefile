@@ -19,7 +19,7 @@ endif
 NOT_AT_LOWEST := tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
 
-.PHONY: help install test test-lowest test-kilted lint demo bench wheel clean
+.PHONY: help install test test-lowest test-kilted catalogues lint demo bench wheel clean
 .DEFAULT_GOAL := help
 
 help:
@@ -29,6 +29,7 @@ help:
 	@echo "make test-lowest   run them with our dependencies at their lower bounds"
 	@echo "make test-kilted   run them with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
 	@echo "make lint      ruff and mypy"
+	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
 	@echo "make bench     what the simulator and a grading cost: tables (less than five minutes)"
 	@echo "make wheel     a wheel for each Python that is here, in dist/jazzy, each tried where there is no gcc"
 	@echo "make clean     remove everything that was made here"
@@ -49,6 +50,9 @@ test-lowest:
 
 test-kilted:
 	@$(MAKE) --no-print-directory ROS=kilted test
+
+catalogues: install
+	@$(BIN)/python scripts/catalogues.py
 
 lint: install
 	@echo "== ruff"

@@ -74,7 +74,8 @@ def plain_all(value: Any, limit: int = 1_000_000) -> Any:
 
 def one_line(text: str) -> str:
     """The text with every run of white space as one space."""
-    return " ".join(text.split())
+    line = " ".join(text.split())
+    return line if line != text else text  # itself: a phrase stays one
 
 
 def clip(text: str, limit: int) -> str:

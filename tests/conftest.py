@@ -17,6 +17,8 @@ from tests.programs import Program
 # Before anything of ROS is imported: the wheels take an int in a float field for other bits.
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+# whatever the locale of who runs them
+os.environ["LANGUAGE"] = "en"
 
 _reserved = ExitStack()
 _numbers = count(1)

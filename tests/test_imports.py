@@ -37,7 +37,7 @@ def below(package: str, *names: str) -> set[str]:
 GROUND = below(
     "grader",
     *("errors", "text", "files", "locks", "scratch", "removal", "system"),
-    *("requirements", "strict_json", "limited", "versions", "content"),
+    *("requirements", "strict_json", "limited", "versions", "content", "language"),
 )
 STATIONS = below(
     "grader",

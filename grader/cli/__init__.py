@@ -19,8 +19,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 try:  # somebody may think better of it at once
     import importlib
 
-    from grader.cli import error_file
+    from grader.cli import error_file, language
     from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
+    from grader.language.telling import told
     from grader.text import for_terminal
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
@@ -57,6 +58,7 @@ def load(verb: str) -> Any:
 
 
 def _main(words: Sequence[str]) -> int:
+    language.choose(words)  # help and errors of the call are in it, too
     try:
         args = _parser(words).parse_args(words)
     except error_file.Misuse as error:
@@ -95,9 +97,9 @@ def _say(red: str, message: str = "") -> None:
     from rich.console import Console  # here: most calls have nothing to say
     from rich.text import Text
 
-    said = Text(red, "red")
+    said = Text(told(red), "red")
     if message:
-        said.append(f" {for_terminal(message)}", "default")
+        said.append(f" {for_terminal(told(message))}", "default")
     Console(stderr=True, soft_wrap=True, highlight=False).print(said)
 
 
@@ -113,6 +115,7 @@ def _parser(words: Sequence[str]) -> error_file.Parser:
         if name == asked:
             load(name).add_arguments(verb)
             error_file.add_argument(verb)
+            language.add_argument(verb)
     return parser
 
 

@@ -17,6 +17,7 @@ from typing import Any, Self
 from grader import strict_json
 from grader.exercise.foreign import contained
 from grader.exercise.verdict import Evidence, Expected, Finding, wrong_with
+from grader.language import stored
 from grader.limited import Copy, Limits
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 
@@ -80,7 +81,8 @@ class Asked:
                 found = words["finding"]
                 evidence = tuple(Evidence(**item) for item in found["evidence"])
                 expected = tuple(Expected.from_json(item) for item in found["expected"])
-                return Finding(**{**found, "evidence": evidence, "expected": expected})
+                made = Finding(**{**found, "evidence": evidence, "expected": expected})
+                return stored.restored(made, words["phrases"])
             case "not over":
                 raise NotOver
             case "interrupted":
@@ -107,7 +109,8 @@ class Asked:
         wrong = wrong_with(finding, 1 if is_alone else len(list(self._recordings)))
         if wrong:
             return {"say": "wrong", "text": wrong}
-        return {"say": "finding", "finding": {**asdict(finding), "share": float(finding.share)}}
+        said = {**asdict(finding), "share": float(finding.share)}
+        return {"say": "finding", "finding": said, "phrases": stored.phrases_in(finding)}
 
 
 def where_it_failed(function: CheckFunction, error: BaseException) -> str:

@@ -10,6 +10,7 @@ from typing import Self
 
 from grader import text
 from grader.exercise.verdict import Evidence, Verdict
+from grader.language.telling import in_language
 from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
 from grader.reports import origin, readable, wording
@@ -70,7 +71,7 @@ class Report:
     """
 
     def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
-        shown: Result = text.plain_all(as_seen(result, view), readable.LOOKED_AT)
+        shown: Result = text.plain_all(in_language(as_seen(result, view)), readable.LOOKED_AT)
         self._result = result
         self.beside = beside
         self.view = view

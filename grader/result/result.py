@@ -16,6 +16,7 @@ from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.loading import Exercise
 from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
+from grader.language import stored
 from grader.recording.recording import Recording, Recordings, Run
 from grader.result import json_file
 from grader.result.handed_in import HandedIn
@@ -134,6 +135,7 @@ class Result:
         diagnosis = {} if self.diagnosis is None else {"diagnosis": self.diagnosis.to_json()}
         handed_in = {} if self.handed_in is None else {"handed_in": self.handed_in.to_json()}
         not_shown = {} if self.not_shown is None else {"not_shown": asdict(self.not_shown)}
+        phrases = stored.phrases_in(self)
         return {
             "schema": SCHEMA,
             "exercise": self.exercise,
@@ -148,6 +150,7 @@ class Result:
             "varied_runs": [run.to_json() for run in self.varied_runs],
             "artifacts": dict(self.artifacts),
             **origin,
+            **({"phrases": phrases} if phrases else {}),
         }
 
     @classmethod
@@ -159,7 +162,7 @@ class Result:
         """
         json_file.validate(data, "result", SCHEMA)
         diagnosis, handed_in, not_shown = map(data.get, ("diagnosis", "handed_in", "not_shown"))
-        return cls(
+        result = cls(
             data["exercise"],
             data["submission"],
             data["score"],
@@ -173,6 +176,7 @@ class Result:
             handed_in=None if handed_in is None else HandedIn.from_json(handed_in),
             not_shown=None if not_shown is None else NotShown.from_json(not_shown),
         )
+        return stored.restored(result, data.get("phrases", {}))
 
     @classmethod
     def from_file(cls, data: Any) -> Self:

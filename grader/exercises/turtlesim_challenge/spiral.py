@@ -7,6 +7,7 @@ from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import why_no_wider, why_so_few_turns
 from grader.exercises.turtlesim_challenge.path import Path
+from grader.language.phrase import say
 
 
 def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
@@ -21,8 +22,19 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
     if not missed:
         turns, _ = shape.turns(path)
         growth = shape.growth(path)
-        sizes = f"{growth.min():.2f} to {growth.max():.2f} m"
-        return Finding(1, f"{turns:.1f} turns from the centre, each wider by {sizes}.")
+        sizes = say(
+            "{growth_min:.2f} to {growth_max:.2f} m",
+            growth_min=growth.min(),
+            growth_max=growth.max(),
+        )
+        return Finding(
+            1,
+            say(
+                "{turns:.1f} turns from the centre, each wider by {sizes}.",
+                turns=turns,
+                sizes=sizes,
+            ),
+        )
     cause = None
     if parts["growth"][1]:
         few = shape.turns(path)[0] < tolerances["turns"]
@@ -30,14 +42,19 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
     if cause is not None:
         missed.insert(0, cause.text)
     good = {name: share for name, (share, text, _) in parts.items() if not text}
-    earned = [f"{100 * share:.0f} % for the {name}" for name, share in good.items()]
+    earned = [
+        say("{share:.0f} % for the {name}", share=100 * share, name=name)
+        for name, share in good.items()
+    ]
     told = " and ".join(earned) if earned else "nothing"
     return Finding(
         sum(good.values()),
-        f"{' '.join(missed)} Of the points it earned {told}.",
+        say("{missed} Of the points it earned {told}.", missed=" ".join(missed), told=told),
         cause.help
         if cause is not None
-        else "A constant angular velocity with a slowly growing linear velocity makes a spiral.",
+        else say(
+            "A constant angular velocity with a slowly growing linear velocity makes a spiral."
+        ),
         tuple(item for _, _, evidence in parts.values() for item in evidence),
     )
 
@@ -51,25 +68,42 @@ def _start(path: Path, tolerances: Tolerances) -> Part:
     if start_m <= tolerances["start_m"]:
         return "", ()
     evidence = path.at(int(path.ticks[path.first]), "the start")
-    text = f"The path starts {start_m:.2f} m from the centre; {tolerances['start_m']:g} m is fine."
+    text = say(
+        "The path starts {start_m:.2f} m from the centre; {start_m2:g} m is fine.",
+        start_m=start_m,
+        start_m2=tolerances["start_m"],
+    )
     return text, (evidence,)
 
 
 def _turns(path: Path, tolerances: Tolerances) -> Part:
     turns, other_way = shape.turns(path)
-    wanted = f"at least {tolerances['turns']:g} turns in one direction are asked for."
+    wanted = say(
+        "at least {turns:g} turns in one direction are asked for.", turns=tolerances["turns"]
+    )
     if other_way > tolerances["wrong_way_share"]:
         return (
-            f"It made {turns:.1f} turns, with {100 * other_way:.0f} % of the turning the other "
-            f"way; {wanted}"
+            say(
+                "It made {turns:.1f} turns, with {other_way:.0f} % of the turning the "
+                "other way; {wanted}",
+                turns=turns,
+                other_way=100 * other_way,
+                wanted=wanted,
+            )
         ), ()
     if turns < tolerances["turns"]:
-        return f"It made {turns:.1f} turns; {wanted}", ()
+        return say("It made {turns:.1f} turns; {wanted}", turns=turns, wanted=wanted), ()
     rounds = shape.loops(path).rounds
     if rounds < tolerances["turns"] - shape.BEHIND_TURNS:
         return (
-            f"The turtle turned {turns:.1f} times, but its path goes only {rounds:.1f} times "
-            f"round any centre; at least {tolerances['turns']:g} times are asked for."
+            say(
+                "The turtle turned {turns:.1f} times, but its path goes only "
+                "{rounds:.1f} times round any centre; at least {turns2:g} times are "
+                "asked for.",
+                turns=turns,
+                rounds=rounds,
+                turns2=tolerances["turns"],
+            )
         ), ()
     return "", ()
 
@@ -77,25 +111,37 @@ def _turns(path: Path, tolerances: Tolerances) -> Part:
 def _growth(path: Path, tolerances: Tolerances) -> Part:
     growth = shape.growth(path)
     if not len(growth):
-        return "With fewer than two turns nobody can tell whether they grow.", ()
+        return say("With fewer than two turns nobody can tell whether they grow."), ()
     if growth.min() < tolerances["growth_m"]:
         least = round(float(growth.min()), 2)
-        changed = f"it changed by {least:+.2f} m" if least else "it stayed the same"
+        changed = (
+            say("it changed by {least:+.2f} m", least=least) if least else say("it stayed the same")
+        )
         return (
-            "Its mean distance from the centre must grow with each turn; from one turn to the "
-            f"next {changed}."
+            say(
+                "Its mean distance from the centre must grow with each turn; from one "
+                "turn to the next {changed}.",
+                changed=changed,
+            )
         ), ()
     loops = shape.loops(path)
     goes_round = loops.rounds >= tolerances["turns"] - shape.BEHIND_TURNS
     if not goes_round or loops.outside < shape.MOSTLY:
-        return "Going round, its path does not stay outside of what it has drawn before.", ()
+        return say("Going round, its path does not stay outside of what it has drawn before."), ()
     if loops.straight_out > shape.HALFWAY:
         return (
-            "It grows by driving straight outwards from one circle to the next; a spiral grows "
-            "while it goes round."
+            say(
+                "It grows by driving straight outwards from one circle to the next; a "
+                "spiral grows while it goes round."
+            )
         ), ()
     if loops.farthest_m > tolerances["gentle_m"]:
-        return f"It came away from its last turn by {loops.farthest_m:.2f} m.", ()
+        return say(
+            "It came away from its last turn by {farthest_m:.2f} m.", farthest_m=loops.farthest_m
+        ), ()
     if growth.max() > tolerances["gentle_m"]:
-        return f"Its distance from the centre jumped by {growth.max():.2f} m in one turn.", ()
+        return say(
+            "Its distance from the centre jumped by {growth_max:.2f} m in one turn.",
+            growth_max=growth.max(),
+        ), ()
     return "", ()

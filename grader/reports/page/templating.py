@@ -10,6 +10,7 @@ import jinja2
 from markupsafe import Markup
 
 from grader import text
+from grader.language.telling import tell, tell_many
 from grader.reports.page.compiled import BesideTheTemplates
 
 #: How all pages look.
@@ -34,6 +35,8 @@ def environment(script: Path, *styles: Path) -> jinja2.Environment:
     made.filters.update(points=text.points, clip=text.clip)
     made.globals.update(
         counted=text.count,
+        tell=tell,
+        tell_many=tell_many,
         style=Markup("".join(path.read_text(encoding="utf-8") for path in (STYLE, *styles))),
         script=Markup(code),
         script_digest=base64.b64encode(hashlib.sha256(code.encode()).digest()).decode(),

@@ -1,0 +1,1 @@
+"""Sentences in the reader's language: made at the end, of a key and values."""

@@ -1,0 +1,69 @@
+"""The languages that we speak, and the catalogues of their sentences (gettext).
+
+A catalogue may have holes: what it does not know is said in English. `make catalogues` looks for
+sentences in the code and compiles what has been translated; `locale/README.md` says how.
+"""
+
+from __future__ import annotations
+
+import gettext
+import os
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import as_file, files
+from typing import Final
+
+#: Code -> how the language calls itself.
+LANGUAGES: Final = {"en": "English", "fr": "français", "zh": "中文"}
+ENGLISH: Final = "en"
+DOMAIN: Final = "grader"
+#: Where POSIX looks for the language of messages, first come, first served.
+_VARIABLES = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
+
+_spoken = ENGLISH
+
+
+def spoken() -> str:
+    """The language in which this process tells its user something."""
+    return _spoken
+
+
+def speak(language: str) -> None:
+    """Choose it.
+
+    Raises:
+        ValueError: we do not know it.
+    """
+    global _spoken
+    if language not in LANGUAGES:
+        raise ValueError(f"expected one of {', '.join(LANGUAGES)}, found {language!r}")
+    _spoken = language
+
+
+def of_environment(environment: Mapping[str, str] = os.environ) -> str:
+    """What the user's locale asks for; English where that is none of ours."""
+    for name in _VARIABLES:
+        for wanted in environment.get(name, "").split(":"):
+            code = wanted.replace("-", "_").partition("_")[0].partition(".")[0].lower()
+            if code in LANGUAGES:
+                return code
+            if code in ("c", "posix"):
+                return ENGLISH
+    return ENGLISH
+
+
+@cache
+def catalogue(language: str) -> gettext.NullTranslations:
+    """The sentences of a language; empty for English and where it was not compiled."""
+    if language == ENGLISH:
+        return gettext.NullTranslations()
+    with as_file(files("grader.language") / "locale") as folder:
+        return gettext.translation(DOMAIN, folder, [language], fallback=True)
+
+
+def knows(language: str, key: str, many: str = "") -> bool:
+    """Whether a catalogue has a sentence."""
+    found = catalogue(language)
+    if many:
+        return found.ngettext(key, many, 1) != key or found.ngettext(key, many, 2) != many
+    return bool(key) and found.gettext(key) != key

@@ -1,0 +1,115 @@
+"""Phrases in JSON: beside the English texts, by which they are found again.
+
+`{"It made 2.5 turns.": {"key": "It made {turns:.1f} turns.", "values": {"turns": 2.5}}}`
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar, cast
+
+from grader.language.phrase import Phrase
+
+#: Phrases in phrases: none that a check makes is deeper.
+_DEEPEST = 12
+T = TypeVar("T")
+
+
+def phrases_in(value: Any) -> dict[str, dict[str, Any]]:
+    """All phrases of a dataclass, list or dictionary, by their English texts."""
+    found: dict[str, dict[str, Any]] = {}
+    _collect(value, found)
+    return dict(sorted(found.items()))
+
+
+def restored(value: T, phrases: Mapping[str, Any]) -> T:
+    """The same value with phrases in place of the texts that `phrases_in` has found.
+
+    Raises:
+        ValueError: what is told of one is no phrase.
+    """
+    if not phrases:
+        return value
+    made = {text: phrase(text, data) for text, data in phrases.items()}
+    return cast(T, _restore(value, made))
+
+
+def phrase(text: str, data: Any, depth: int = 0) -> Phrase:
+    """A phrase as JSON tells of it.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if not isinstance(data, dict) or depth > _DEEPEST:
+        raise ValueError("expected a phrase: a key with values, or parts")
+    parts = [_part(part, depth) for part in data.get("parts", [])]
+    values = {name: _value(value, depth) for name, value in data.get("values", {}).items()}
+    key, many = data.get("key", ""), data.get("many", "")
+    if not isinstance(key, str) or not isinstance(many, str):
+        raise ValueError("expected texts as keys of a phrase")
+    return Phrase(text, key, values, many, parts)
+
+
+def _part(data: Any, depth: int) -> str:
+    value = _value(data, depth)
+    if not isinstance(value, str):
+        raise ValueError("expected a text as a part of a phrase")
+    return value
+
+
+def _value(data: Any, depth: int) -> Any:
+    if isinstance(data, dict):
+        text = data.get("text")
+        if not isinstance(text, str):
+            raise ValueError("expected the text of a phrase within a phrase")
+        return phrase(text, data, depth + 1)
+    if isinstance(data, str | int | float):
+        return data
+    raise ValueError(f"expected a text or a number in a phrase, found {data!r}")
+
+
+def _collect(value: Any, found: dict[str, dict[str, Any]]) -> None:
+    if isinstance(value, Phrase):
+        found[str(value)] = _data(value)
+    elif isinstance(value, Mapping):
+        _collect(list(value.values()), found)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            _collect(item, found)
+    elif is_dataclass(value) and not isinstance(value, type):
+        _collect([getattr(value, field.name) for field in fields(value)], found)
+
+
+def _data(value: Phrase) -> dict[str, Any]:
+    if value.parts:
+        return {"parts": [_inner(part) for part in value.parts]}
+    data: dict[str, Any] = {"key": value.key}
+    if value.many:
+        data["many"] = value.many
+    if value.values:
+        data["values"] = {name: _inner(item) for name, item in value.values.items()}
+    return data
+
+
+def _inner(value: Any) -> Any:
+    if isinstance(value, Phrase):
+        return {"text": str(value), **_data(value)}
+    if isinstance(value, str):
+        return str(value)
+    value = value.item() if hasattr(value, "item") else value  # numpy's numbers are none of JSON's
+    return value if math.isfinite(value) else str(value)
+
+
+def _restore(value: Any, made: Mapping[str, Phrase]) -> Any:
+    if isinstance(value, str):
+        return made.get(value, value)
+    if isinstance(value, Mapping):
+        return {key: _restore(item, made) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return type(value)(_restore(item, made) for item in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        names = [field.name for field in fields(value)]
+        return replace(value, **{name: _restore(getattr(value, name), made) for name in names})
+    return value
