@@ -1,0 +1,32 @@
+"""roslibjs, the library of ROS's web pages, drives the turtle through the page's socket."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from turtlesim.msg import Pose
+
+from tests.programs import DEADLINE_S
+
+PROGRAM = Path(__file__).parent / "roslibjs"
+needs_roslibjs = pytest.mark.skipif(
+    shutil.which("node") is None or not (PROGRAM / "node_modules" / "roslib").is_dir(),
+    reason="roslibjs is not installed: npm install --prefix tests/turtlesim_py/live/roslibjs",
+)
+
+
+@needs_roslibjs
+def test_roslibjs_drives_sets_the_pen_and_turns(page, graph):
+    poses = graph.listen(Pose, "/seen/turtle1/pose")
+    socket = f"{page.address.replace('http', 'ws')}socket"
+    done = subprocess.run(
+        ["node", PROGRAM / "drive.js", socket, "/seen"],
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE_S,
+    )
+    assert done.stdout.splitlines() == ["topics true", "pen 0", "turned true"], done
+    graph.until(lambda: any(pose.x > 7 and pose.theta > 0.9 for pose in poses), "the turned pose")
