@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -26,6 +27,7 @@ from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
 from grader.run import real_time, static, virtual_time
+from grader.run.audience import Audience
 from grader.run.lost import SimulatorLost, judged_all_the_same
 from grader.run.plan import Plan
 from grader.run.processes import cores
@@ -52,12 +54,32 @@ class Runner(Protocol):
         """Return what happened."""
 
 
-RUNNERS: Mapping[Clock, Runner] = {"real": real_time.run, "virtual": virtual_time.run}
+class ClockedRunner(Protocol):
+    """One at which somebody can look on."""
+
+    def __call__(
+        self,
+        submission: Submission,
+        plan: Plan,
+        progress: Progress | None = None,
+        *,
+        audience: Audience | None = None,
+    ) -> Recording:
+        """Return what happened."""
 
 
-def runner(exercise: Exercise, time: Clock) -> Runner:
-    """What runs submissions to an exercise; where nothing is started, no clock counts."""
-    return RUNNERS[time] if exercise.is_started else static.run
+RUNNERS: Mapping[Clock, ClockedRunner] = {"real": real_time.run, "virtual": virtual_time.run}
+
+
+def runner(exercise: Exercise, time: Clock, audience: Audience | None = None) -> Runner:
+    """What runs submissions to an exercise; where nothing is started, no clock counts.
+
+    Args:
+        audience: who looks on at the runs, of which there is to be one at once.
+    """
+    if not exercise.is_started:
+        return static.run
+    return RUNNERS[time] if audience is None else partial(RUNNERS[time], audience=audience)
 
 
 def grade(
@@ -219,6 +241,7 @@ def start(
     run: Runner,
     progress: Progress | None = None,
     origin: Provenance | None = None,
+    at_once: int | None = None,
 ) -> Iterator[Iterator[Finished]]:
     """Start runs, as many at once as there are cores; yields each as soon as it is over.
 
@@ -229,6 +252,7 @@ def start(
         plans: from `plan`.
         progress: called with the simulated seconds of the nominal run.
         origin: from `provenance`; comes into the nominal recording.
+        at_once: so many instead; one after the other they go in the order of `plans`.
 
     Raises:
         GraderFailure: a run could not be made, twice; while iterating.
@@ -252,8 +276,8 @@ def start(
         # Here, since two threads that import rosbags at once, each from another end, lock each
         # other out: Python ends one of them by a _DeadlockError.
         load_scene(static.SCENE)
-    at_once = min(len(plans) + looks, max(LEAST_AT_ONCE, math.ceil(cores.share())))
-    pool = ThreadPoolExecutor(max_workers=at_once)
+    many = min(len(plans) + looks, max(LEAST_AT_ONCE, math.ceil(cores.share())))
+    pool = ThreadPoolExecutor(max_workers=at_once or many)
     try:
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
         looked = pool.submit(_look_twice_at_most, submission) if looks else None

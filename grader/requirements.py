@@ -21,6 +21,7 @@ OPTIONAL = {
         "--scheduler speaks to a dask cluster with it",
         "distributed>=2025.1.0",
     ),
+    "websockets": ("websockets", "--live serves a page with it", "websockets>=13.1,<18"),
     "watchdog": ("watchdog.observers", "--watch waits for saves with it", "watchdog>=3.0.0,<7"),
 }
 

@@ -137,6 +137,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     | STATIONS
     | below("grader.cli", "place", "error_file")
     | {"turtlesim_py.browser"},
+    # ... and so is that of `run --live`
+    "grader.cli.live": GROUND | STATIONS | {"turtlesim_py.browser"},
     "grader.__main__": {"grader.cli"},
 }
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
@@ -29,18 +30,22 @@ from grader.run.processes import cores
 from grader.submission.opening import Submission, open_submission
 from grader.text import for_terminal
 
+if TYPE_CHECKING:
+    from grader.cli.live import Live
+    from grader.reports import Report
+
 #: What is not needed before a run is over.
 LATER = ("grader.recording.bag", "grader.reports.page.html", "grader.reports.terminal")
 
 
-def grade(args: argparse.Namespace) -> int:
+def grade(args: argparse.Namespace, live: Live | None = None) -> int:
     """Grade once; the exit code."""
-    result = graded(args)
+    result = graded(args, live)
     return int(args.fail_under is not None and result.score < args.fail_under)
 
 
-def graded(args: argparse.Namespace) -> Result:
-    """Grade once: run, judge, write, show."""
+def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
+    """Grade once: run, judge, write, show; `live` shows the runs while they go on."""
     out = out_of(args)
     if args.out is None:
         files.check_leads_nowhere_else(out, Path.cwd())
@@ -51,8 +56,10 @@ def graded(args: argparse.Namespace) -> Result:
     with ExitStack() as held:
         opening = exercise.opening
         with open_submission(args.submission, args.executable, **opening) as submission:
-            result, recordings = _run_and_judge(args, submission, exercise, out, held)
-        _report(args, result, recordings, out)
+            result, recordings = _run_and_judge(args, submission, exercise, out, held, live)
+        report = _report(args, result, recordings, out)
+        if live is not None:
+            live.know(report)
     return result
 
 
@@ -63,27 +70,42 @@ def out_of(args: argparse.Namespace) -> Path:
 
 
 def _run_and_judge(
-    args: argparse.Namespace, submission: Submission, exercise: Exercise, out: Path, held: ExitStack
+    args: argparse.Namespace,
+    submission: Submission,
+    exercise: Exercise,
+    out: Path,
+    held: ExitStack,
+    live: Live | None,
 ) -> tuple[Result, Recordings]:
     """Run a submission, judge it, and keep its recordings; `held` holds what is written to."""
     messages = Console(stderr=True, highlight=False)
     messages.print(Text(for_terminal(f"Found: {submission.found}")), soft_wrap=True)
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
+    if live is not None:
+        live.open(exercise, submission.name, plans, messages)
     origin = grading.provenance(submission, exercise, args.seed)
     _make_folders(out, args.json, held)
     how = f"Running it beside a simulator, in {args.time} time"
     messages.print(f"{how if exercise.is_started else 'Looking at it, and starting nothing'} ...")
 
     def tell(nominal: Recording) -> None:
-        if args.watch:
-            known = grading.judge_nominal(nominal, exercise, submission=submission.name)
-            _show_nominal(known, nominal, out, messages)
+        if not args.watch and live is None:
+            return
+        from grader.reports import Report, terminal
 
-    runner = grading.runner(exercise, args.time)
+        known = grading.judge_nominal(nominal, exercise, submission=submission.name)
+        report = Report.of(known, out, Recordings(nominal))
+        if args.watch:
+            terminal.show_nominal(report, messages)
+        if live is not None:
+            live.know_of_nominal(report)
+
+    runner = grading.runner(exercise, args.time, live)
+    at_once = None if live is None else 1
     with folder.saving(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
         with (
             progress.shown(messages, "running") as show,
-            grading.start(submission, plans, runner, show, origin) as runs,
+            grading.start(submission, plans, runner, show, origin, at_once) as runs,
         ):
             if cores.share() > len(plans):
                 for module in LATER:
@@ -108,13 +130,7 @@ def _kept(
         yield number, recording
 
 
-def _show_nominal(known: Result, nominal: Recording, out: Path, console: Console) -> None:
-    from grader.reports import Report, terminal
-
-    terminal.show_nominal(Report.of(known, out, Recordings(nominal)), console)
-
-
-def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> None:
+def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> Report:
     """Write the result and what lies beside it, and show it."""
     from grader.cli import showing
     from grader.reports import Report, render
@@ -129,6 +145,7 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
     page = out / PAGE
     files.put(page, render("html", [report]).encode("utf-8"))
     showing.show(report, page)
+    return report
 
 
 def _default_out(submission: Path) -> Path:

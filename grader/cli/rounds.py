@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
@@ -15,16 +16,21 @@ from grader.result.visible import student_view
 from grader.text import for_terminal
 from grader.text import points as shown
 
+if TYPE_CHECKING:
+    from grader.cli.live import Live
+
 
 class Rounds:
     """What has been graded so far.
 
     Args:
         args: of `grader run`.
+        live: shows the runs while they go on.
     """
 
-    def __init__(self, args: argparse.Namespace) -> None:
+    def __init__(self, args: argparse.Namespace, live: Live | None = None) -> None:
         self._args = args
+        self._live = live
         self._last: Result | None = None
         self._is_first = True
 
@@ -36,7 +42,7 @@ class Rounds:
         self._is_first = False
         error_file.prepare(self._args)
         try:
-            result = grade_one.graded(self._args)
+            result = grade_one.graded(self._args, self._live)
         except GraderError as error:
             messages.print(Text(for_terminal(error.message)), soft_wrap=True)
             error_file.write(error, self._args)

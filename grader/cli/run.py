@@ -5,13 +5,20 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from grader.errors import UsageError
 from grader.exercise import DEFAULT
+
+if TYPE_CHECKING:
+    from grader.cli.live import Live
 
 #: `grader.run.processes.levels.LEVELS`; the same.
 LEVELS = ("namespaces", "landlock", "limits")
 #: The keys of `grader.grading.RUNNERS`, which takes long to import.
 CLOCKS = ("real", "virtual")
+#: The keys of `grader.cli.live.SPEEDS`.
+SPEEDS = ("1", "5", "free")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,6 +40,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seed", type=int, metavar="N", help="where the varied runs start (the exercise's own)"
     )
     parser.add_argument("--watch", action="store_true", help="grade again on every save")
+    parser.add_argument(
+        "--live",
+        action="store_true",
+        help="show the runs, one after the other, in a page while they happen",
+    )
+    parser.add_argument(
+        "--speed",
+        choices=SPEEDS,
+        help="of --live: as in real time (default), five times as fast, as fast as it goes",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="default: below graded/")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here as well")
     parser.add_argument("--executable", metavar="NAME", help="which console script to start")
@@ -58,6 +75,7 @@ def points(text: str) -> float:
 
 def main(args: argparse.Namespace) -> int:
     """Grade one submission; see `grader.cli` for the exit codes."""
+    _check_speed(args)
     if args.isolation:
         from grader.run.processes import levels
 
@@ -74,13 +92,42 @@ def main(args: argparse.Namespace) -> int:
     from grader.requirements import require
 
     require("rosbags", load=False)  # missing it is told now, not when a run is to be saved
-    if not args.watch:
-        return grade_one.grade(args)
+    grade = _each_save if args.watch else grade_one.grade
+    if not args.live:
+        return grade(args, None)
+    require("websockets")
+    from grader.cli.live import Live
+
+    with Live(args.speed or SPEEDS[0]) as live:
+        code = grade(args, live)
+        live.stay()
+    return code
+
+
+def _check_speed(args: argparse.Namespace) -> None:
+    """Refuse a speed that a run could not have."""
+    if args.speed is None:
+        return
+    if not args.live:
+        raise UsageError("--speed is for --live: a run that nobody sees goes as fast as it can")
+    if args.time == "real" and args.speed != SPEEDS[0]:
+        raise UsageError(
+            f"--speed {args.speed} needs virtual time: a run in real time goes as fast as the wall "
+            "clock; leave out --speed or --time real"
+        )
+
+
+def _each_save(args: argparse.Namespace, live: Live | None) -> int:
+    """Grade again and again, until Ctrl-C."""
+    from grader.requirements import require
+
     require("watchdog")
+    from grader.cli import grade_one
     from grader.cli.rounds import Rounds
     from grader.cli.watch import each_save
+    from grader.submission import reader
 
-    rounds = Rounds(args)
+    rounds = Rounds(args, live)
     for _ in each_save(args.submission, grade_one.out_of(args)):
         rounds.grade()
         reader.warm()

@@ -28,9 +28,14 @@ def of(
         title=f"{report.submission}: {report.score_text}",
         summary=f"{report.first_line} {where}".strip(),
         takes=takes,
-        judged=tuple(_judged(report, index, len(takes)) for index in range(len(report.verdicts))),
+        judged=judged(report, len(takes)),
         other=other,
     )
+
+
+def judged(report: Report, runs: int) -> tuple[Judged, ...]:
+    """What the checks say, with evidence from the first so many runs."""
+    return tuple(_judged(report, index, runs) for index in range(len(report.verdicts)))
 
 
 def _take(number: int, recording: Recording) -> Take:

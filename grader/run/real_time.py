@@ -10,6 +10,7 @@ from collections.abc import Callable
 from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
 from grader.run import evidence, handover, stage
+from grader.run.audience import Audience, seats
 from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
@@ -29,11 +30,17 @@ COMPUTES = 0.5
 MODULE = "grader.run.simulator.real_time"
 
 
-def run(submission: Submission, plan: Plan, progress: Progress | None = None) -> Recording:
+def run(
+    submission: Submission,
+    plan: Plan,
+    progress: Progress | None = None,
+    audience: Audience | None = None,
+) -> Recording:
     """Run a submission once beside a simulator of its own.
 
     Args:
         progress: called about once a second with the simulated time [s].
+        audience: who looks on; at no other speed than this.
 
     Raises:
         GraderFailure: the simulator could not be started.
@@ -44,8 +51,10 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
     with (
         stage.open_stage() as place,
         evidence.open_evidence() as told,
-        start_simulator(MODULE, place, plan) as simulator,
+        seats(audience, plan, "real") as seat,
+        start_simulator(MODULE, place, plan, seat=seat) as simulator,
     ):
+        seat.taken()
         simulator.expect("ready")
         submission = place.own(submission)
         words = command(submission, scene.introduction, told.descriptor)

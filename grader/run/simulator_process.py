@@ -13,6 +13,7 @@ from typing import Any
 
 from grader import system
 from grader.errors import GraderFailure
+from grader.run.audience import NOBODY, Seat
 from grader.run.environment import simulator_environment
 from grader.run.plan import Plan
 from grader.run.processes.line import Line
@@ -104,20 +105,23 @@ def start_simulator(
     link: socket.socket | None = None,
     *more: str,
     warm: Warm | None = None,
+    seat: Seat = NOBODY,
 ) -> Iterator[Simulator]:
     """Start `module` as the simulator's process.
 
     Args:
         link: inherited as well; its number follows the first three arguments.
         more: further arguments.
+        seat: how it is told that somebody looks on; the last argument.
         warm: where it is to be forked instead, if that can be.
     """
     with Line() as line:
         links = [link.fileno()] if link else []
         words = [line.word, stage.recording_path, plan.to_json(), *map(str, links), *more]
-        command = [sys.executable, "-m", module, *words]
+        command = [sys.executable, "-m", module, *words, seat.word]
         env = simulator_environment(stage.env)
-        fds = (*line.fds, *links, stage.recording) if system.inherits_descriptors() else ()
+        fds = (*line.fds, *links, stage.recording, *seat.fds)
+        fds = fds if system.inherits_descriptors() else ()
         process = Watched(command, env, stage.folder, fds, stage.entry, warm)
         try:
             yield Simulator(process, _connect(line, process))

@@ -14,6 +14,7 @@ from dataclasses import asdict, replace
 from grader.errors import GraderFailure
 from grader.recording.recording import Outcome, Recording
 from grader.run import evidence, handover, real_time, stage, zygotes
+from grader.run.audience import Audience, seats
 from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lockstep import contract
 from grader.run.lost import SimulatorLost
@@ -45,6 +46,7 @@ def run(
     progress: Progress | None = None,
     patience: Patience = PATIENCE,
     marks: dict[str, float] | None = None,
+    audience: Audience | None = None,
 ) -> Recording:
     """Run a submission once in virtual time, or in real time if it must be.
 
@@ -53,6 +55,7 @@ def run(
         patience: how long the submission's process is waited for, in real seconds.
         marks: told when, on the machine's monotonic clock [s], the two processes first heard of
             each other (`met`), were connected by DDS (`connected`), ticked last (`over`).
+        audience: who looks on; changes nothing of what is recorded.
 
     Raises:
         GraderFailure: the simulator could not be started or died; where the submission had said
@@ -60,15 +63,20 @@ def run(
     """
     why = stage.not_in_virtual_time(submission) or contract.lacking()
     if not why:
-        recording, why = _try(submission, plan, patience, {} if marks is None else marks)
+        known = {} if marks is None else marks
+        recording, why = _try(submission, plan, patience, known, audience)
         if recording is not None:
             return recording
     flag = f"graded in real time, because {why}"
-    return real_time.run(submission, replace(plan, flags=(flag, *plan.flags)), progress)
+    return real_time.run(submission, replace(plan, flags=(flag, *plan.flags)), progress, audience)
 
 
 def _try(
-    submission: Submission, plan: Plan, patience: Patience, marks: dict[str, float]
+    submission: Submission,
+    plan: Plan,
+    patience: Patience,
+    marks: dict[str, float],
+    audience: Audience | None,
 ) -> tuple[Recording | None, str]:
     """The recording of a run in virtual time, or why there is none."""
     started = time.monotonic()
@@ -78,6 +86,7 @@ def _try(
         stage.open_stage() as place,
         cores.reserve_core(ours.fileno()) as core_id,
         evidence.open_evidence() as told,
+        seats(audience, plan, "virtual") as seat,
         ours,
         theirs,
     ):
@@ -106,8 +115,11 @@ def _try(
             try:
                 more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
                 warm = zygotes.for_simulator(place.namespaces)
-                with start_simulator(MODULE, place, plan, theirs, *more, warm=warm) as simulator:
+                with start_simulator(
+                    MODULE, place, plan, theirs, *more, warm=warm, seat=seat
+                ) as simulator:
                     theirs.close()
+                    seat.taken()
                     try:
                         message = _watch(simulator, student.pid)
                     finally:

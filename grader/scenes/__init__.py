@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from grader.scenes.live import LivePage
     from grader.scenes.playback import Playback
     from grader.scenes.scene import Scene
 
@@ -44,3 +45,14 @@ def load_player(name: str) -> Callable[[Playback], str] | None:
         f"{__name__}.{name}.player.page"
     ).render
     return render
+
+
+def load_live(name: str) -> Callable[[int], LivePage] | None:
+    """What makes a page on which runs of a scene are seen while they go on; None where none does.
+
+    It gets the page's port, 0 for any that is free, and raises OSError where it cannot be served.
+    """
+    if name not in NAMES or importlib.util.find_spec(f"{__name__}.{name}.live") is None:
+        return None
+    serve: Callable[[int], LivePage] = importlib.import_module(f"{__name__}.{name}.live.page").serve
+    return serve

@@ -101,9 +101,12 @@ class Hooks:
 
     Attributes:
         has_unread: whether anything has arrived; while nothing has, a node need not be served.
+        tell: gets what somebody who looks on is to see, as plain data that its scene's live page
+            (`grader.scenes.live`) takes, after each tick; None where nobody does.
     """
 
     has_unread: Callable[[], bool] = lambda: True
+    tell: Callable[[Mapping[str, Any]], None] | None = None
 
 
 @dataclass(frozen=True)

@@ -40,9 +40,9 @@ class Admission:
         if shown and hmac.compare_digest(shown.encode(), self.token.encode()):
             return ""
         if shown:
-            return "The token in this address is not the simulator's: it changes at each start."
+            return "The token in this address is not this page's: it changes at each start."
         if self.needs_token:
-            return "This page needs the token: open the whole address that the simulator printed."
+            return "This page needs the token: open the whole address that was printed."
         host = _host(f"//{headers.get('host', '')}")
         if host not in _LOCAL:
             return f"This page is asked for as {host!r:.80}: {_ADVICE}"
@@ -56,7 +56,7 @@ class Admission:
         return f"A page of {origin!r:.80} asks for this one: {_ADVICE}"
 
 
-_ADVICE = "open the whole address that the simulator printed, with its token."
+_ADVICE = "open the whole address that was printed, with its token."
 
 
 def _host(url: str) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.canvas import Canvas, Pen
@@ -51,19 +51,38 @@ class Whole:
     content: Mapping[str, Any]
 
 
-class Feed:
-    """Collects what happens in an arena.
+#: Gets each change, and what was asked for.
+Deliver = Callable[[Change | Whole], None]
 
-    Args:
-        deliver: gets each change, and what was asked for; called in the simulator's thread.
+
+class Source(Protocol):
+    """Whatever knows of an arena what viewers are to be told.
 
     Attributes:
         is_watched: whether anybody wants changes; set from any thread.
     """
 
-    def __init__(self, arena: Arena, deliver: Callable[[Change | Whole], None]) -> None:
+    is_watched: bool
+
+    def ask(self, viewer: object) -> None:
+        """Have all of the arena delivered for a viewer; from any thread."""
+
+
+class Feed:
+    """Collects what happens in an arena.
+
+    Args:
+        deliver: called in the simulator's thread.
+        together: changes of so many ticks travel together.
+
+    Attributes:
+        is_watched: whether anybody wants changes; set from any thread.
+    """
+
+    def __init__(self, arena: Arena, deliver: Deliver, together: int = TICKS_TOGETHER) -> None:
         self._arena = arena
         self._deliver = deliver
+        self._together = together
         self.is_watched = False
         self._asked: deque[object] = deque()
         self._drawn: list[Any] = []
@@ -87,7 +106,7 @@ class Feed:
         if self._asked:
             self._deliver_change()
             self._deliver_wholes()
-        elif self._arena.ticks % TICKS_TOGETHER == 0:
+        elif self._arena.ticks % self._together == 0:
             self._deliver_change()
 
     def _forget(self) -> None:

@@ -24,6 +24,7 @@ from rclpy.qos import QoSProfile, qos_profile_best_available
 from rclpy.subscription import Subscription
 
 from turtlesim_py.live import messages
+from turtlesim_py.live.messages import NotThere
 
 #: Gets what a message says; called in the graph's thread.
 Hear = Callable[[Mapping[str, Any]], None]
@@ -34,10 +35,6 @@ PATIENCE_S: Final = 2.0
 _PAUSE_S: Final = 0.02
 
 _BAD_NAMES = (InvalidTopicNameException, InvalidServiceNameException)
-
-
-class NotThere(ValueError):
-    """What a viewer has named is not in the graph, or cannot be in any."""
 
 
 class Graph:

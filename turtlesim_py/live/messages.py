@@ -28,6 +28,10 @@ class NoSuchType(ValueError):
     """A type that is not installed here."""
 
 
+class NotThere(ValueError):
+    """What a viewer has named is not in the graph, or cannot be in any."""
+
+
 class Unfit(ValueError):
     """A value does not fit a field; the text says which, what was found and what was expected."""
 

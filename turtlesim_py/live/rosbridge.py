@@ -14,11 +14,13 @@ import json
 from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from turtlesim_py.live import messages
-from turtlesim_py.live.graph import Graph, NotThere
-from turtlesim_py.live.messages import NoSuchType, Unfit
+from turtlesim_py.live.messages import NoSuchType, NotThere, Unfit
+
+if TYPE_CHECKING:
+    from turtlesim_py.live.graph import Graph
 
 #: Of each kind a viewer may have so many open.
 MOST_OPEN = 32
@@ -41,7 +43,7 @@ class Host(Protocol):
     is_read_only: bool
 
     def graph(self) -> Graph:
-        """The ROS graph; made when it is needed first."""
+        """The ROS graph; made when it is needed first. NotThere: viewers have none."""
 
 
 @dataclass

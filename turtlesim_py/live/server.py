@@ -11,13 +11,13 @@ import base64
 import json
 import secrets
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
 from urllib.parse import urlsplit
 
 import PIL.Image
@@ -27,11 +27,15 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from turtlesim_py.live.admission import Admission, is_loopback
-from turtlesim_py.live.feed import Change, Feed, Whole
-from turtlesim_py.live.graph import Graph
+from turtlesim_py.live.feed import Change, Deliver, Source, Whole
+from turtlesim_py.live.messages import NotThere
 from turtlesim_py.live.rosbridge import LIVE, Session
 from turtlesim_py.world import sprites
-from turtlesim_py.world.arena import Arena
+
+if TYPE_CHECKING:
+    from turtlesim_py.live.graph import Graph
+
+_Source = TypeVar("_Source", bound=Source)
 
 #: A frame of a viewer's may have so many bytes.
 LONGEST_FRAME: Final = 256 * 1024
@@ -63,12 +67,16 @@ class Settings:
         host: the address to listen at.
         is_read_only: whether viewers can only look.
         token: '' makes one.
+        needs_token: whether nobody comes in without; elsewhere than at 127.0.0.1 nobody does.
+        has_graph: whether viewers may look at the topics and services of a ROS graph.
     """
 
     port: int
     host: str = "127.0.0.1"
     is_read_only: bool = False
     token: str = ""
+    needs_token: bool = False
+    has_graph: bool = True
 
 
 class _Viewer:
@@ -91,25 +99,33 @@ class _Viewer:
         return True
 
 
-class LiveServer:
+class LiveServer(Generic[_Source]):
     """The page and its viewers.
 
     Args:
+        make_feed: what viewers are told; gets what delivers it, from any thread.
         about: what the page has to know of the node: its name, its namespace, its messages.
 
     Attributes:
+        feed: what `make_feed` has made.
         port: where it listens.
     """
 
-    def __init__(self, arena: Arena, settings: Settings, about: Mapping[str, Any]) -> None:
-        self.feed = Feed(arena, self._deliver)
+    def __init__(
+        self, make_feed: Callable[[Deliver], _Source], settings: Settings, about: Mapping[str, Any]
+    ) -> None:
+        self.feed = make_feed(self._deliver)
         self.is_read_only = settings.is_read_only
-        self.about = {**about, "read_only": settings.is_read_only}
+        self.about = {
+            **about,
+            "read_only": settings.is_read_only,
+            "has_graph": settings.has_graph,
+        }
         self.port = settings.port
         self._host = settings.host
-        self._admission = Admission(
-            settings.token or secrets.token_urlsafe(12), not is_loopback(settings.host)
-        )
+        self._has_graph = settings.has_graph
+        needs_token = settings.needs_token or not is_loopback(settings.host)
+        self._admission = Admission(settings.token or secrets.token_urlsafe(12), needs_token)
         self._files = {path.name: path.read_bytes() for path in _PAGE.iterdir()}
         self._viewers: set[_Viewer] = set()
         self._watching: set[_Viewer] = set()
@@ -150,8 +166,16 @@ class LiveServer:
     # For sessions -----------------------------------------------------------------------------
 
     def graph(self) -> Graph:
-        """The ROS graph; made when it is needed first: who only looks needs none."""
+        """The ROS graph; made when it is needed first: who only looks needs none.
+
+        Raises:
+            NotThere: viewers have none.
+        """
+        if not self._has_graph:
+            raise NotThere("there are no topics and services to be seen here")
         if self._graph is None:
+            from turtlesim_py.live.graph import Graph  # here: it brings all of ROS
+
             self._graph = Graph()
         return self._graph
 

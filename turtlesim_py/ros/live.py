@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 from typing import TYPE_CHECKING
 
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableParameter
 from turtlesim_py.world.arena import Arena
 
 if TYPE_CHECKING:
+    from turtlesim_py.live.feed import Feed
     from turtlesim_py.live.server import LiveServer
 
 #: Nobody but this machine.
@@ -31,7 +33,7 @@ def declare_parameters(node: RclcppNode) -> None:
     node.declare("view_read_only", False, "Whether the page is for looking only", read_only=True)
 
 
-def serve(node: RclcppNode, arena: Arena, interfaces: str) -> LiveServer | None:
+def serve(node: RclcppNode, arena: Arena, interfaces: str) -> LiveServer[Feed] | None:
     """Begin to serve the page; None where none is wanted.
 
     Args:
@@ -44,7 +46,8 @@ def serve(node: RclcppNode, arena: Arena, interfaces: str) -> LiveServer | None:
     if port < 0:
         return None
     try:
-        from turtlesim_py.live.server import LiveServer, Settings  # here: few want a page
+        from turtlesim_py.live.feed import Feed  # here: few want a page
+        from turtlesim_py.live.server import LiveServer, Settings
     except ImportError as error:
         needed = f"-1: a page needs the package websockets, 13.1 or newer ({error})"
         raise UnusableParameter("view_port", port, needed) from None
@@ -61,7 +64,7 @@ def serve(node: RclcppNode, arena: Arena, interfaces: str) -> LiveServer | None:
         "interfaces": interfaces,
     }
     sys.setswitchinterval(SWITCH_S)
-    server = LiveServer(arena, settings, about)
+    server = LiveServer(partial(Feed, arena), settings, about)
     try:
         server.start()
     except (OSError, UnicodeError) as error:

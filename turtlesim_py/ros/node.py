@@ -30,6 +30,7 @@ from turtlesim_py.world.sprites import NAMES
 from turtlesim_py.world.turtle import Reading
 
 if TYPE_CHECKING:
+    from turtlesim_py.live.feed import Feed
     from turtlesim_py.live.server import LiveServer
 
 #: For who asks what the program does.
@@ -84,7 +85,7 @@ class TurtlesimNode(RclcppNode):
     def __init__(self, arguments: list[str] | None = None) -> None:
         # first, since a node that comes no further is destroyed as well
         self._endpoints: dict[str, TurtleEndpoints] = {}
-        self.live: LiveServer | None = None
+        self.live: LiveServer[Feed] | None = None
         super().__init__("turtlesim", cli_args=arguments)
         for parameter in PARAMETERS:
             low, high = parameter.low, parameter.high

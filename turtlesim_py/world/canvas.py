@@ -83,8 +83,11 @@ class Canvas:
         For a turtle, a is the new position and b the old one: the order decides some pixels.
         Coordinates may be far outside; with one that is not finite nothing is drawn.
         """
+        self.paint(pen, spans(ax, ay, bx, by, pen.width, self.width, self.height))
+
+    def paint(self, pen: Pen, runs: Sequence[Span]) -> None:
+        """Paint runs of pixels, all of them within the canvas."""
         pixels, width, pixel = self._pixels, self.width, pen._pixel
-        runs = spans(ax, ay, bx, by, pen.width, width, self.height)
         for row, first, last in runs:
             start = row * width
             pixels[start + first : start + last + 1] = pixel * (last - first + 1)

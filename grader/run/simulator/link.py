@@ -88,12 +88,14 @@ class StudentLink:
         waits: `for ever` - it waits for something that will not come, as a program may that has
             done its work; `stuck` - in a callback, where it must not.
         flags: remarks for the result.
+        excused_cpu_s: processor time of the simulator's that is not the submission's doing [s].
     """
 
     def __init__(self, link: socket.socket, pid: int, patience: Patience) -> None:
         self.silence = ""
         self.waits: Literal["", "for ever", "stuck"] = ""
         self.flags: list[str] = []
+        self.excused_cpu_s = 0.0
         link.setblocking(False)
         self._link = link
         self._packets = PacketReader(link, LIMIT_BYTES)
@@ -274,6 +276,9 @@ class StudentLink:
                 self.silence = "slow"
             elif self._asleep_s > self._patience.all_asleep_s:
                 raise Refused(ELSEWHERE)
-            elif time.process_time() - self._cpu_before_s > self._patience.simulator_cpu_s:
+            elif self._spent_cpu_s() > self._patience.simulator_cpu_s:
                 self.silence = "flooding"
         return bool(self.silence)
+
+    def _spent_cpu_s(self) -> float:
+        return time.process_time() - self._cpu_before_s - self.excused_cpu_s

@@ -1,10 +1,11 @@
 """The simulator's process in a run in real time: a scene that the wall clock moves.
 
-    python -m grader.run.simulator.real_time LINE FILE PLAN
+    python -m grader.run.simulator.real_time LINE FILE PLAN SHOWN
 
 It speaks JSON lines with the grader over LINE (`grader.run.processes.line`): out go `ready`,
 `progress` about once a second, and `done` when the recording lies in FILE; in come `start` when the
-submission's process is started, and `exited` when it has ended. PLAN is a `grader.run.plan.Plan`.
+submission's process is started, and `exited` when it has ended. PLAN is a `grader.run.plan.Plan`,
+SHOWN what `grader.run.audience` asks for, or ''.
 The clock of the run starts when the submission has its first node, has ended, or has had
 FIRST_NODE_S for it. If the grader goes away, so does the simulator.
 """
@@ -26,6 +27,7 @@ from grader.run.plan import Plan
 from grader.run.processes.line import take_up
 from grader.run.simulator import precautions
 from grader.run.simulator.published_topics import EVENTS, PublishedTopics
+from grader.run.simulator.telling import Telling
 from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
 
@@ -41,12 +43,14 @@ OVERTIME = "the run was ended: the simulator was kept from ticking at its pace"
 class GradedSimulator:
     """A scene at work, told by the grader what becomes of the submission."""
 
-    def __init__(self, link: socket.socket, file: Path, plan: Plan) -> None:
+    def __init__(self, link: socket.socket, file: Path, plan: Plan, shown: str = "") -> None:
         self._link = link
         self._file = file
         self._scene = load_scene(plan.scene)
+        self._telling = Telling.of(shown, self._scene.tick_ns)
+        hooks = Hooks(tell=None if self._telling is None else self._telling.tell)
         self._simulation = self._scene.simulate(
-            plan.limits, plan.start, Hooks(), plan.interfaces, plan.setting
+            plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )
         self._topics = PublishedTopics(self._simulation.node)
         self._limits = plan.limits
@@ -74,6 +78,8 @@ class GradedSimulator:
             return not reason
 
         self._simulation.follow_wall_clock(tick)
+        if self._telling is not None:
+            self._telling.close()
         self._topics.look()
         handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.found())
         flags = [*self._simulation.flags, *self._flags]
@@ -136,7 +142,7 @@ def main(argv: list[str]) -> int:
     precautions.take()
     link = take_up(argv[0])
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-    GradedSimulator(link, Path(argv[1]), Plan.from_json(argv[2])).run()
+    GradedSimulator(link, Path(argv[1]), Plan.from_json(argv[2]), argv[3]).run()
     rclpy.shutdown()
     return 0
 

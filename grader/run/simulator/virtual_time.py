@@ -1,10 +1,10 @@
 """The simulator's process in a run in virtual time: it ticks when the submission's process asks.
 
-    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PID CORE PATIENCE
+    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PID CORE PATIENCE SHOWN
 
 The first three as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
 process PID, CORE the processor core that both are to share (-1: any), PATIENCE a
-`grader.run.simulator.link.Patience` as JSON.
+`grader.run.simulator.link.Patience` as JSON, SHOWN what `grader.run.audience` asks for, or ''.
 
 What the submission has sent comes with its request for time, what is answered and published goes
 with the reply (`grader.run.lockstep.protocol`). What happens in a tick is the node's own business,
@@ -36,6 +36,7 @@ from grader.run.simulator import precautions
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import Foresight
 from grader.run.simulator.link import Patience, Refused, StudentLink
+from grader.run.simulator.telling import Telling
 from grader.scenes import load_scene
 from grader.scenes.scene import Hooks, Reason
 
@@ -55,6 +56,7 @@ class Lockstep:
         plan: Plan,
         share_core: Callable[[], None],
         on_met: Callable[[], None],
+        shown: str = "",
     ) -> None:
         """Both are called once: `on_met` at the first word of the submission's process.
 
@@ -72,7 +74,9 @@ class Lockstep:
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
         assert self._scene.tick_ns == TICK_NS
-        hooks = Hooks(has_unread=self._registry.has_unread)
+        self._telling = Telling.of(shown, TICK_NS)
+        tell = None if self._telling is None else self._telling.tell
+        hooks = Hooks(has_unread=self._registry.has_unread, tell=tell)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )
@@ -111,6 +115,8 @@ class Lockstep:
             self._take_mail()
         self._finish_alone()
         self._mark("over")
+        if self._telling is not None:
+            self._telling.close()
         return {
             "reason": self._reason,
             "silence": self._link.silence,
@@ -173,6 +179,9 @@ class Lockstep:
         self._clocks.set_now(self.now_ns)
 
     def _count_tick(self) -> None:
+        if self._telling is not None:
+            self._telling.pace()
+            self._link.excused_cpu_s = self._telling.cpu_s
         self._tick += 1
         self._registry.tick = self._tick
         self.now_ns = self._tick * TICK_NS
@@ -240,7 +249,7 @@ def main(argv: list[str]) -> int:
         # for both, from here: a submission's process may not say where threads run
         cores.pin(core, os.getpid(), student)
 
-    lockstep = Lockstep(link, Plan.from_json(argv[2]), share_core, lambda: say("met"))
+    lockstep = Lockstep(link, Plan.from_json(argv[2]), share_core, lambda: say("met"), argv[7])
     gc.freeze()
     gc.set_threshold(GARBAGE)
     try:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from copy import copy
 from itertools import count
+from typing import Any
 
 from grader.scenes.scene import Forecast, Hooks, Limits, Reason, Start
 from grader.scenes.turtlesim.allowance import MOST_LOGS
@@ -12,6 +13,7 @@ from grader.scenes.turtlesim.end_of_run import EndOfRun
 from grader.scenes.turtlesim.graded_node import GradedNode
 from grader.scenes.turtlesim.recorder import Recorder
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
+from turtlesim_py.live.feed import Change, Feed, Whole
 from turtlesim_py.ros import pacer
 from turtlesim_py.ros.turtle_endpoints import pose_bytes
 from turtlesim_py.world.arena import Arena
@@ -33,6 +35,7 @@ class TurtlesimSimulation:
         self._recorder = Recorder(self.node.arena, MOST_LOGS)
         self._end = EndOfRun(limits)
         self._records = False
+        self._feed = None if hooks.tell is None else _feed(self.node.arena, hooks.tell)
 
     @property
     def is_at_rest(self) -> bool:
@@ -64,6 +67,8 @@ class TurtlesimSimulation:
     def tick(self, now_ns: int | None = None) -> Reason:
         """Serve what has arrived, let a tick pass; why the run is over, or ''."""
         readings = self.node.tick(now_ns)
+        if self._feed is not None:
+            self._feed.after_tick(readings)
         return self._take(readings) if self._records else ""
 
     def _take(self, readings: dict[str, Reading]) -> Reason:
@@ -84,12 +89,26 @@ class TurtlesimSimulation:
     def pass_tick(self, now_ns: int) -> tuple[Reason, tuple[bytes, ...]]:
         """As `tick`, in a tick that was foreseen: publishes nothing, returns what it would have."""
         readings = self.node.pass_tick(now_ns)
+        if self._feed is not None:
+            self._feed.after_tick(readings)
         poses = tuple([pose_bytes(reading.pose) for reading in readings.values()])
         return self._take(readings), poses
 
     def trace(self) -> TurtleTrace:
         """Everything recorded up to now."""
         return self._recorder.trace()
+
+
+def _feed(arena: Arena, tell: Callable[[Mapping[str, Any]], None]) -> Feed:
+    """What tells of every tick, and has told already where the run begins."""
+
+    def deliver(news: Change | Whole) -> None:
+        tell(news.content)  # nobody asks for a whole: who looks on knows all from the beginning
+
+    feed = Feed(arena, deliver, together=1)
+    feed.is_watched = True
+    feed.after_tick({})
+    return feed
 
 
 def _place(arena: Arena, start: Start | None) -> None:

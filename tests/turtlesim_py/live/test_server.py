@@ -192,7 +192,7 @@ def test_pages_of_others_and_names_of_others_are_refused(page):
     asking.request("GET", "/", headers={"Host": "evil.example"})
     answer = asking.getresponse()
     assert answer.status == 403
-    assert "open the whole address that the simulator printed" in answer.read().decode()
+    assert "open the whole address that was printed" in answer.read().decode()
 
 
 @pytest.mark.parametrize("path", ["/", "/proxy/8080/", "/index.html"])

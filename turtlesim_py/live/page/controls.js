@@ -44,6 +44,10 @@ export class Controls {
     Object.assign(this, { namespace, interfaces, node });
     this.element("controls").hidden = isReadOnly;
     this.element("keys").hidden = isReadOnly;
+    if (isReadOnly) {
+      this.element("pad").setAttribute("aria-label", "The turtles' window");
+      this.element("pad").removeAttribute("aria-describedby");
+    }
     if (!isReadOnly) this.advertise();
   }
 

@@ -2,6 +2,7 @@
 
 import { Controls } from "./controls.js";
 import { Explorer } from "./explorer.js";
+import { headingOf, tellGrading } from "./grading.js";
 import { Marks } from "./marks.js";
 import { LIVE, Rosbridge } from "./rosbridge.js";
 import { TurtleWindow } from "./window.js";
@@ -13,6 +14,7 @@ const sprites = await (await fetch("sprites.json")).json();
 const view = new TurtleWindow(element("canvas"), sprites);
 const marks = new Marks(element("marks"));
 let about = null;
+let grading = null;
 let isDue = false;
 let calls = [];
 let told = Promise.resolve();
@@ -38,7 +40,17 @@ async function take(news) {
     about = news.about;
     await view.setPaint(news.whole);
     controls.know(about);
+    element("graph").hidden = !about.has_graph;
     state();
+  }
+  if (news.grading) {
+    grading = news.grading;
+    tellGrading(element, grading);
+    state();
+  }
+  if (news.begins) {
+    calls = [];
+    element("calls").replaceChildren();
   }
   view.tick = news.tick;
   if (news.drawn) view.draw(news.drawn);
@@ -51,10 +63,18 @@ async function take(news) {
   showSoon();
 }
 
+const who = () => (grading ? "the grader" : "the simulator");
+const seen = () => (
+  grading ? headingOf(grading) : `${about.node}${about.read_only ? ", for looking only" : ""}`
+);
+const missed = () => (
+  grading?.is_over
+    ? `${seen()}. The grading is over; what is here stays.`
+    : `No connection: ${who()} has ended, or cannot be reached. Trying again …`
+);
+
 function state(lost = false) {
-  const text = lost
-    ? "No connection: the simulator has ended, or cannot be reached. Trying again …"
-    : `${about.node}${about.read_only ? ", for looking only" : ""}`;
+  const text = lost ? missed() : seen();
   if (element("state").textContent !== text) element("state").textContent = text;
   document.documentElement.dataset.state = lost ? "lost" : "live";
 }

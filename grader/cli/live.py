@@ -1,0 +1,169 @@
+"""The page of `grader run --live`: opened before the first run, told what comes to be known, kept.
+
+A quick run is over before somebody has a page open, so the first one waits for a viewer, for a
+while.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from types import TracebackType
+from typing import Any, Final, Self
+
+from rich.console import Console
+from rich.text import Text
+
+from grader import system
+from grader import text as texts
+from grader.errors import UsageError
+from grader.exercise.loading import Exercise
+from grader.recording.recording import Clock
+from grader.reports import Report, playback
+from grader.run.plan import Plan
+from grader.scenes import load_live
+from grader.scenes.live import Grading, LivePage
+from grader.text import for_terminal
+from turtlesim_py import browser
+
+#: What --speed takes -> how many times as fast as in real time, and that in words.
+SPEEDS: Final[Mapping[str, tuple[float | None, str]]] = {
+    "1": (1.0, "as fast as in real time"),
+    "5": (5.0, "five times as fast as in real time"),
+    "free": (None, "as fast as it goes"),
+}
+#: Where the page is, unless somebody has that port.
+USUAL_PORT: Final = 8080
+#: So long the first run waits for somebody to look [s].
+PATIENCE_S: Final = 30.0
+
+
+class Live:
+    """A page for as long as its context is open; an `Audience` for runs.
+
+    Args:
+        speed: a key of `SPEEDS`.
+        patience_s: so long the first run waits for somebody to look [s].
+    """
+
+    def __init__(self, speed: str, patience_s: float = PATIENCE_S) -> None:
+        self.speed, self._pace = SPEEDS[speed]
+        self._patience_s = patience_s
+        self._page: LivePage | None = None
+        self._plans: Sequence[Plan] = ()
+        self._grading = Grading("")
+        self._lock = threading.Lock()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._page is not None:
+            self._page.close()
+
+    def open(
+        self, exercise: Exercise, submission: str, plans: Sequence[Plan], messages: Console
+    ) -> None:
+        """Serve the page, say where, and wait for somebody; later only show who is graded now.
+
+        Raises:
+            UsageError: runs of this exercise cannot be shown, or not on this system.
+        """
+        self._plans = plans
+        is_first = self._page is None
+        if is_first:
+            self._page = _serve(exercise)
+        self._change(Grading(f"{texts.one_line(texts.plain(submission))}, {exercise.title}"))
+        if is_first:
+            self._invite(messages)
+
+    def _invite(self, messages: Console) -> None:
+        assert self._page is not None
+        address = self._page.address
+        messages.print(Text(for_terminal(f"The runs are to be seen at {address}")), soft_wrap=True)
+        browser.show(address)
+        messages.print(f"Waiting for somebody to look, {self._patience_s:g} s at most ...")
+        if not self._page.await_viewer(self._patience_s):
+            messages.print("Nobody looks yet; the run begins.")
+
+    # An audience ------------------------------------------------------------------------------
+
+    def begins(self, plan: Plan, time: Clock) -> None:
+        """Show an empty window, and which run it is."""
+        starts = [each.start for each in self._plans]
+        number, varied = starts.index(plan.start), len(starts) - 1
+        name = f"varied run {number} of {varied}" if number else "nominal run"
+        if plan.start is not None:
+            name += f" from {texts.place(plan.start.x, plan.start.y)}"
+        pace = "in real time" if time == "real" else self._pace
+        assert self._page is not None
+        self._page.begin()
+        self._change(run=f"{name}, {pace}")
+
+    def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
+        """Show what happens in the run."""
+        assert self._page is not None
+        self._page.hear(news)
+
+    def ends(self, is_whole: bool) -> None:
+        """Say so where the run could not be shown to its end."""
+        if not is_whole:
+            self._change(run=f"{self._grading.run} (not all of it could be shown)")
+
+    # What comes to be known -------------------------------------------------------------------
+
+    def know_of_nominal(self, report: Report) -> None:
+        """Show what the nominal run decides while the others still go."""
+        score = "The nominal run is over, the others still go."
+        self._change(score=score, judged=playback.judged(report, 1))
+
+    def know(self, report: Report) -> None:
+        """Show the verdicts."""
+        self._change(
+            score=f"Score: {report.score_text}",
+            first=report.first_line,
+            judged=playback.judged(report, len(self._plans)),
+            is_over=True,
+        )
+
+    def stay(self) -> None:
+        """In a terminal, keep the page until Ctrl-C."""
+        if self._page is None or not sys.stderr.isatty():
+            return
+        where = Text(for_terminal(f"The page stays at {self._page.address}; Ctrl-C ends it."))
+        Console(stderr=True, highlight=False).print(where, soft_wrap=True)
+        with suppress(KeyboardInterrupt):
+            threading.Event().wait()
+
+    def _change(self, grading: Grading | None = None, **known: Any) -> None:
+        assert self._page is not None
+        with self._lock:
+            self._grading = replace(grading or self._grading, **known)
+            self._page.tell(self._grading)
+
+
+def _serve(exercise: Exercise) -> LivePage:
+    serve = load_live(exercise.scene)
+    if serve is None:
+        raise UsageError(
+            f"--live: runs of the exercise {exercise.name!r} cannot be shown, for its scene "
+            f"{exercise.scene!r} has no such page; its report.html shows what came of them"
+        )
+    if not system.inherits_descriptors():
+        raise UsageError("--live needs Linux or macOS; grader view plays the run afterwards")
+    try:
+        return serve(USUAL_PORT)
+    except OSError:
+        pass
+    try:
+        return serve(0)
+    except OSError as error:
+        raise UsageError(f"--live: no page can be served at 127.0.0.1 ({error.strerror})") from None
