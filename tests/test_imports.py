@@ -131,14 +131,16 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.testing": GROUND
     | STATIONS
     | {"grader.__init__", "grader.grading", "turtlesim_py", "robot_py"},
-    "grader.cli": GROUND | STATIONS | below("grader", "__init__", "grading", "testing", "batch"),
     # a page is shown as the simulator's is
+    "grader.cli.live": GROUND | STATIONS | {"turtlesim_py.browser"},
+    "grader.cli": GROUND
+    | STATIONS
+    | below("grader", "__init__", "grading", "testing", "batch", "cli.live"),
+    # ... and so is the page that plays
     "grader.cli.view": GROUND
     | STATIONS
     | below("grader.cli", "place", "error_file")
     | {"turtlesim_py.browser"},
-    # ... and so is that of `run --live`
-    "grader.cli.live": GROUND | STATIONS | {"turtlesim_py.browser"},
     "grader.__main__": {"grader.cli"},
 }
 

@@ -89,15 +89,17 @@ def _listen(ours: socket.socket, audience: Audience) -> None:
     """Hand on what comes until nobody has the other end."""
     pause = threading.Event()
     text, is_whole = b"", False
-    with ours:  # who tells does not wait for one who has left
-        while len(text) < LONGEST_BYTES and (chunk := _more(ours)):
-            *lines, text = (text + chunk).split(b"\n")
-            news = [json.loads(line) for line in lines]
-            is_whole = bool(news) and "over" in news[-1]
-            audience.hear(news[:-1] if is_whole else news)
-            if len(chunk) < CHUNK_BYTES and not is_whole:
-                pause.wait(TOGETHER_S)
-    audience.ends(is_whole)
+    try:
+        with ours:  # who tells does not wait for one who has left
+            while len(text) < LONGEST_BYTES and (chunk := _more(ours)):
+                *lines, text = (text + chunk).split(b"\n")
+                news = [json.loads(line) for line in lines]
+                audience.hear([each for each in news if "over" not in each])
+                is_whole = bool(news) and "over" in news[-1]
+                if len(chunk) < CHUNK_BYTES and not is_whole:
+                    pause.wait(TOGETHER_S)
+    finally:
+        audience.ends(is_whole)
 
 
 def _more(ours: socket.socket) -> bytes:

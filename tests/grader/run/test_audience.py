@@ -1,0 +1,96 @@
+"""Who looks on at a run sees all of it, and changes nothing of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from grader.run import audience, real_time, virtual_time
+from grader.run.plan import Plan
+from grader.scenes.scene import Limits, Start
+from grader.scenes.turtlesim.live.mirror import Mirror
+from grader.submission.opening import open_submission
+from tests.grader.run.conftest import LIMITS, SUBMISSIONS
+from turtlesim_py.live.feed import Whole
+from turtlesim_py.world import picture
+
+
+class Onlooker:
+    """Has the picture as a page would have it."""
+
+    def __init__(self, speed: float | None) -> None:
+        self.speed = speed
+        self.told: list[object] = []
+        self.ticks: list[int] = []
+        self.wholes: list[Whole] = []
+        self.mirror = Mirror(lambda news: isinstance(news, Whole) and self.wholes.append(news))
+
+    def begins(self, plan, time):
+        self.told.append((plan.start, time))
+        self.mirror.begin()
+
+    def hear(self, news):
+        self.ticks += [each["tick"] for each in news]
+        self.mirror.hear(news)
+
+    def ends(self, is_whole):
+        self.told.append(is_whole)
+
+    def window(self):
+        self.mirror.ask(self)
+        whole = self.wholes[-1]
+        turtles = [
+            picture.Sprite(*turtle["px"], turtle["heading"], turtle["sprite"])
+            for turtle in whole.content["turtles"]
+        ]
+        return picture.render(whole.canvas, tuple(whole.content["background"]), turtles)
+
+
+@pytest.mark.records("services/all_services", "quick_spiral")
+@pytest.mark.parametrize(
+    ("name", "speed"), [("services/all_services", None), ("quick_spiral", 8.0)]
+)
+def test_a_run_that_is_seen_is_the_same_run_and_is_seen_to_its_last_pixel(recorded, name, speed):
+    unseen = recorded(name)
+    onlooker = Onlooker(speed)
+    with open_submission(SUBMISSIONS / f"{name}.py") as submission:
+        seen = virtual_time.run(submission, Plan(LIMITS), audience=onlooker)
+    assert onlooker.told == [(None, "virtual"), True]
+    assert (seen.run.time, seen.run.trace_sha256) == ("virtual", unseen.run.trace_sha256)
+    assert (seen.run.outcome, seen.run.flags) == (unseen.run.outcome, unseen.run.flags)
+    assert (seen.topics, seen.output) == (unseen.topics, unseen.output)
+    assert seen.conduct == unseen.conduct
+    assert onlooker.ticks == sorted(onlooker.ticks)
+    assert onlooker.ticks[0] == 0
+    assert np.array_equal(onlooker.window(), seen.trace.window)
+
+
+def test_a_run_in_real_time_is_seen_as_well_from_where_it_starts(tmp_path):
+    node = tmp_path / "node.py"
+    node.write_text("import rclpy\nrclpy.init()\nrclpy.create_node('still')\n")
+    onlooker = Onlooker(1.0)
+    plan = Plan(Limits(0.3, 0.2, 1), start=Start(2.0, 3.0, 1.0))
+    with open_submission(node) as submission:
+        seen = real_time.run(submission, plan, audience=onlooker)
+    assert onlooker.told == [(plan.start, "real"), True]
+    assert np.array_equal(onlooker.window(), seen.trace.window)
+
+
+@pytest.mark.records("quick_spiral")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_one_who_fails_is_told_nothing_more_and_the_run_goes_on(recorded):
+    onlooker = Onlooker(None)
+
+    def fail(news):
+        raise KeyError("tick")
+
+    onlooker.hear = fail
+    with open_submission(SUBMISSIONS / "quick_spiral.py") as submission:
+        seen = virtual_time.run(submission, Plan(LIMITS), audience=onlooker)
+    assert seen.run.trace_sha256 == recorded("quick_spiral").run.trace_sha256
+    assert onlooker.told == [(None, "virtual"), False]
+
+
+def test_nobody_costs_nothing():
+    with audience.seats(None, Plan(LIMITS), "virtual") as seat:
+        assert (seat.word, seat.fds) == ("", ())
