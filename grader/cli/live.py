@@ -46,12 +46,10 @@ class Live:
 
     Args:
         speed: a key of `SPEEDS`.
-        patience_s: so long the first run waits for somebody to look [s].
     """
 
-    def __init__(self, speed: str, patience_s: float = PATIENCE_S) -> None:
+    def __init__(self, speed: str) -> None:
         self.speed, self._pace = SPEEDS[speed]
-        self._patience_s = patience_s
         self._page: LivePage | None = None
         self._plans: Sequence[Plan] = ()
         self._grading = Grading("")
@@ -90,8 +88,8 @@ class Live:
         address = self._page.address
         messages.print(Text(for_terminal(f"The runs are to be seen at {address}")), soft_wrap=True)
         browser.show(address)
-        messages.print(f"Waiting for somebody to look, {self._patience_s:g} s at most ...")
-        if not self._page.await_viewer(self._patience_s):
+        messages.print(f"Waiting for somebody to look, {PATIENCE_S:g} s at most ...")
+        if not self._page.await_viewer(PATIENCE_S):
             messages.print("Nobody looks yet; the run begins.")
 
     # An audience ------------------------------------------------------------------------------

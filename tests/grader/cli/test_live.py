@@ -1,0 +1,145 @@
+"""`grader run --live`: what it asks, what it says, what it leaves as it was."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from websockets.sync.client import connect
+
+from grader import grading
+from grader.cli import live, main, run
+from grader.scenes.turtlesim.live.page import TurtlesimPage
+from tests.grader.driving import Spiral, drive
+from tests.programs import DEADLINE_S
+
+ROOT = Path(__file__).parents[3]
+SUBMISSIONS = Path(__file__).parents[2] / "submissions"
+QUICK = SUBMISSIONS / "quick_spiral.py"
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    return drive(Spiral(), ticks=600)
+
+
+@pytest.fixture
+def in_no_time(monkeypatch, drawn):
+    """Runs take no time, and the nominal one is judged before the next; nobody is waited for.
+
+    Gives where runs began and what the page was told, in order.
+    """
+    order = []
+    judged = threading.Event()
+
+    def tell(page, known):
+        order.append(known)
+        if known.judged:
+            judged.set()
+
+    def made(submission, plan, progress=None, *, audience=None):
+        assert plan.start is None or judged.wait(60)
+        audience.begins(plan, "virtual")
+        order.append(plan.start)
+        audience.hear([{"tick": 1, "drawn": [], "calls": []}])
+        audience.ends(True)
+        return replace(drawn, start=plan.start)
+
+    monkeypatch.setitem(grading.RUNNERS, "virtual", made)
+    monkeypatch.setattr(live, "PATIENCE_S", 0.0)
+    monkeypatch.setattr(TurtlesimPage, "tell", tell)
+    return order
+
+
+def test_runs_go_one_after_the_other_and_verdicts_are_told_as_they_are_known(
+    in_no_time, tmp_path, capfd
+):
+    out = tmp_path / "out"
+    assert main(["run", str(QUICK), "--live", "--speed", "5", "--out", str(out)]) == 0
+    starts = [each for each in in_no_time if not isinstance(each, live.Grading)]
+    exercise = grading.load_exercise("turtlesim_challenge")
+    assert starts == [None, *exercise.starts()]
+    told = [each for each in in_no_time if isinstance(each, live.Grading)]
+    headings = list(dict.fromkeys(each.run for each in told))
+    assert headings[:2] == ["", "nominal run, five times as fast as in real time"]
+    assert headings[2].startswith("varied run 1 of 2 from (")
+    assert headings[3].startswith("varied run 2 of 2 from (")
+    early = next(each for each in told if each.judged)
+    assert (early.score, early.is_over) == ("The nominal run is over, the others still go.", False)
+    result = json.loads((out / "result.json").read_text())
+    assert 0 < len(early.judged) < len(result["verdicts"]) == len(told[-1].judged)
+    assert (told[-1].score, told[-1].is_over) == (f"Score: {result['score']} of 100", True)
+    said = capfd.readouterr().err
+    assert re.search(r"The runs are to be seen at http://127.0.0.1:\d+/\?token=\S+\n", said)
+    assert "Nobody looks yet; the run begins." in said
+
+
+def test_a_port_that_is_taken_is_no_hindrance(in_no_time, tmp_path, capfd, monkeypatch):
+    first = live.load_live("turtlesim")(0)
+    monkeypatch.setattr(live, "USUAL_PORT", int(first.address.split(":")[2].split("/")[0]))
+    try:
+        assert main(["run", str(QUICK), "--live", "--out", str(tmp_path / "out")]) == 0
+    finally:
+        first.close()
+    assert f":{live.USUAL_PORT}/" not in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--speed", "5"], "--speed is for --live"),
+        (["--live", "--speed", "free", "--time", "real"], "--speed free needs virtual time"),
+        (["--live", "--exercise", "state_publisher"], "its scene 'robot' has no such page"),
+        (["--live", "--exercise", "description_package"], "its scene 'package' has no such page"),
+    ],
+)
+def test_what_cannot_be_shown_is_told_before_anything_is_written(words, said, tmp_path, capfd):
+    out = tmp_path / "out"
+    package = Path(grading.__file__).parent / "exercises/state_publisher/reference"
+    handed_in = package if "--exercise" in words else QUICK
+    assert main(["run", str(handed_in), *words, "--out", str(out)]) == 2
+    assert said in " ".join(capfd.readouterr().err.split())
+    assert not out.exists()
+
+
+def test_the_speeds_are_those_that_there_are():
+    assert run.SPEEDS == tuple(live.SPEEDS)
+
+
+def test_in_a_terminal_the_page_stays_until_ctrl_c(tmp_path):
+    """Whoever looks sees the last picture for as long as he likes; the exit code is the score's."""
+    terminal, theirs = pty.openpty()
+    words = ("run", str(QUICK), "--live", "--speed", "free", "--fail-under", "101")
+    with subprocess.Popen(
+        [sys.executable, "-m", "grader", *words],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=theirs,
+    ) as program:
+        os.close(theirs)
+        said = ""
+        while not (found := re.search(r"seen at (http://\S+)\r\n", said)):
+            said += os.read(terminal, 4096).decode()
+        socket = found[1].replace("http:", "ws:").replace("/?", "/socket?")
+        with connect(socket) as viewer:
+            viewer.send(json.dumps({"op": "subscribe", "topic": "/turtlesim_live"}))
+            is_over = False
+            while not is_over:
+                told = json.loads(viewer.recv(timeout=DEADLINE_S))["msg"]
+                is_over = told.get("grading", {}).get("is_over", False)
+        while "Ctrl-C ends it" not in said:
+            said += os.read(terminal, 4096).decode()
+        assert program.poll() is None
+        program.send_signal(signal.SIGINT)
+        assert program.wait(DEADLINE_S) == 1
+    os.close(terminal)

@@ -1,0 +1,53 @@
+"""`grader run --live` in a real browser: a person sees the run, its end, and the verdicts."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+
+import numpy as np
+import PIL.Image
+import pytest
+
+from tests.browser import needs_browser, obstacles, open_browser
+from tests.grader.cli.test_live import QUICK
+from tests.programs import DEADLINE_S, Program
+from tests.turtlesim_py.live.test_in_a_browser import PIXELS
+
+pytestmark = needs_browser
+
+#: One run is seen from its first tick to its last.
+EXERCISE = "exercise: turtlesim_challenge\nvaried_runs:\n  count: 0\n"
+
+
+@pytest.mark.parametrize("width", [375, 1280])
+def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_path, width):
+    (tmp_path / "one_run.yaml").write_text(EXERCISE)
+    out = tmp_path / "out"
+    words = (str(QUICK), "--live", "--speed", "free", "--out", str(out))
+    given = ("run", *words, "--exercise", "one_run.yaml")
+    with Program("grader", *given, cwd=tmp_path) as program, open_browser() as browser:
+        address = re.search(r"http://\S+", program.wait_for_line("to be seen at"))[0]
+        page = browser.new_page(viewport={"width": width, "height": 900})
+        page.set_default_timeout(DEADLINE_S * 1000)
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(address)
+        page.wait_for_selector("#state:has-text('nominal run, as fast as it goes')")
+        page.wait_for_selector("#state:has-text('The grading is over; what is here stays.')")
+        assert program.wait() == 0
+        result = json.loads((out / "result.json").read_text())
+        assert page.inner_text("#grading-score") == f"Score: {result['score']:g} of 100"
+        titles = page.locator("#checks strong").all_inner_texts()
+        assert titles == [verdict["title"] for verdict in result["verdicts"]]
+        page.evaluate("new Promise(requestAnimationFrame)")  # what has come is drawn
+        pixels = np.frombuffer(base64.b64decode(page.evaluate(PIXELS)), np.uint8)
+        with PIL.Image.open(out / "canvas.png") as picture:
+            expected = np.asarray(picture.convert("RGB"))
+        assert np.array_equal(pixels.reshape(500, 500, 4)[..., :3], expected)
+        for what in ("#controls", "#keys", "#graph"):  # nothing that would drive
+            assert page.locator(what).is_hidden()
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert obstacles(page) == []
+        assert errors == []
