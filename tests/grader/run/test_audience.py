@@ -40,7 +40,7 @@ class Onlooker:
         self.mirror.ask(self)
         whole = self.wholes[-1]
         turtles = [
-            picture.Sprite(*turtle["px"], turtle["heading"], turtle["sprite"])
+            picture.Sprite(*map(float, (*turtle["px"], turtle["heading"])), turtle["sprite"])
             for turtle in whole.content["turtles"]
         ]
         return picture.render(whole.canvas, tuple(whole.content["background"]), turtles)
