@@ -112,7 +112,7 @@ def test_what_cannot_be_shown_is_told_before_anything_is_written(words, said, tm
 
 
 def test_the_speeds_are_those_that_there_are():
-    assert run.SPEEDS == tuple(live.SPEEDS)
+    assert tuple(live.SPEEDS) == run.SPEEDS
 
 
 def test_in_a_terminal_the_page_stays_until_ctrl_c(tmp_path):

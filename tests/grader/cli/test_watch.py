@@ -203,7 +203,7 @@ def test_a_score_is_compared_with_the_last_one(last, score, said):
 
 def test_the_screen_is_cleared_before_the_second_time_and_only_on_a_terminal(monkeypatch):
     made = Result.from_json(samples.result())
-    monkeypatch.setattr("grader.cli.grade_one.graded", lambda args: made)
+    monkeypatch.setattr("grader.cli.grade_one.graded", lambda args, live: made)
     for is_terminal in (True, False):
         cleared = []
         monkeypatch.setattr(Console, "is_terminal", is_terminal)
