@@ -5,6 +5,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from itertools import chain
 
@@ -108,6 +109,23 @@ def test_a_run_that_uses_up_its_processor_time_is_slow(
     ends[1].send(encode(Advance(5, 1, 0)))
     assert heard.receive() is None
     assert heard.silence == "slow"
+
+
+@pytest.mark.parametrize(("excused_cpu_s", "silence"), [(0.0, "flooding"), (60.0, "")])
+def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing(
+    ends: tuple[socket.socket, socket.socket],
+    monkeypatch: pytest.MonkeyPatch,
+    excused_cpu_s: float,
+    silence: str,
+) -> None:
+    monkeypatch.setattr(link, "CPU_LOOK_S", 0.0)
+    heard = StudentLink(ends[0], os.getpid(), Patience(simulator_cpu_s=30.0))
+    heard.excused_cpu_s = excused_cpu_s
+    before_s = time.process_time()
+    monkeypatch.setattr(time, "process_time", lambda: before_s + 50.0)
+    ends[1].send(encode(Advance(5, 1, 0)))
+    heard.receive()
+    assert heard.silence == silence
 
 
 def test_what_is_not_supported_is_refused(ends: tuple[socket.socket, socket.socket]) -> None:
