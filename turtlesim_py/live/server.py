@@ -53,6 +53,7 @@ _TYPES: Final = {
     ".css": "text/css; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
     ".svg": "image/svg+xml",
+    ".json": "application/json",
 }
 #: Nothing but what this server sends is run or shown.
 _POLICY: Final = "default-src 'self'; img-src 'self' data:; connect-src 'self' ws: wss:"

@@ -1,5 +1,8 @@
 // Drives turtles and calls what the simulator serves: keys, buttons, forms.
 
+import { heard } from "./answers.js";
+import { t } from "./language.js";
+
 const TWIST = "geometry_msgs/msg/Twist";
 /** Button or key -> ahead [m/s] and turning [rad/s], as turtle_teleop_key has them. */
 const DRIVE = { up: [2, 0], down: [-2, 0], left: [0, 2], right: [0, -2] };
@@ -45,7 +48,7 @@ export class Controls {
     this.element("controls").hidden = isReadOnly;
     this.element("keys").hidden = isReadOnly;
     if (isReadOnly) {
-      this.element("pad").setAttribute("aria-label", "The turtles' window");
+      this.element("pad").setAttribute("aria-label", t("The turtles' window"));
       this.element("pad").removeAttribute("aria-describedby");
     }
     if (!isReadOnly) this.advertise();
@@ -108,7 +111,7 @@ export class Controls {
   turn(theta) {
     const action = this.full(`${this.turtle}/rotate_absolute`);
     this.goal = this.bridge.goal(action, `${this.interfaces}/action/RotateAbsolute`, { theta });
-    this.goal.done.catch((error) => this.answer(error.message, true));
+    this.goal.done.catch((error) => this.answer(heard(error.message), true));
   }
 
   // Services --------------------------------------------------------------------------------------
@@ -116,11 +119,14 @@ export class Controls {
   async call(name, type, args) {
     try {
       const values = await this.bridge.call(this.full(name), args, type);
-      this.answer(name === "spawn" && !values.name ? "There is such a turtle already." : `${name}: done`);
+      const isThere = name === "spawn" && !values.name;
+      this.answer(isThere ? t("There is such a turtle already.") : t("{name}: done", { name }));
     } catch (error) {
-      this.answer(`${name}: ${error.message}`, true);
+      this.fail(name, error);
     }
   }
+
+  fail(what, error) { this.answer(t("{what}: {value}", { what, value: heard(error.message) }), true); }
 
   answer(text, isWrong = false) {
     const place = this.element("answer");
@@ -163,9 +169,9 @@ export class Controls {
     }));
     try {
       await this.bridge.call(`${this.node}/set_parameters`, { parameters }, "rcl_interfaces/srv/SetParameters");
-      this.answer("background: done");
+      this.answer(t("background: done"));
     } catch (error) {
-      this.answer(`background: ${error.message}`, true);
+      this.fail(t("background"), error);
     }
   }
 }

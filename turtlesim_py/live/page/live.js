@@ -1,20 +1,25 @@
 // The page: what the simulator tells is drawn and read out; the parts beside it drive and explore.
 
+import { heard } from "./answers.js";
+import { offerLanguages, speakAsAsked } from "./choice.js";
 import { Controls } from "./controls.js";
 import { Explorer } from "./explorer.js";
 import { headingOf, tellGrading } from "./grading.js";
+import { t } from "./language.js";
 import { Marks } from "./marks.js";
 import { LIVE, Rosbridge } from "./rosbridge.js";
 import { TurtleWindow } from "./window.js";
-import { tellCalls, tellTurtles } from "./words.js";
+import { tellCalls, tellCallsAgain, tellTurtles } from "./words.js";
 
 const element = (id) => document.getElementById(id);
 
+await speakAsAsked();
 const sprites = await (await fetch("sprites.json")).json();
 const view = new TurtleWindow(element("canvas"), sprites);
 const marks = new Marks(element("marks"));
 let about = null;
 let grading = null;
+let isLost = false;
 let isDue = false;
 let calls = [];
 let told = Promise.resolve();
@@ -63,25 +68,40 @@ async function take(news) {
   showSoon();
 }
 
-const who = () => (grading ? "the grader" : "the simulator");
-const seen = () => (
-  grading ? headingOf(grading) : `${about.node}${about.read_only ? ", for looking only" : ""}`
-);
-const missed = () => (
-  grading?.is_over
-    ? `${seen()}. The grading is over; what is here stays.`
-    : `No connection: ${who()} has ended, or cannot be reached. Trying again …`
-);
+const seen = () => {
+  if (grading) return headingOf(grading);
+  return about.read_only ? t("{node}, for looking only", about) : about.node;
+};
+
+function missed() {
+  if (grading?.is_over) return t("{what}. The grading is over; what is here stays.", { what: seen() });
+  return grading
+    ? t("No connection: the grader has ended, or cannot be reached. Trying again …")
+    : t("No connection: the simulator has ended, or cannot be reached. Trying again …");
+}
 
 function state(lost = false) {
+  isLost = lost;
   const text = lost ? missed() : seen();
   if (element("state").textContent !== text) element("state").textContent = text;
   document.documentElement.dataset.state = lost ? "lost" : "live";
 }
 
+/** Everything that has been said by script, in the language that was chosen. */
+function sayAgain() {
+  if (about) {
+    controls.know(about);
+    state(isLost);
+  }
+  tellCallsAgain(element("calls"));
+  controls.answer("");
+  explorer.again();
+  showSoon();
+}
+
 const bridge = new Rosbridge({
   closed: () => { state(true); controls.rest(); },
-  status: (text) => controls.answer(text, true),
+  status: (text) => controls.answer(heard(text), true),
 });
 const controls = new Controls(bridge, element);
 const explorer = new Explorer(bridge, element);
@@ -97,4 +117,5 @@ for (const id of ["show-grid", "show-quadrants", "show-names"]) {
   });
 }
 element("refresh").addEventListener("click", () => explorer.look());
+offerLanguages(element("language"), sayAgain);
 element("pad").focus({ preventScroll: true });

@@ -1,6 +1,8 @@
 // A connection to the simulator, as rosbridge has it: topics in, commands and calls out. It comes
 // back by itself when the server does.
 
+import { t } from "./language.js";
+
 /** The topic that only this server has: what becomes of the arena. */
 export const LIVE = "/turtlesim_live";
 const FIRST_PAUSE_MS = 300;
@@ -31,7 +33,7 @@ export class Rosbridge {
     });
     this.socket.addEventListener("message", (event) => this.hear(JSON.parse(event.data)));
     this.socket.addEventListener("close", () => {
-      for (const { fail } of this.waiting.values()) fail(new Error("the connection has ended"));
+      for (const { fail } of this.waiting.values()) fail(new Error(t("the connection has ended")));
       this.waiting.clear();
       this.told.closed();
       setTimeout(() => this.connect(), this.pause);
@@ -103,7 +105,7 @@ export class Rosbridge {
   }
 
   ask(frame, id = this.nextId()) {
-    if (!this.isOpen) return Promise.reject(new Error("there is no connection"));
+    if (!this.isOpen) return Promise.reject(new Error(t("there is no connection")));
     return new Promise((done, fail) => {
       this.waiting.set(id, { done, fail });
       this.send({ ...frame, id });

@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from grader.errors import RecordingError
+from grader.language.phrase import say
 from grader.scenes.scene import Start
 from grader.scenes.turtlesim.player.followed import follow
 from grader.scenes.turtlesim.player.reel import Place, Reel
@@ -43,7 +44,11 @@ def film(trace: TurtleTrace, start: Start | None) -> dict[str, Any]:
     """
     if trace.ticks > MOST_TICKS:
         raise RecordingError(
-            f"the run has {trace.ticks} ticks; expected {MOST_TICKS} at most, an hour, to play it"
+            say(
+                "the run has {ticks} ticks; expected {most} at most, an hour, to play it",
+                ticks=trace.ticks,
+                most=MOST_TICKS,
+            )
         )
     try:
         reel, is_exact = _played_again(trace, start), True

@@ -12,6 +12,8 @@ from string import Template
 from typing import Any
 
 import turtlesim_py
+from grader.language.catalogue import spoken
+from grader.language.telling import tell
 from grader.scenes.playback import Judged, Playback, Take
 from grader.scenes.turtlesim.player import modules, sources
 from grader.scenes.turtlesim.player.differences import first_difference
@@ -21,7 +23,7 @@ from turtlesim_py.world import sprites
 from turtlesim_py.world.turtle import TICK_S
 
 _PAGE = Path(__file__).with_name("page")
-#: Where the window is drawn that the live page shows, too.
+#: Where the window is drawn that the live page shows, too, and what both say.
 _LIVE_PAGE = Path(turtlesim_py.__file__).parent / "live" / "page"
 
 
@@ -32,6 +34,8 @@ def render(playback: Playback) -> str:
         RecordingError: a run cannot be played.
     """
     data = {
+        "language": spoken(),
+        "sentences": _sentences(spoken()),
         "tick_s": TICK_S,
         "sprites": {SPRITE: base64.b64encode(sprites.sprite(SPRITE).tobytes()).decode()},
         "sprite": SPRITE,
@@ -44,6 +48,8 @@ def render(playback: Playback) -> str:
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return _template().substitute(
         digest=digest,
+        lang=spoken(),
+        noscript=escape(tell("This page needs JavaScript. report.html, beside it, does not.")),
         title=escape(playback.title),
         summary=escape(playback.summary),
         style=(_PAGE / "player.css").read_text(encoding="utf-8"),
@@ -85,6 +91,16 @@ def _in_html(data: Any) -> str:
     for letter in "<>&":
         text = text.replace(letter, f"\\u{ord(letter):04x}")
     return text
+
+
+@cache
+def _sentences(language: str) -> dict[str, str]:
+    """What the page says instead of each English sentence; what is not there stays English."""
+    found: dict[str, str] = {}
+    for folder in (_LIVE_PAGE, _PAGE):
+        file = folder / f"{language}.json"
+        found |= json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    return found
 
 
 @cache

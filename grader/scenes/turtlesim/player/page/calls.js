@@ -1,5 +1,6 @@
 // The calls of a run: those round the cursor, with the one at the cursor marked.
 
+import { number, t } from "./language.js";
 import { callText } from "./words.js";
 import { lastUpTo } from "./film.js";
 
@@ -47,10 +48,10 @@ export class Calls {
     const shown = this.entries.slice(from, current + AROUND + 1);
     const keepsFocus = this.list.contains(document.activeElement);
     const items = shown.map((entry, index) => this.item(entry, from + index === current));
-    if (from > 0) items.unshift(note(`${from} earlier`));
+    if (from > 0) items.unshift(note(t("{n} earlier", { n: from })));
     const later = this.entries.length - from - shown.length;
-    if (later > 0) items.push(note(`${later} later`));
-    if (!this.entries.length) items.push(note("Nothing was called."));
+    if (later > 0) items.push(note(t("{n} later", { n: later })));
+    if (!this.entries.length) items.push(note(t("Nothing was called.")));
     this.list.replaceChildren(...items);
     const marked = this.list.querySelector("[aria-current]");
     if (!marked) return;
@@ -73,9 +74,12 @@ export class Calls {
     if (isCurrent) button.setAttribute("aria-current", "true");
     const time = document.createElement("span");
     time.className = "time";
-    time.textContent = `${(tick * this.tickS).toFixed(2)} s`;
-    const many = times > 1 ? ` (${times} times, until ${(until * this.tickS).toFixed(2)} s)` : "";
-    button.append(time, `${isCurrent ? "▶ " : ""}${callText(call)}${many}`);
+    const seconds = (frame) => number(frame * this.tickS, 2);
+    time.textContent = `${seconds(tick)} s`;
+    const what = callText(call);
+    const said = times > 1
+      ? t("{what} ({n} times, until {time} s)", { what, n: times, time: seconds(until) }) : what;
+    button.append(time, `${isCurrent ? "▶ " : ""}${said}`);
     const line = this.lines[call.line];
     if (line) button.append(place(line));
     button.addEventListener("click", () => this.onFrame(tick));
@@ -89,7 +93,7 @@ function place({ file, line, text }) {
   made.className = "place";
   const code = document.createElement("code");
   code.textContent = text;
-  made.append(`from ${file}, line ${line}: `, code);
+  made.append(t("from {file}, line {line}:", { file, line }), " ", code);
   return made;
 }
 

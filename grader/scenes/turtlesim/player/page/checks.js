@@ -1,5 +1,7 @@
 // What the checks say; each piece of evidence leads to its run and its moment.
 
+import { t } from "./language.js";
+
 const SIGNS = { passed: "✓", failed: "✗", not_judged: "–" };
 
 export class Checks {
@@ -28,7 +30,7 @@ export class Checks {
     const made = document.createElement("button");
     made.type = "button";
     made.dataset.moment = moment.number;
-    made.textContent = `Show ${moment.number}: ${moment.text}`;
+    made.textContent = t("Show {number}: {text}", moment);
     made.addEventListener("click", () => this.onMoment(moment));
     this.buttons.push(made);
     return made;

@@ -1,6 +1,7 @@
 // Another recording over ours: both ways, both turtles, how far apart, where the inputs part.
 
 import { Film } from "./film.js";
+import { key, number, t } from "./language.js";
 import { svg } from "./plots.js";
 import { callText } from "./words.js";
 
@@ -16,7 +17,7 @@ export class Comparison {
     element("show-ways").addEventListener("change", (event) => {
       element("ways").style.display = event.target.checked ? "" : "none";
     });
-    element("compared-with").textContent = `${data.title} — with — ${this.title}`;
+    element("compared-with").textContent = t("{one} — with — {other}", { one: data.title, other: this.title });
   }
 
   /** The first turtle of the other run; nothing where there is no such run. */
@@ -31,7 +32,7 @@ export class Comparison {
     const film = this.others[run];
     if (!film) return [];
     const there = film.turtlesAt(Math.min(frame, film.last));
-    return there.map((turtle) => ({ ...turtle, name: `${turtle.name} (other)` }));
+    return there.map((turtle) => ({ ...turtle, name: t("{name} (other)", turtle) }));
   }
 
   /** How far apart the two are over time, as a curve. */
@@ -45,7 +46,7 @@ export class Comparison {
       const apart = a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : NaN;
       line.push(Number.isFinite(apart) ? [frame, apart] : null);
     }
-    return [{ words: "apart", unit: "m", lines: [line] }];
+    return [{ words: key("apart"), unit: "m", lines: [line] }];
   }
 
   show(run) {
@@ -64,12 +65,14 @@ export class Comparison {
   }
 
   told(run) {
-    if (!this.others[run]) return "The other recording has no such run.";
+    if (!this.others[run]) return t("The other recording has no such run.");
     const found = this.differences[run];
-    if (!found) return "The same came in at every tick.";
-    const words = (calls) => (calls.length ? calls.map(callText).join("; ") : "nothing");
-    return `The inputs differ first at ${(found.tick * this.tickS).toFixed(3)} s, tick ${found.tick}: `
-      + `here ${words(found.mine)}; in the other ${words(found.other)}.`;
+    if (!found) return t("The same came in at every tick.");
+    const words = (calls) => (calls.length ? calls.map(callText).join("; ") : t("nothing"));
+    return t("The inputs differ first at {time} s, tick {tick}: here {mine}; in the other {other}.", {
+      time: number(found.tick * this.tickS, 3), tick: found.tick,
+      mine: words(found.mine), other: words(found.other),
+    });
   }
 }
 

@@ -4,6 +4,7 @@ import { Calls } from "./calls.js";
 import { Checks } from "./checks.js";
 import { Comparison } from "./comparison.js";
 import { Film, Screen } from "./film.js";
+import { speak, t } from "./language.js";
 import { Marks } from "./marks.js";
 import { Plots } from "./plots.js";
 import { Ring } from "./ring.js";
@@ -14,6 +15,7 @@ const BESIDE = -1;
 const element = (id) => document.getElementById(id);
 
 const data = JSON.parse(element("data").textContent);
+speak(data.language, data.sentences);
 const films = data.runs.map((run) => new Film(run, data.sprite));
 const screens = new Map();
 const small = [];
@@ -98,9 +100,9 @@ function showOne(run) {
   const canvas = screens.get(run).view.context.canvas;
   canvas.id = "canvas";
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", `The window in this moment of ${film.title}; the table below says where each turtle is.`);
+  canvas.setAttribute("aria-label", t("The window in this moment of {run}; the table below says where each turtle is.", { run: film.title }));
   element("place").replaceChildren(canvas);
-  element("outcome").textContent = `${film.title}: ${film.outcome}.`;
+  element("outcome").textContent = t("{what}: {value}.", { what: film.title, value: film.outcome });
   element("inexact").hidden = film.exact;
   calls.show(film);
   const turtle = film.turtles[0];
@@ -120,9 +122,9 @@ function showBeside() {
       const figure = document.createElement("figure");
       const caption = document.createElement("figcaption");
       const canvas = document.createElement("canvas");
-      caption.textContent = `${film.title}: ${film.outcome}`;
+      caption.textContent = t("{what}: {value}", { what: film.title, value: film.outcome });
       canvas.setAttribute("role", "img");
-      canvas.setAttribute("aria-label", `The window of ${film.title}`);
+      canvas.setAttribute("aria-label", t("The window of {run}", { run: film.title }));
       figure.append(canvas, caption);
       element("beside").append(figure);
       small.push(new Screen(canvas, data.sprites, film));
@@ -133,7 +135,7 @@ function showBeside() {
 
 function offer() {
   const titles = films.map((film, run) => [run, film.title]);
-  if (films.length > 1) titles.push([BESIDE, "Side by side"]);
+  if (films.length > 1) titles.push([BESIDE, t("Side by side")]);
   element("runs").hidden = titles.length < 2;
   for (const [run, title] of titles) {
     const button = document.createElement("button");

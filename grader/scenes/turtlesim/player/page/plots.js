@@ -1,10 +1,12 @@
 // Curves of one turtle over time, with a cursor that can be dragged.
 
+import { key, number, t } from "./language.js";
+
 const SVG = "http://www.w3.org/2000/svg";
 const [WIDTH, HEIGHT] = [600, 90];
 /** Column of the pose, words, unit. */
 const CURVES = [
-  [0, "x", "m"], [1, "y", "m"], [2, "heading", "rad"], [3, "speed", "m/s"], [4, "turning", "rad/s"],
+  [0, "x", "m"], [1, "y", "m"], [2, key("heading"), "rad"], [3, key("speed"), "m/s"], [4, key("turning"), "rad/s"],
 ];
 const HEADING = 2;
 
@@ -64,7 +66,8 @@ export class Plots {
     const figure = document.createElement("figure");
     const caption = document.createElement("figcaption");
     const drawn = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, preserveAspectRatio: "none", role: "img" });
-    drawn.setAttribute("aria-label", `${words} from ${low.toFixed(2)} to ${high.toFixed(2)} ${unit}`);
+    const ends = { low: number(low, 2), high: number(high, 2), unit };
+    drawn.setAttribute("aria-label", t("{what} from {low} to {high} {unit}", { what: t(words), ...ends }));
     const x = (frame) => (frame / this.last) * WIDTH;
     const y = (value) => HEIGHT - 4 - ((value - bottom) / (top - bottom)) * (HEIGHT - 8);
     lines.forEach((line, index) => {
@@ -80,7 +83,7 @@ export class Plots {
     drawn.append(cursor);
     const range = document.createElement("span");
     range.className = "range";
-    range.textContent = `${low.toFixed(2)} … ${high.toFixed(2)} ${unit}`;
+    range.textContent = `${ends.low} … ${ends.high} ${unit}`;
     const now = document.createElement("span");
     caption.append(now, range);
     figure.append(caption, drawn);
@@ -107,8 +110,8 @@ export class Plots {
     for (const { cursor, now, values, words, unit } of this.plots) {
       cursor.setAttribute("x1", x);
       cursor.setAttribute("x2", x);
-      const texts = values.map((line) => (line.has(frame) ? line.get(frame).toFixed(3) : "–"));
-      now.textContent = `${words}: ${texts.join(" | ")} ${unit}`;
+      const texts = values.map((line) => (line.has(frame) ? number(line.get(frame), 3) : "–"));
+      now.textContent = t("{what}: {value}", { what: t(words), value: `${texts.join(" | ")} ${unit}` });
     }
   }
 }

@@ -1,5 +1,7 @@
 // The cursor: played at some speed, stepped, dragged, moved by keys.
 
+import { number, t } from "./language.js";
+
 /** A frame that takes longer than this on the screen moves the cursor no further [s]. */
 const LONGEST_S = 0.25;
 
@@ -57,7 +59,7 @@ export class Transport {
   play() {
     if (this.frame >= this.last) this.go(0);
     this.isPlaying = true;
-    this.element("play").textContent = "❚❚ Pause";
+    this.element("play").textContent = t("❚❚ Pause");
     let before = performance.now();
     const advance = (now) => {
       if (!this.isPlaying) return;
@@ -76,15 +78,16 @@ export class Transport {
 
   pause() {
     this.isPlaying = false;
-    this.element("play").textContent = "▶ Play";
+    this.element("play").textContent = t("▶ Play");
   }
 
   tell() {
-    const time = (this.frame * this.tickS).toFixed(3);
+    const [tick, last] = [this.frame, this.last];
+    const place = { time: number(tick * this.tickS, 3), tick, last };
     const slider = this.element("slider");
     slider.value = this.frame;
-    slider.setAttribute("aria-valuetext", `${time} seconds, tick ${this.frame} of ${this.last}`);
-    this.element("time").textContent = `${time} s, tick ${this.frame} of ${this.last}`;
+    slider.setAttribute("aria-valuetext", t("{time} seconds, tick {tick} of {last}", place));
+    this.element("time").textContent = t("{time} s, tick {tick} of {last}", place);
     this.onFrame(this.frame);
   }
 }
