@@ -30,10 +30,11 @@ function line(x1, y1, x2, y2, kind = "") {
   return made;
 }
 
-function text(x, y, words) {
+function text(x, y, words, kind = "") {
   const made = document.createElementNS(SVG, "text");
   made.setAttribute("x", x);
   made.setAttribute("y", y);
+  made.setAttribute("class", kind);
   made.textContent = words;
   return made;
 }
@@ -44,9 +45,9 @@ function grid() {
     const x = metre * METRE_PX;
     const y = (SIZE_M - metre) * METRE_PX;
     parts.push(line(x, 0, x, SIZE_PX), line(0, y, SIZE_PX, y));
-    if (metre % 2) parts.push(text(x - 4, SIZE_PX - 4, metre), text(3, y + 5, metre));
+    if (metre % 2 && metre < SIZE_M - 1) parts.push(text(x - 4, SIZE_PX - 4, metre), text(3, y + 5, metre));
   }
-  return [...parts, text(SIZE_PX - 40, SIZE_PX - 20, "x [m]"), text(18, 14, "y [m]")];
+  return [...parts, text(SIZE_PX - 4, SIZE_PX - 24, "x [m]", "end"), text(24, 18, "y [m]")];
 }
 
 function quadrants() {

@@ -24,7 +24,7 @@ function penOf({ r, g, b, width, off }) {
   const swatch = document.createElement("span");
   swatch.className = "swatch";
   swatch.style.background = `rgb(${r}, ${g}, ${b})`;
-  part.append(swatch, off ? t("lifted") : `${r}, ${g}, ${b}; ${width} px`);
+  part.append(swatch, off ? t("lifted") : t("{r}, {g}, {b}; {width} px", { r, g, b, width }));
   return part;
 }
 
