@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,6 +17,10 @@ BROWSER = next(
 needs_browser = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
 #: What the law asks for: WCAG 2.1, levels A and AA.
 RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]}
+
+
+#: Screens [px]: small and smaller phones, one of 1280 at 200 %, one of 1280.
+WIDTHS = (320, 375, 640, 1280)
 
 
 @contextmanager
@@ -36,3 +41,74 @@ def obstacles(page: Any) -> list[str]:
 
     found = Axe().run(page, options=RULES).response["violations"]
     return [f"{each['id']}: {node['html'][:120]}" for each in found for node in each["nodes"]]
+
+
+#: A person sees these texts; what has its own place to be looked up in (code, names) is left out.
+_TEXTS = """
+(left_out) => {
+  const same = ["code, kbd, pre, textarea, script, style, noscript, [translate=no]", left_out]
+    .filter(Boolean).join();
+  const isSeen = (element) => element.checkVisibility() && !element.closest(same);
+  const walker = document.createTreeWalker(document.documentElement, NodeFilter.SHOW_TEXT);
+  const texts = [];
+  while (walker.nextNode()) {
+    if (isSeen(walker.currentNode.parentElement)) texts.push(walker.currentNode.data);
+  }
+  for (const name of ["aria-label", "aria-valuetext", "placeholder", "title"]) {
+    for (const element of document.querySelectorAll(`[${name}]`)) {
+      if (isSeen(element)) texts.push(element.getAttribute(name));
+    }
+  }
+  return texts.filter((text) => text.trim());
+}
+"""
+#: Names of ROS and of code, units, keys, and what programs have logged: the same in all languages.
+_SAME = re.compile(
+    r"[\w/.]*[_/0-9][\w/.]*|\b(rad|px|Tab|JSON|Page (Up|Down)|Home|End|II|III|IV)\b"
+    r"|\b(spawn|kill|clear|reset)\b|INFO: .*",
+    re.DOTALL,
+)
+_ENGLISH = {
+    "zh": re.compile(r"[A-Za-z]{2}"),
+    "fr": re.compile(
+        r"\b(the|and|with|to|is|are|this|that|which|what|where|nothing|none|turtle|speed|turning|"
+        r"lifted|ahead|top|bottom|left|right|show|names|times|earlier|later|other|of)\b",
+        re.IGNORECASE,
+    ),
+}
+
+
+def english(page: Any, language: str, left_out: str = "") -> list[str]:
+    """The texts of a page, seen or read out, that are still English.
+
+    Args:
+        left_out: a selector of what others say.
+    """
+    texts = page.evaluate(_TEXTS, left_out)
+    assert texts
+    return [text for text in texts if _ENGLISH[language].search(_SAME.sub("", text))]
+
+
+_CUT_OFF = """
+() => {
+  const wide = document.documentElement.clientWidth;
+  const scrolls = (element) => element && (
+    /auto|scroll/.test(getComputedStyle(element).overflowX) || scrolls(element.parentElement)
+  );
+  const told = ({ tagName, id, textContent }) => [tagName, id, textContent.trim()].join(" ");
+  return [...document.body.querySelectorAll("*")].filter((element) => {
+    const { left, right, width } = element.getBoundingClientRect();
+    return width && (left < -1 || right > wide + 1) && !scrolls(element.parentElement);
+  }).map(told);
+}
+"""
+
+
+def cut_off(page: Any) -> list[str]:
+    """What lies beyond the edges of the screen and in no part that scrolls."""
+    return page.evaluate(_CUT_OFF)
+
+
+def moving(page: Any) -> int:
+    """How many parts move by style sheet."""
+    return page.evaluate("document.getAnimations().length")

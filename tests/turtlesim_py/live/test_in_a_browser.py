@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import expect
 from std_srvs.srv import Trigger
 
-from tests.browser import needs_browser, obstacles, open_browser
+from tests.browser import WIDTHS, cut_off, english, moving, needs_browser, obstacles, open_browser
 from tests.programs import DEADLINE_S, Program
 from tests.turtlesim_py.live.conftest import Page
 from turtlesim_py.world import picture
@@ -42,8 +42,9 @@ def browser():
 class Person:
     """Somebody with the page in front of him; whatever fails in it fails the test."""
 
-    def __init__(self, browser, address: str) -> None:
-        self.page = browser.new_page(viewport={"width": 1280, "height": 900})
+    def __init__(self, browser, address: str, **settings: object) -> None:
+        settings = {"viewport": {"width": 1280, "height": 900}, "locale": "en-US"} | settings
+        self.page = browser.new_page(**settings)
         self.page.set_default_timeout(DEADLINE_S * 1000)
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -66,9 +67,9 @@ class Person:
             self.page.fill(f"[data-form={form}] [name={name}]", value)
         self.page.click(f"[data-form={form}] button")
 
-    def rests(self) -> None:
+    def rests(self, zero: str = "0.000") -> None:
         """Wait until no turtle of the table moves."""
-        still = "tr:has(td:nth-child(5):text-is('0.000')):has(td:nth-child(6):text-is('0.000'))"
+        still = f"tr:has(td:nth-child(5):text-is('{zero}')):has(td:nth-child(6):text-is('{zero}'))"
         rows = self.page.locator("#turtles tr")
         expect(self.page.locator(f"#turtles {still}")).to_have_count(
             rows.count(), timeout=DEADLINE_S * 1000
@@ -209,17 +210,120 @@ def png_of(canvas: Canvas) -> str:
     return base64.b64encode(file.getvalue()).decode()
 
 
-@pytest.mark.parametrize("width", [375, 1280])
-def test_nothing_is_wider_than_the_screen_and_what_there_is_can_be_explored(browser, page, width):
+def test_what_there_is_can_be_explored_and_nobody_is_kept_out(browser, page):
     person = Person(browser, page.address)
-    person.page.set_viewport_size({"width": width, "height": 800})
+    explore(person)
+    person.page.click("#services button:text-is('/seen/clear')")
+    person.page.click("#detail button:text-is('Call')")
+    expect(person.page.locator("#detail pre")).to_have_text("{}")
+    assert obstacles(person.page) == []
+    person.leave()
+
+
+def explore(person: Person) -> None:
+    """All that the page can show of a topic."""
     person.page.click("#refresh")
     person.page.click("#topics button:text-is('/seen/turtle1/pose')")
     person.sees("linear_velocity: float [m/s]")
     person.page.wait_for_selector("#detail pre:has-text('theta')")
-    person.page.click("#services button:text-is('/seen/clear')")
-    person.page.click("#detail button:text-is('Call')")
-    expect(person.page.locator("#detail pre")).to_have_text("{}")
-    assert person.page.evaluate("document.documentElement.scrollWidth") <= width
-    assert obstacles(person.page) == []
+
+
+@pytest.mark.parametrize("language", ["en", "fr", "zh"])
+def test_nothing_is_wider_than_the_screen(browser, page, language):
+    person = Person(browser, f"{page.address}?lang={language}")
+    for box in ("#show-grid", "#show-quadrants", "#show-names"):
+        person.page.check(box)
+    explore(person)
+    for width in WIDTHS:
+        person.page.set_viewport_size({"width": width, "height": 512})
+        assert person.page.evaluate("document.documentElement.scrollWidth") <= width
+        assert cut_off(person.page) == []
     person.leave()
+
+
+def test_nothing_moves_but_the_turtles_where_less_motion_is_asked_for(browser, page):
+    person = Person(browser, page.address, reduced_motion="reduce")
+    person.page.focus("#pad")
+    person.page.keyboard.press("ArrowLeft")
+    person.sees_called("turning 2.000 rad/s")
+    assert moving(person.page) == 0
+    person.rests()
+    person.leave()
+
+
+SAID = {
+    "fr": ("fr-FR", "avance 2,000 m/s", "0,000", "set_pen de turtle1"),
+    "zh": ("zh-CN", "前进 2.000 m/s", "0.000", "turtle1 的 set_pen"),
+}
+
+
+@pytest.mark.parametrize("language", SAID)
+def test_the_page_speaks_the_browsers_language_and_no_english(browser, page, language):
+    locale, ahead, zero, pen = SAID[language]
+    person = Person(browser, page.address, locale=locale)
+    assert person.page.get_attribute("html", "lang") == language
+    person.page.focus("#pad")
+    person.page.keyboard.press("ArrowUp")
+    person.sees_called(ahead)
+    person.rests(zero)
+    person.page.check("[data-form=set_pen] [name=off]")
+    person.fill("set_pen")
+    person.sees_called(pen)
+    person.fill("teleport_relative")
+    person.sees_called("teleport_relative")
+    person.fill("teleport_absolute")
+    person.fill("background")
+    explore(person)
+    assert english(person.page, language) == []
+    assert obstacles(person.page) == []
+    person.page.uncheck("[data-form=set_pen] [name=off]")
+    person.fill("set_pen")
+    person.leave()
+
+
+def test_another_language_can_be_chosen_and_is_kept_for_the_session(browser, page):
+    person = Person(browser, page.address, locale="de-DE")
+    assert person.page.get_attribute("html", "lang") == "en"
+    person.page.focus("#pad")
+    person.page.keyboard.press("ArrowDown")
+    person.sees_called("ahead -2.000 m/s")
+    explore(person)
+    person.page.fill("[data-form=spawn] [name=x]", "3.25")
+    person.page.select_option("#language", "fr")
+    person.sees_called("avance -2,000 m/s")
+    person.page.locator("#turtles td", has_text="en haut à droite").or_(
+        person.page.locator("#turtles td", has_text="en bas à")
+    ).first.wait_for()
+    person.page.locator("#detail", has_text="publié par").wait_for()
+    assert english(person.page, "fr") == []
+    assert person.page.input_value("[data-form=spawn] [name=x]") == "3.25"
+    assert "lang=fr" in person.page.url
+    for address, language in ((page.address, "fr"), (f"{page.address}?lang=zh", "zh")):
+        person.page.goto(address)
+        person.is_connected()
+        assert person.page.get_attribute("html", "lang") == language
+        assert person.page.input_value("#language") == language
+    person.leave()
+
+
+def test_what_the_server_answers_is_said_in_the_pages_language(browser, page):
+    person = Person(browser, page.address, locale="fr-CA")
+    explore(person)
+    person.page.fill("#detail textarea", '{"x": "loin"}')
+    person.page.click("#detail button")
+    person.sees("x\N{NO-BREAK SPACE}: nombre attendu, trouvé 'loin'")
+    person.leave()
+
+
+def test_what_a_catalogue_has_not_is_said_in_english(browser, page):
+    context = browser.new_context(locale="zh-CN")
+    context.route("**/zh.json", lambda route: route.fulfill(json={"Topics": "TOPICS"}))
+    tab = context.new_page()
+    tab.goto(page.address)
+    tab.wait_for_selector("html[data-state=live][lang=zh]")
+    assert tab.locator("#graph h3").all_inner_texts() == ["TOPICS", "Services"]
+    context.route("**/zh.json", lambda route: route.abort())
+    tab.reload()
+    tab.wait_for_selector("html[data-state=live][lang=en]")
+    assert tab.input_value("#language") == "en"
+    context.close()

@@ -146,7 +146,7 @@ function fields(typedefs, type) {
       const length = each.fieldarraylen[at];
       const array = length < 0 ? "" : `[${length || ""}]`;
       const unit = units[name] ? ` [${t(units[name])}]` : "";
-      return made("li", `${name}: ${each.fieldtypes[at]}${array}${unit}`);
+      return made("li", "", made("code", `${name}: ${each.fieldtypes[at]}${array}`), unit);
     });
     return made("div", "", made("h4", index ? each.type : t("Fields")), made("ul", "", ...(rows.length ? rows : [made("li", t("none"))])));
   });

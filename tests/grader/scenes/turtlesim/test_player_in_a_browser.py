@@ -8,11 +8,20 @@ import numpy as np
 import pytest
 
 from grader.cli import main
+from grader.language.catalogue import ENGLISH, speak
 from grader.recording import folder as storage
 from grader.recording.recording import Recordings
 from grader.scenes.scene import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
-from tests.browser import needs_browser, obstacles, open_browser
+from tests.browser import (
+    WIDTHS,
+    cut_off,
+    english,
+    moving,
+    needs_browser,
+    obstacles,
+    open_browser,
+)
 from tests.grader.driving import RED, Spiral, drive, pen, twist
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
@@ -42,11 +51,11 @@ class Wild:
         if tick % 40 == 10:
             pen(arena, RED if tick % 80 == 10 else (tick % 256, 9, 200), 60)
         if tick == 100:
-            arena.spawn(2.0, 3.0, 1.0, "other")
+            arena.spawn(2.0, 3.0, 1.0, "turtle2")
         if tick == 150:
             arena.clear()
         if tick == 200:
-            arena.kill("other")
+            arena.kill("turtle2")
 
 
 START = Start(3.0, 7.0, 0.5)
@@ -67,8 +76,11 @@ def page_file(tmp_path_factory, runs):
     samples.graded(folder / "graded", runs.nominal, *verdicts, varied=runs.varied)
     storage.save_all(Recordings(drive(Spiral(), ticks=200)), folder / "other")
     assert main(["view", str(folder / "graded"), "--no-open"]) == 0
-    compared = ["--compare", str(folder / "other"), "--out", str(folder / "graded/compared.html")]
-    assert main(["view", str(folder / "graded"), "--no-open", *compared]) == 0
+    for language in ("en", "fr", "zh"):
+        out = folder / "graded" / ("compared.html" if language == "en" else f"{language}.html")
+        words = ["--compare", str(folder / "other"), "--out", str(out), "--lang", language]
+        assert main(["view", str(folder / "graded"), "--no-open", *words]) == 0
+    speak(ENGLISH)
     return folder / "graded" / "view.html"
 
 
@@ -83,8 +95,8 @@ def visit(browser, page_file):
     """Opens the page; whatever fails in it fails the test."""
     pages, errors = [], []
 
-    def visited(address: str = "", width: int = 1280, name: str = "view.html"):
-        page = browser.new_page(viewport={"width": width, "height": 900})
+    def visited(address: str = "", width: int = 1280, name: str = "view.html", **settings: str):
+        page = browser.new_page(viewport={"width": width, "height": 900}, **settings)
         pages.append(page)
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda message: errors.append(message.text))
@@ -236,8 +248,45 @@ def test_two_ways_lie_over_each_other_and_are_told_apart_by_more_than_colour(vis
     assert obstacles(page) == []
 
 
-@pytest.mark.parametrize("width", [375, 1280])
-def test_nobody_is_kept_out_and_nothing_is_wider_than_the_screen(visit, width):
-    page = visit("#tick=120", width)
+def test_nobody_is_kept_out(visit):
+    assert obstacles(visit("#tick=120")) == []
+
+
+@pytest.mark.parametrize("name", ["view.html", "compared.html", "fr.html", "zh.html"])
+def test_nothing_is_wider_than_the_screen(visit, name):
+    page = visit("#tick=120", name=name)
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": 512})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert cut_off(page) == []
+
+
+def test_nothing_moves_by_itself_where_less_motion_is_asked_for(visit):
+    page = visit("#tick=120", reduced_motion="reduce")
+    page.get_by_role("button", name="too far").click()
+    at(page, 80, 1)
+    assert moving(page) == 0
+
+
+#: What the report says, which has tests of its own.
+OF_THE_REPORT = "title, header, #runs, #outcome, #checks, #compared-with, #canvas"
+
+
+@pytest.mark.parametrize(
+    ("language", "tick", "curve"),
+    [
+        ("fr", "1,920 s, tick 120 sur 300", "écart\N{NO-BREAK SPACE}: "),
+        ("zh", "1.920 s\uff0c第 120 步\uff0c共 300 步", "相距\uff1a"),
+    ],
+)
+def test_it_speaks_the_language_of_the_call_whatever_the_browsers(visit, language, tick, curve):
+    page = visit("#tick=121", name=f"{language}.html", locale="en-US")
+    page.click("#back")
+    at(page, 120)
+    assert page.get_attribute("html", "lang") == language
+    assert page.inner_text("#time") == tick
+    assert page.inner_text("#plots figcaption span >> nth=0").startswith(curve)
+    assert english(page, language, OF_THE_REPORT) == []
+    page.click("#play")
+    assert english(page, language, OF_THE_REPORT) == []
     assert obstacles(page) == []
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
