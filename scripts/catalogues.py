@@ -24,7 +24,10 @@ ROOT = Path(__file__).resolve().parents[1]
 LOCALE = ROOT / "grader" / "language" / "locale"
 LANGUAGES = {"fr": "French", "zh": "Chinese"}
 #: What marks a sentence; of a pair the second is for more than one.
-KEYWORDS = {"say": None, "tell": None, "say_many": (1, 2), "tell_many": (1, 2)}
+KEYWORDS = {
+    **{"say": None, "tell": None, "marked": None},
+    **{"say_many": (1, 2), "tell_many": (1, 2)},
+}
 #: Below grader/: file name ending -> babel's name of who reads it.
 READERS = {".py": "python", ".html": "jinja2.ext:babel_extract", ".js": "javascript"}
 #: Of a file's head: dates, which would make each run another file, and who nobody is.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from grader.diagnosis import printed
+from grader.language.phrase import Phrase, joined, say
 from grader.recording.conduct import Conduct, End, EndKind, Place, Raised, Stop
 from grader.recording.recording import Recording, Run
 from grader.scenes import load_scene
@@ -20,6 +21,8 @@ OPPOSITE: dict[EndKind, EndpointKind] = {
     "client": "service",
     "action_client": "action",
 }
+#: Things that are driven, with the article that a language needs.
+_THE = {"turtle": say("the turtle"), "robot": say("the robot")}
 _LONGEST = 200
 #: Shown as 0.0 [s].
 _AT_ONCE_S = 0.05
@@ -90,19 +93,27 @@ class Case:
         return scene.endpoints(self.recording.trace, self.run.interfaces)
 
     @cached_property
-    def thing(self) -> str:
-        """What is driven, in a word."""
-        return load_scene(self.recording.scene).thing
+    def the_thing(self) -> str:
+        """What is driven: 'the turtle'."""
+        thing = load_scene(self.recording.scene).thing
+        return _THE.get(thing) or f"the {thing}"
 
 
-def told(text: str) -> str:
-    """A text of the submission's as it may stand in a line of ours."""
-    return clip(one_line(plain(text[: 4 * _LONGEST])), _LONGEST)
+def told(text: str) -> Phrase:
+    """A text of the submission's as it may stand in a line of ours; the same in any language."""
+    return Phrase(clip(one_line(plain(text[: 4 * _LONGEST])), _LONGEST))
+
+
+def sentences(*texts: str) -> Phrase:
+    """One behind the other; those that are '' are left out."""
+    return joined([text for text in texts if text], " ")
 
 
 def line(place: Place | None) -> str:
     """' (drive.py, line 39)', with a space before it; '' for no place."""
-    return f" ({told(place.file)}, line {place.line})" if place is not None else ""
+    if place is None:
+        return ""
+    return say(" ({file}, line {line})", file=told(place.file), line=place.line)
 
 
 def function(place: Place | None) -> str:
@@ -115,14 +126,18 @@ def at(time_s: float | None) -> str:
     """' at 6.0 s', ' right at the start'; '' for no time."""
     if time_s is None:
         return ""
-    return f" at {time_s:.1f} s" if time_s >= _AT_ONCE_S else " right at the start"
+    if time_s < _AT_ONCE_S:
+        return say(" right at the start")
+    return say(" at {time_s:.1f} s", time_s=time_s)
 
 
 def after(time_s: float) -> str:
     """'after 6.0 s'."""
-    return f"after {time_s:.1f} s" if time_s >= _AT_ONCE_S else "at once"
+    return say("after {time_s:.1f} s", time_s=time_s) if time_s >= _AT_ONCE_S else say("at once")
 
 
 def since(time_s: float) -> str:
     """' from 1.5 s on', ' from the start'."""
-    return f" from {time_s:.1f} s on" if time_s >= _AT_ONCE_S else " from the start"
+    if time_s < _AT_ONCE_S:
+        return say(" from the start")
+    return say(" from {time_s:.1f} s on", time_s=time_s)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from grader.diagnosis.case import Case, after, function, line, told
+from grader.diagnosis.case import Case, after, function, line, sentences, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.usual import known, meaning
+from grader.language.phrase import Phrase, joined, say
 from grader.recording.conduct import Caught, Raised
 
 #: A program that ends so soon after an exception has ended by it [s].
@@ -20,7 +21,7 @@ _MISTAKES = frozenset(
 _ALL = ("except:", "except Exception", "except BaseException", "except (Exception")
 #: What is None until the first message has come is gone after so many times.
 _OFTEN = 8
-_NOT_CAUGHT = "Without the try/except Python would say so itself."
+_NOT_CAUGHT = say("Without the try/except Python would say so itself.")
 
 
 def ended_by_caught(case: Case) -> Diagnosis | None:
@@ -30,9 +31,11 @@ def ended_by_caught(case: Case) -> Diagnosis | None:
         return None
     for caught in case.conduct.caught:
         if caught.by is None and 0 <= ended_s - caught.time_s <= _SOON_S:
-            cause = (
-                f"Your program caught an exception, and so ended {after(ended_s)}: "
-                f"{_error(caught)}{line(caught.place)}."
+            cause = say(
+                "Your program caught an exception, and so ended {after}: {error}{where}.",
+                after=after(ended_s),
+                error=_error(caught),
+                where=line(caught.place),
             )
             return Diagnosis(
                 "ended_by_caught", cause, _mending(caught), time_s=ended_s, place=caught.place
@@ -45,11 +48,19 @@ def hides_errors(case: Case) -> Diagnosis | None:
     for caught in case.conduct.caught:
         if not _is_mistake(caught):
             continue
-        who = function(caught.place) or "A callback"
-        hides = "something in your program catches that and goes on"
+        who = function(caught.place) or say("A callback")
+        hides = say("something in your program catches that and goes on")
         if caught.by is not None:
-            hides = f"`{told(caught.by.text)}` (line {caught.by.line}) hides it"
-        cause = f"{who} fails, and {hides}: {_error(caught)}{line(caught.place)}."
+            hides = say(
+                "`{code}` (line {line}) hides it", code=told(caught.by.text), line=caught.by.line
+            )
+        cause = say(
+            "{who} fails, and {hides}: {error}{where}.",
+            who=who,
+            hides=hides,
+            error=_error(caught),
+            where=line(caught.place),
+        )
         return Diagnosis("hides_errors", cause, _mending(caught), place=caught.place)
     return None
 
@@ -69,11 +80,11 @@ def _raised(caught: Caught) -> Raised:
 
 def _error(caught: Caught) -> str:
     said = known(_raised(caught))
-    text = said.text if said is not None and said.text else told(caught.text).rstrip(".")
-    return f"{told(caught.type)}: {text}" if text else told(caught.type)
+    text = said.text if said is not None and said.text else Phrase(told(caught.text).rstrip("."))
+    return joined([told(caught.type), text] if text else [told(caught.type)], ": ")
 
 
 def _mending(caught: Caught) -> str:
     said = known(_raised(caught))
     help_ = said.help if said is not None else meaning(_raised(caught))
-    return f"{help_} {_NOT_CAUGHT}".strip()
+    return sentences(help_, _NOT_CAUGHT)

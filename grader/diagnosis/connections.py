@@ -13,6 +13,7 @@ from grader.diagnosis import standstill
 from grader.diagnosis.case import OPPOSITE, Case, line, since, told
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.language.phrase import joined, say
 from grader.recording.conduct import End, EndKind
 from grader.scenes.scene import Endpoint
 
@@ -31,23 +32,30 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
         kind: EndKind = "action_client" if "/action/" in wait.type else "client"
         end = End(kind, wait.name, wait.type, False, 0)
         near = nearest(end, case)
-        what = "action" if kind == "action_client" else "service"
         if near is not None and near.name == wait.name:
             if near.type == wait.type:
                 continue
-            rest = f" as {told(wait.type)}, but it is of type {near.type}"
+            rest = say(
+                " as {type}, but it is of type {wanted}", type=told(wait.type), wanted=near.type
+            )
         elif any(e.name == wait.name for e in there):
             continue
         elif near is not None:
-            rest = f", which nobody offers; there is {near.name}"
+            rest = say(", which nobody offers; there is {name}", name=near.name)
         else:
-            rest = ", which nobody offers"
+            rest = say(", which nobody offers")
         named = (each.place for each in case.ends if (each.kind, each.name) == (kind, wait.name))
         place = next(named, None) or wait.place  # where the name stands is what is to be mended
         return Diagnosis(
             "waits_in_vain",
-            f"You wait for the {what} {told(wait.name)}{since(wait.since_s)}{rest}{line(place)}.",
-            _mending(end, near) if near else "Compare the name with `ros2 service list`.",
+            say(
+                "You wait for {what}{since}{rest}{where}.",
+                what=_served(kind, wait.name),
+                since=since(wait.since_s),
+                rest=rest,
+                where=line(place),
+            ),
+            _mending(end, near) if near else say("Compare the name with `ros2 service list`."),
             time_s=wait.since_s,
             place=place,
         )
@@ -59,13 +67,19 @@ def publishes_to_nobody(case: Case) -> Diagnosis | None:
 
     def told_of(end: End, near: Endpoint) -> str:
         if end.name == near.name:
-            return (
-                f"You publish {told(end.type)} on {near.name}, but the {case.thing} listens to "
-                f"{near.type} there"
+            return say(
+                "You publish {type} on {name}, but {the_thing} listens to {wanted} there",
+                type=told(end.type),
+                name=near.name,
+                the_thing=case.the_thing,
+                wanted=near.type,
             )
-        return (
-            f"You publish {told(end.type)} on {told(end.name)}, where nobody listens; the "
-            f"{case.thing} listens to {near.name}{_unlike(end, near)}"
+        return say(
+            "You publish {type} on {name}, where nobody listens; {the_thing} listens to {wanted}",
+            type=told(end.type),
+            name=told(end.name),
+            the_thing=case.the_thing,
+            wanted=_near(end, near),
         )
 
     return _first(case, "publisher", "publishes_to_nobody", told_of)
@@ -76,13 +90,17 @@ def hears_nobody(case: Case) -> Diagnosis | None:
 
     def told_of(end: End, near: Endpoint) -> str:
         if end.name == near.name:
-            return (
-                f"You subscribe to {near.name} as {told(end.type)}, but {near.type} is published "
-                "there, so no message reaches you"
+            return say(
+                "You subscribe to {name} as {type}, but {wanted} is published there, so no "
+                "message reaches you",
+                name=near.name,
+                type=told(end.type),
+                wanted=near.type,
             )
-        return (
-            f"You subscribe to {told(end.name)}, which nobody publishes; there is {near.name}"
-            f"{_unlike(end, near)}"
+        return say(
+            "You subscribe to {name}, which nobody publishes; there is {wanted}",
+            name=told(end.name),
+            wanted=_near(end, near),
         )
 
     return _first(case, "subscription", "hears_nobody", told_of)
@@ -99,14 +117,16 @@ def calls_nobody(case: Case) -> Diagnosis | None:
     """It calls a service or an action under a name or with a type that nobody offers."""
 
     def told_of(end: End, near: Endpoint) -> str:
-        verb = "You call" if end.used else "You have a client for"
-        what = "action" if end.kind == "action_client" else "service"
+        what = _served(end.kind, end.name)
         if end.name == near.name:
-            return f"{verb} the {what} {near.name} as {told(end.type)}, but it is {near.type}"
-        return (
-            f"{verb} the {what} {told(end.name)}, which nobody offers; there is {near.name}"
-            f"{_unlike(end, near)}"
-        )
+            words = {"what": what, "type": told(end.type), "wanted": near.type}
+            if end.used:
+                return say("You call {what} as {type}, but it is {wanted}", **words)
+            return say("You have a client for {what} as {type}, but it is {wanted}", **words)
+        words = {"what": what, "wanted": _near(end, near)}
+        if end.used:
+            return say("You call {what}, which nobody offers; there is {wanted}", **words)
+        return say("You have a client for {what}, which nobody offers; there is {wanted}", **words)
 
     return _first(case, "client", "calls_nobody", told_of) or _first(
         case, "action_client", "calls_nobody", told_of
@@ -127,7 +147,7 @@ def _first(
             continue
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
-        cause = f"{told_of(end, near)}{line(end.place)}."
+        cause = joined([told_of(end, near), line(end.place), "."])
         return Diagnosis(key, cause, _mending(end, near), place=end.place)
     return None
 
@@ -169,8 +189,18 @@ def _meets_itself(case: Case, end: End) -> bool:
     return any(each.kind == other and each.name == end.name for each in case.ends)
 
 
-def _unlike(end: End, near: Endpoint) -> str:
-    return "" if end.type == near.type else f" of type {near.type}"
+def _served(kind: EndKind, name: str) -> str:
+    """What a client of this kind is for: 'the service /spawn'."""
+    if kind == "action_client":
+        return say("the action {name}", name=told(name))
+    return say("the service {name}", name=told(name))
+
+
+def _near(end: End, near: Endpoint) -> str:
+    """The scene's own, with its type where that is another one."""
+    if end.type == near.type:
+        return near.name
+    return say("{name} of type {type}", name=near.name, type=near.type)
 
 
 def _mending(end: End, near: Endpoint) -> str:
@@ -178,7 +208,12 @@ def _mending(end: End, near: Endpoint) -> str:
     package, kind, name = near.type.split("/")
     imported = f"`from {package}.{kind} import {name}`"
     if end.type == near.type:
-        return f"Write '{near.name}' there."
+        return say("Write '{name}' there.", name=near.name)
     if end.name == near.name:
-        return f"Make it with {name}: {imported}."
-    return f"Write '{near.name}' there, and make it with {name}: {imported}."
+        return say("Make it with {type}: {imported}.", type=name, imported=imported)
+    return say(
+        "Write '{name}' there, and make it with {type}: {imported}.",
+        name=near.name,
+        type=name,
+        imported=imported,
+    )

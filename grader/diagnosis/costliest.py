@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from grader.diagnosis.diagnosis import CHECK, Diagnosis
 from grader.exercise.verdict import Verdict
+from grader.language.phrase import say
 from grader.text import one_line
 
 
@@ -19,7 +20,7 @@ def costliest(verdicts: Sequence[Verdict]) -> Diagnosis | None:
     first = worst.evidence[0] if worst.evidence else None
     return Diagnosis(
         CHECK,
-        one_line(worst.rationale) or f"{worst.title}: not as asked for.",
+        one_line(worst.rationale) or say("{title}: not as asked for.", title=worst.title),
         one_line(worst.help),
         run=first.run if first is not None else 0,
         time_s=first.time_s if first is not None else None,

@@ -7,8 +7,9 @@ from contextlib import suppress
 from signal import Signals
 
 from grader.diagnosis import printed, slips, usual
-from grader.diagnosis.case import Case, at, line, told
+from grader.diagnosis.case import Case, at, line, sentences, told
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.language.phrase import Phrase, marked, say
 from grader.recording.conduct import Place, Raised
 from grader.text import clip
 
@@ -22,13 +23,14 @@ _PLACE = re.compile(r" \([^()]*, line \d+\)$")
 _LONGEST_ERROR = 120
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 _NONE = "'NoneType'"
+_REMARK = marked("{remark}.")
 #: For people who do not know the kernel's words.
 _SIGNALS = {
-    "SIGABRT": "a library gave up on a value that it cannot take",
-    "SIGSEGV": "it reached into memory that is not its own",
-    "SIGXCPU": "it used more processor time than a run may",
-    "SIGXFSZ": "it wrote a larger file than a run may",
-    "SIGKILL": "somebody killed it, or it took too much",
+    "SIGABRT": say("a library gave up on a value that it cannot take"),
+    "SIGSEGV": say("it reached into memory that is not its own"),
+    "SIGXCPU": say("it used more processor time than a run may"),
+    "SIGXFSZ": say("it wrote a larger file than a run may"),
+    "SIGKILL": say("somebody killed it, or it took too much"),
 }
 
 
@@ -39,24 +41,36 @@ def unreadable(case: Case) -> Diagnosis | None:
         return None
     text = told(raised.text)
     if "null bytes" in text and raised.type in (*_NOT_READ, "ValueError"):
-        cause = f"Python cannot read your file{line(raised.place)}: it holds NUL bytes, as text "
-        return _saved_wrongly(f"{cause}in UTF-16 does.", raised)
+        cause = say(
+            "Python cannot read your file{where}: it holds NUL bytes, as text in UTF-16 does.",
+            where=line(raised.place),
+        )
+        return _saved_wrongly(cause, raised)
     if raised.type in (*_NOT_READ, "UnicodeDecodeError") and any(e in text for e in _ENCODING):
         if raised.type == "UnicodeDecodeError" and case.conduct.ends:
             return None  # it read something else while it ran
-        cause = f"Python cannot read your file{line(raised.place)}: it is not UTF-8 text"
-        return _saved_wrongly(f"{cause} ({text}).", raised)
+        cause = say(
+            "Python cannot read your file{where}: it is not UTF-8 text ({text}).",
+            where=line(raised.place),
+            text=text,
+        )
+        return _saved_wrongly(cause, raised)
     if raised.type in _NOT_READ:
-        text = _PLACE.sub("", text)
-        cause = f"Python cannot read your file: {raised.type}: {text}{line(raised.place)}."
-        help_ = (
-            "Look at that line and the one above it: a bracket, quote or colon that is missing is "
-            "noticed only where something else begins."
+        cause = say(
+            "Python cannot read your file: {type}: {text}{where}.",
+            type=raised.type,
+            text=Phrase(_PLACE.sub("", text)),
+            where=line(raised.place),
+        )
+        help_ = say(
+            "Look at that line and the one above it: a bracket, quote or colon that"
+            " is missing is noticed only where something else begins."
         )
         if raised.type != "SyntaxError":
-            help_ = (
-                "Look at the blanks at the beginning of that line and the one above it: what "
-                "belongs together begins in the same column, with blanks or with tabs, not both."
+            help_ = say(
+                "Look at the blanks at the beginning of that line and the one above it:"
+                " what belongs together begins in the same column, with blanks or with "
+                "tabs, not both."
             )
         return Diagnosis("unreadable", cause, help_, place=raised.place)
     return None
@@ -66,7 +80,7 @@ def _saved_wrongly(cause: str, raised: Raised) -> Diagnosis:
     return Diagnosis(
         "unreadable",
         cause,
-        "Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'.",
+        say("Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."),
         place=raised.place,
     )
 
@@ -80,8 +94,13 @@ def wrong_value(case: Case) -> Diagnosis | None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     what, help_ = _wanted(found["field"], told(found["what"]), place)
-    cause = f"The field {found['field']} of a message must be {what}; something else was given"
-    cause = f"{cause}{at(when)}{line(place)}."
+    cause = say(
+        "The field {field} of a message must be {what}; something else was given{at}{where}.",
+        field=told(found["field"]),
+        what=what,
+        at=at(when),
+        where=line(place),
+    )
     return Diagnosis("wrong_value", cause, help_, time_s=when, place=place)
 
 
@@ -92,30 +111,47 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
     number = literal[1] if literal else ""
     if limits := _RANGE.search(what):
         low, high = limits.groups()
-        wrong = f"{number} is not. " if number else ""
         return (
-            f"a whole number from {low} to {high}",
-            f"{wrong}Give it one from {low} to {high}: min() and max() keep what is calculated "
-            "within.",
+            say("a whole number from {low} to {high}", low=low, high=high),
+            sentences(
+                say("{number} is not.", number=number) if number else "",
+                say(
+                    "Give it one from {low} to {high}: min() and max() keep what is calculated "
+                    "within.",
+                    low=low,
+                    high=high,
+                ),
+            ),
         )
     if "sequence" in what and "'float'" in what:
-        return "a list of floats", "Give it numbers in brackets, as [0.0, 1.5]."
+        return say("a list of floats"), say("Give it numbers in brackets, as [0.0, 1.5].")
     if "sequence" in what and "'str'" in what:
-        return "a list of texts", "Give it texts in brackets, as ['one', 'two']."
+        return say("a list of texts"), say("Give it texts in brackets, as ['one', 'two'].")
     if "'float'" in what:
-        instead = f"Write {number}.0 instead of {number}" if number else "Write 2.0 instead of 2"
-        return "a float", f"{instead}, and float(...) around what may be an int."
+        return say("a float"), say(
+            "Write {whole}.0 instead of {whole}, and float(...) around what may be an int.",
+            whole=number or "2",
+        )
     if "'int'" in what:
-        whole = number.partition(".")[0]
-        instead = f"Write {whole} instead of {number}" if number else "Write 255 instead of 255.0"
-        return "an int", f"{instead}, and int(...) around what is calculated."
+        number = number or "255.0"
+        return say("an int"), say(
+            "Write {whole} instead of {number}, and int(...) around what is calculated.",
+            whole=number.partition(".")[0],
+            number=number,
+        )
     if "sub message" in what:
         kind = re.search(r"'(\w+)'", what)
         name = kind[1] if kind else "message"
         if name in ("Time", "Duration"):
-            return f"a {name} message", "Write .to_msg() behind it: a clock's now().to_msg()."
-        return f"a {name}", f"Set the parts of {field} one by one, as in msg.{field}.x = 2.0."
-    return what.rstrip("."), "`ros2 interface show TYPE` lists the fields of a message."
+            return say("a {name} message", name=name), say(
+                "Write .to_msg() behind it: a clock's now().to_msg()."
+            )
+        return say("a {name}", name=name), say(
+            "Set the parts of {field} one by one, as in msg.{field}.x = 2.0.", field=told(field)
+        )
+    return Phrase(what.rstrip(".")), say(
+        "`ros2 interface show TYPE` lists the fields of a message."
+    )
 
 
 def ended_itself(case: Case) -> Diagnosis | None:
@@ -123,21 +159,34 @@ def ended_itself(case: Case) -> Diagnosis | None:
     if case.run.outcome != "crashed":
         return None
     raised = case.raised
-    help_ = (
-        "Look for sys.exit(), exit() or a return code of main(): a node that is to go on stays in "
-        "rclpy.spin(node)."
+    help_ = say(
+        "Look for sys.exit(), exit() or a return code of main(): a node that is"
+        " to go on stays in rclpy.spin(node)."
     )
     if raised is not None and raised.type == "SystemExit":
         when = _when(case, raised)
         said = told(raised.text)
         value = said if said.isdecimal() else repr(said)
-        cause = f"Your program ended itself{at(when)} by sys.exit({value}){line(raised.place)}."
+        cause = say(
+            "Your program ended itself{at} by sys.exit({value}){where}.",
+            at=at(when),
+            value=Phrase(value),
+            where=line(raised.place),
+        )
         return Diagnosis("ended_itself", cause, help_, time_s=when, place=raised.place)
     if raised is not None:
         return None
-    last = printed.last_line(case.recording.output)
-    said = f"; the last that it printed is: {told(last)!r}" if last else ""
-    cause = f"Your program ended with exit code {case.run.exit_code}, by no exception{said}."
+    exit_code = case.run.exit_code
+    cause = say(
+        "Your program ended with exit code {exit_code}, by no exception.", exit_code=exit_code
+    )
+    if last := printed.last_line(case.recording.output):
+        cause = say(
+            "Your program ended with exit code {exit_code}, by no exception; the last that it "
+            "printed is: {last!r}.",
+            exit_code=exit_code,
+            last=told(last),
+        )
     return Diagnosis("ended_itself", cause, help_)
 
 
@@ -150,7 +199,13 @@ def crashed(case: Case) -> Diagnosis | None:
     said = slips.explains(case, raised) or usual.known(raised)
     place = said.place if said is not None and said.place is not None else raised.place
     at_line = place if said is not None and said.text else raised.place
-    cause = f"Your node crashed{at(when)}{_error(raised, said)}{line(at_line)}.{_limit(case)}"
+    cause = say(
+        "Your node crashed{at}{error}{where}.",
+        at=at(when),
+        error=_error(raised, said),
+        where=line(at_line),
+    )
+    cause = sentences(cause, _limit(case))
     return Diagnosis("crashed", cause, _mending(raised, said), time_s=when, place=place)
 
 
@@ -160,7 +215,11 @@ def thread_crashed(case: Case) -> Diagnosis | None:
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
     said = usual.known(raised)
-    cause = f"A thread of your program crashed{_error(raised, said)}{line(raised.place)}."
+    cause = say(
+        "A thread of your program crashed{error}{where}.",
+        error=_error(raised, said),
+        where=line(raised.place),
+    )
     return Diagnosis("crashed", cause, _mending(raised, said), place=raised.place)
 
 
@@ -178,17 +237,17 @@ def _error(raised: Raised, said: usual.Said | None) -> str:
     """': TypeError: what it says', or ' (TypeError): ' and what we say instead."""
     name, text = told(raised.type).rpartition(".")[2], told(raised.text).rstrip(".")
     if said is not None and said.text:
-        return f" ({name}): {clip(said.text, _LONGEST_ERROR)}"
+        return say(" ({name}): {error}", name=Phrase(name), error=clip(said.text, _LONGEST_ERROR))
     text = clip(text, _LONGEST_ERROR)
-    return f": {name}: {text}" if text else f": {name}"
+    return say(": {error}", error=Phrase(f"{name}: {text}" if text else name))
 
 
 def _mending(raised: Raised, said: usual.Said | None) -> str:
-    whole = "The whole traceback is in output.txt."
+    whole = say("The whole traceback is in output.txt.")
     help_ = said.help if said is not None else usual.meaning(raised)
     if not help_ and raised.place is None:
-        help_ = "None of its lines is in your own files."
-    return f"{help_} {whole}".strip()
+        help_ = say("None of its lines is in your own files.")
+    return sentences(help_, whole)
 
 
 def killed(case: Case) -> Diagnosis | None:
@@ -200,12 +259,15 @@ def killed(case: Case) -> Diagnosis | None:
     name = told(raised.type) if raised is not None else _signal(run.exit_code)
     when = None if raised is None else _when(case, raised)
     place = None if raised is None else raised.place
-    why = _SIGNALS.get(name, "")
-    cause = (
-        f"Your program was killed{at(when)}{f' by the signal {name}' if name else ''}{line(place)}"
-    )
-    cause += f": {why}." if why else "."
-    return Diagnosis("killed", f"{cause}{_limit(case)}", _after(name), time_s=when, place=place)
+    signal = say(" by the signal {name}", name=Phrase(name)) if name else ""
+    words = {"at": at(when), "signal": signal, "where": line(place)}
+    cause = say("Your program was killed{at}{signal}{where}.", **words)
+    if name in _SIGNALS:
+        cause = say(
+            "Your program was killed{at}{signal}{where}: {why}.", why=_SIGNALS[name], **words
+        )
+    cause = sentences(cause, _limit(case))
+    return Diagnosis("killed", cause, _after(name), time_s=when, place=place)
 
 
 def _signal(exit_code: int | None) -> str:
@@ -219,23 +281,30 @@ def _signal(exit_code: int | None) -> str:
 
 def _after(signal: str) -> str:
     if signal == "SIGABRT":
-        return (
-            "Look at the values that this line gives to a message: 2.0 for a float, 255 for an "
-            "int, and nothing beyond the range of its type."
+        return say(
+            "Look at the values that this line gives to a message: 2.0 for a float,"
+            " 255 for an int, and nothing beyond the range of its type."
         )
     if signal in ("SIGKILL", "SIGTERM"):
-        return "Look for os.kill() and for lists that grow without end; output.txt may tell more."
-    return "output.txt may tell more, and the remarks on the run below."
+        return say(
+            "Look for os.kill() and for lists that grow without end; output.txt may tell more."
+        )
+    return say("output.txt may tell more, and the remarks on the run below.")
 
 
 def _limit(case: Case) -> str:
     """A sentence of the run's remarks on what it was refused; '' for none."""
     for flag in case.run.flags:
         if flag.startswith("the node ended with "):
-            return f" {told(flag.partition(': ')[2]).capitalize()}."
+            known = flag.values.get("remark") if isinstance(flag, Phrase) else None
+            return _remark(flag.partition(": ")[2], known or flag)
         if case.run.outcome == "killed" and flag.startswith("the node "):
-            return f" {told(flag).capitalize()}."
+            return _remark(flag, flag)
     return ""
+
+
+def _remark(text: str, remark: str) -> Phrase:
+    return Phrase(f"{told(text).capitalize()}.", _REMARK, {"remark": remark})
 
 
 def _when(case: Case, raised: Raised) -> float | None:

@@ -14,10 +14,11 @@ from dataclasses import replace
 from typing import Final
 
 from grader.diagnosis import caught, connections, crash, imports, slips, standstill, timers, warned
-from grader.diagnosis.case import Case, line, told
+from grader.diagnosis.case import Case, line, sentences, told
 from grader.diagnosis.costliest import costliest
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Verdict
+from grader.language.phrase import say
 from grader.recording.recording import Recordings
 from grader.text import one_line
 
@@ -87,15 +88,20 @@ def _ask(rules: Sequence[Rule], case: Case) -> Diagnosis | None:
 
 def _in_run(found: Diagnosis, number: int) -> Diagnosis:
     """What was found in a run, fit to be shown."""
-    where = f"In varied run {number}: " if number else ""
-    return _shown(replace(found, run=number, cause=f"{where}{found.cause}"))
+    cause = found.cause
+    if number:
+        cause = say("In varied run {number}: {cause}", number=number, cause=cause)
+    return _shown(replace(found, run=number, cause=cause))
 
 
 def _shown(found: Diagnosis) -> Diagnosis:
     place = found.place
     if place is not None:
         place = replace(
-            place, file=told(place.file), function=told(place.function), text=told(place.text)
+            place,
+            file=str(told(place.file)),
+            function=str(told(place.function)),
+            text=str(told(place.text)),
         )
     return replace(found, cause=one_line(found.cause), help=one_line(found.help), place=place)
 
@@ -118,13 +124,14 @@ def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
         if not is_meant or end.used or end.kind not in ("publisher", "client"):
             continue
         if end.kind == "publisher":
-            said = f"{found.help} Your publisher{line(end.place)} has sent no message."
-            return replace(found, help=said.strip(), place=end.place)
-        said = f"{found.cause} Your client{line(end.place)} has sent no request."
+            unsent = say("Your publisher{where} has sent no message.", where=line(end.place))
+            return replace(found, help=sentences(found.help, unsent), place=end.place)
+        unsent = say("Your client{where} has sent no request.", where=line(end.place))
+        said = sentences(found.cause, unsent)
         made = slips.unsent(case)
         if made is None:
             return replace(found, cause=said, place=end.place)
-        help_ = "Send the request that you make: call_async(request)."
+        help_ = say("Send the request that you make: call_async(request).")
         return replace(found, cause=said, help=help_, place=made)
     return None
 

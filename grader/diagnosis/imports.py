@@ -7,6 +7,7 @@ import sys
 
 from grader.diagnosis.case import Case, line, told
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.language.phrase import Phrase, say
 from grader.recording.conduct import Raised
 
 #: What Python adds to some texts, and nobody needs.
@@ -28,18 +29,24 @@ def not_importable(case: Case) -> Diagnosis | None:
     if hidden is not None:
         return hidden
     text = _PATH.sub("", told(raised.text))
-    cause = f"Your program cannot import what it needs: {raised.type}: {text}"
-    help_ = (
-        "Compare the name with the one in the exercise or in ROS's documentation. A module of your "
-        "own has to be in what you hand in, beside the file or in its package."
+    cause = say(
+        "Your program cannot import what it needs: {type}: {text}{where}.",
+        type=raised.type,
+        text=Phrase(text),
+        where=line(raised.place),
+    )
+    help_ = say(
+        "Compare the name with the one in the exercise or in ROS's "
+        "documentation. A module of your own has to be in what you hand in, "
+        "beside the file or in its package."
     )
     if _INTERFACES.match(text):
-        help_ = (
-            "Compare the name. If it is right, this package is not installed where your node was "
-            "graded: take std_msgs, std_srvs or geometry_msgs instead, or ask whoever runs the "
-            "grader to install it."
+        help_ = say(
+            "Compare the name. If it is right, this package is not installed where "
+            "your node was graded: take std_msgs, std_srvs or geometry_msgs "
+            "instead, or ask whoever runs the grader to install it."
         )
-    return Diagnosis("not_importable", f"{cause}{line(raised.place)}.", help_, place=raised.place)
+    return Diagnosis("not_importable", cause, help_, place=raised.place)
 
 
 def _hides_package(raised: Raised) -> Diagnosis | None:
@@ -51,12 +58,21 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
     is_named_so = file == f"{name}.py"
     if not is_named_so and (found.re is _FROM or name in sys.stdlib_module_names):
         return None
-    which = "Your file is itself called" if is_named_so else "A file of your own is called"
+    name = told(name)
+    which = (
+        say("Your file is itself called {name}.py", name=name)
+        if is_named_so
+        else say("A file of your own is called {name}.py", name=name)
+    )
     return Diagnosis(
         "not_importable",
-        f"{which} {name}.py, and so hides the package {name} from which you import"
-        f"{line(raised.place)}.",
-        f"Give {name}.py another name.",
+        say(
+            "{which}, and so hides the package {name} from which you import{where}.",
+            which=which,
+            name=name,
+            where=line(raised.place),
+        ),
+        say("Give {name}.py another name.", name=name),
         place=raised.place,
     )
 
@@ -74,8 +90,14 @@ def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
         instead = written.replace(f"from {name} ", f"from {near} ", 1)
     return Diagnosis(
         "not_importable",
-        f"Your program cannot import {name}: it lies beside, in the package {package}, and in a "
-        f"package its name is {near}{line(raised.place)}.",
-        f"Write `{instead}` there.",
+        say(
+            "Your program cannot import {name}: it lies beside, in the package "
+            "{package}, and in a package its name is {near}{where}.",
+            name=name,
+            package=Phrase(package),
+            near=near,
+            where=line(raised.place),
+        ),
+        say("Write `{instead}` there.", instead=instead),
         place=raised.place,
     )

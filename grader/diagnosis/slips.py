@@ -10,10 +10,11 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from grader.diagnosis.case import Case, function, line, told
+from grader.diagnosis.case import Case, function, line, sentences, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.standstill import never_spins
 from grader.diagnosis.usual import Said
+from grader.language.phrase import Phrase, joined, say
 from grader.recording.conduct import Place, Raised, Slip, SlipKind
 
 #: So much of an exception's text is looked at [characters].
@@ -40,13 +41,25 @@ def _not_global(case: Case, raised: Raised) -> Said | None:
     for slip in _of_kind(case, "global"):
         if slip.name == found[1]:
             word = told(slip.near)
-            where = "at the top of the file" if word.startswith("global") else "outside"
-            here = function(raised.place) or "this function"
+            outside = say("outside")
+            if word.startswith("global"):
+                outside = say("at the top of the file")
+            here = function(raised.place) or say("this function")
             return Said(
-                f"Write `{word}` as the first line of {here}: without it that is another variable, "
-                "which has no value yet.",
-                f"`{told(slip.name)}` is assigned {where} (line {slip.place.line}) and in {here}: "
-                f"add `{word}`",
+                say(
+                    "Write `{word}` as the first line of {here}: without it that is another"
+                    " variable, which has no value yet.",
+                    word=word,
+                    here=here,
+                ),
+                say(
+                    "`{name}` is assigned {outside} (line {line}) and in {here}: add `{word}`",
+                    name=told(slip.name),
+                    outside=outside,
+                    line=slip.place.line,
+                    here=here,
+                    word=word,
+                ),
             )
     return None
 
@@ -61,8 +74,10 @@ def _without_self(case: Case, raised: Raised) -> Said | None:
             rest = written.partition("(")[2].lstrip()
             comma = "" if rest.startswith(")") else ", "
             return Said(
-                f"A method takes self before all else: write `{written.partition('(')[0]}(self"
-                f"{comma}{rest}`.",
+                say(
+                    "A method takes self before all else: write `{written}`.",
+                    written=f"{written.partition('(')[0]}(self{comma}{rest}",
+                ),
                 place=slip.place,
             )
     return None
@@ -75,8 +90,12 @@ def _hidden_method(case: Case, raised: Raised) -> Said | None:
         name = told(slip.name)
         if f"self.{name}(" in raised.place.text:
             return Said(
-                f"self.{name} is set to something else{line(slip.place)}, and that hides the "
-                f"method {name}(): give one of them another name."
+                say(
+                    "self.{name} is set to something else{where}, and that hides the method "
+                    "{name}(): give one of them another name.",
+                    name=name,
+                    where=line(slip.place),
+                )
             )
     return None
 
@@ -87,8 +106,15 @@ def _class_given(case: Case, raised: Raised) -> Said | None:
         if place is not None and ("spin" in place.text or place.line == slip.place.line):
             call, name = told(slip.near), told(slip.name)
             return Said(
-                f"The brackets are missing: node = {name}(), then {call}(node).",
-                f"{call.rpartition('.')[2]} was given a class, not a node that was made of it",
+                say(
+                    "The brackets are missing: node = {name}(), then {call}(node).",
+                    name=name,
+                    call=call,
+                ),
+                say(
+                    "{call} was given a class, not a node that was made of it",
+                    call=Phrase(call.rpartition(".")[2]),
+                ),
                 slip.place,
             )
     return None
@@ -106,8 +132,8 @@ def _service_for_request(case: Case, raised: Raised) -> Said | None:
     if name not in services:
         return None
     return Said(
-        f"Write {name}.Request(...) there: that is what a request is made of.",
-        f"{name} is the service, not a request to it",
+        say("Write {name}.Request(...) there: that is what a request is made of.", name=told(name)),
+        say("{name} is the service, not a request to it", name=told(name)),
     )
 
 
@@ -124,9 +150,17 @@ def called_at_once(case: Case) -> Diagnosis | None:
         name = told(slip.name)
         return Diagnosis(
             "called_at_once",
-            f"{told(slip.near)}{name}()){line(slip.place)} calls {name}() at once, in the main "
-            "program, and what comes after waits until it returns.",
-            f"Hand it over by its name, without brackets: {told(slip.near)}{name}).",
+            say(
+                "{called}{where} calls {name}() at once, in the main program, and what comes "
+                "after waits until it returns.",
+                called=f"{told(slip.near)}{name}())",
+                where=line(slip.place),
+                name=name,
+            ),
+            say(
+                "Hand it over by its name, without brackets: {handed}.",
+                handed=f"{told(slip.near)}{name})",
+            ),
             place=slip.place,
         )
     return None
@@ -136,7 +170,7 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """The finding of a check, behind a slip that may be its cause."""
     for slip in _of_kind(case, "uncalled", "unread", "local"):
         text, help_ = _told(slip)
-        cause = f"{text[0].upper()}{text[1:]}{line(slip.place)}. {found.cause}"
+        cause = sentences(joined([text, line(slip.place), "."]), found.cause)
         return replace(found, cause=cause, help=help_, place=slip.place)
     return found
 
@@ -145,27 +179,40 @@ def _told(slip: Slip) -> tuple[str, str]:
     name, near = told(slip.name), told(slip.near)
     if slip.kind == "unread":
         return (
-            f"`self.{name}` is set and never read; what is read is `self.{near}`",
-            f"Write self.{near} there, if that is what you mean.",
+            say(
+                "`self.{name}` is set and never read; what is read is `self.{near}`",
+                name=name,
+                near=near,
+            ),
+            say("Write self.{near} there, if that is what you mean.", near=near),
         )
     if slip.kind == "local" and near.startswith("self."):
         return (
-            f"`{name}` is a variable of this function and never read; what is read elsewhere is "
-            f"`{near}`",
-            f"Write {near} = ... there.",
+            say(
+                "`{name}` is a variable of this function and never read; what is read "
+                "elsewhere is `{near}`",
+                name=name,
+                near=near,
+            ),
+            say("Write {near} = ... there.", near=near),
         )
     if slip.kind == "local":
         return (
-            f"`{name}` is set in this function only, and never read; outside there is another "
-            f"`{name}`",
-            f"Write `{near}` as the first line of the function.",
+            say(
+                "`{name}` is set in this function only, and never read; outside there "
+                "is another `{name}`",
+                name=name,
+            ),
+            say("Write `{near}` as the first line of the function.", near=near),
         )
     text = slip.place.text.lstrip()
     if text.partition(";")[0].rstrip() == slip.name:
-        return f"`{name}` stands there without brackets, and does nothing", f"Write {name}()."
+        return say("`{name}` stands there without brackets, and does nothing", name=name), say(
+            "Write {name}().", name=name
+        )
     return (
-        f"`{name}` stands there without brackets: a function as such is always true",
-        f"Write {name}().",
+        say("`{name}` stands there without brackets: a function as such is always true", name=name),
+        say("Write {name}().", name=name),
     )
 
 

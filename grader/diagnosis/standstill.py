@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from grader.diagnosis import printed
-from grader.diagnosis.case import Case, after, function, line, since, told
+from grader.diagnosis.case import Case, after, function, line, sentences, since, told
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.language.phrase import say, say_many
 from grader.recording.conduct import Place
 from grader.text import clip
 
@@ -21,9 +22,9 @@ _FLOOD_PER_S = 500.0
 _LONG_S, _LONG_IN_LOOP_S, _ONCE = 5.0, 1.0, 2
 #: So much of a line of code, or of what was printed, is shown [characters].
 _LONGEST_CODE = 60
-_SPIN = (
-    "Make the node and then call rclpy.spin(node): it hands out messages and timers until the node "
-    "ends."
+_SPIN = say(
+    "Make the node and then call rclpy.spin(node): it hands out messages "
+    "and timers until the node ends."
 )
 
 
@@ -32,17 +33,21 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
     stop = case.stop
     if stop is None or stop.kind != "callback":
         return None
-    who = function(stop.place) or "a callback"
-    cause = (
-        f"Your node is stuck in {who}{line(stop.place)}{since(stop.time_s)}: it waits in this "
-        f"callback{_for(stop.call)}, and meanwhile no answer, message or timer is handed out."
+    who = function(stop.place) or say("a callback")
+    cause = say(
+        "Your node is stuck in {who}{where}{since}: it waits in this "
+        "callback{in_call}, and meanwhile no answer, message or timer is handed out.",
+        who=who,
+        where=line(stop.place),
+        since=since(stop.time_s),
+        in_call=_in_call(stop.call),
     )
-    help_ = (
-        "Do not wait in a callback: send the request by call_async(request), and go on without "
-        "waiting for the answer."
+    help_ = say(
+        "Do not wait in a callback: send the request by call_async(request), "
+        "and go on without waiting for the answer."
     )
     if "sleep" in stop.call:
-        help_ = "Do not sleep in a callback: return, and let create_timer() call you later."
+        help_ = say("Do not sleep in a callback: return, and let create_timer() call you later.")
     return Diagnosis("stuck_in_callback", cause, help_, time_s=stop.time_s, place=stop.place)
 
 
@@ -51,19 +56,22 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
     stop = case.stop
     if stop is None or stop.kind != "call":
         return None
-    cause = (
-        f"Your program is stuck{since(stop.time_s)}{line(stop.place)}: it waits"
-        f"{_for(stop.call)} while nobody spins the node, so nothing can reach it."
+    cause = say(
+        "Your program is stuck{since}{where}: it waits{in_call} while nobody spins "
+        "the node, so nothing can reach it.",
+        since=since(stop.time_s),
+        where=line(stop.place),
+        in_call=_in_call(stop.call),
     )
     if "Rate" in stop.call or "sleep" in stop.call:
-        help_ = (
-            "A Rate needs somebody who spins: use create_timer() with a callback and "
-            "rclpy.spin(node), or spin in another thread."
+        help_ = say(
+            "A Rate needs somebody who spins: use create_timer() with a callback "
+            "and rclpy.spin(node), or spin in another thread."
         )
     elif stop.call.startswith("Client."):
-        help_ = (
-            "Use call_async() and rclpy.spin_until_future_complete(node, future), or spin in "
-            "another thread."
+        help_ = say(
+            "Use call_async() and rclpy.spin_until_future_complete(node, future), "
+            "or spin in another thread."
         )
     else:
         help_ = _SPIN
@@ -73,19 +81,24 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
 def endless_loop(case: Case) -> Diagnosis | None:
     """It computes without end."""
     stop = case.stop
-    help_ = (
-        "Nothing else of your node can happen while a loop runs. Let a timer (create_timer) call "
-        "you again and again, or call rclpy.spin_once(node) in the loop."
+    help_ = say(
+        "Nothing else of your node can happen while a loop runs. Let a timer "
+        "(create_timer) call you again and again, or call rclpy.spin_once(node)"
+        " in the loop."
     )
     if stop is not None and stop.kind == "loop":
-        where = f" in {name}" if (name := function(stop.place)) else ""
-        cause = (
-            f"Your program never comes out of a loop{where}{line(stop.place)}: it goes round "
-            f"without waiting for anything{since(stop.time_s)}."
+        name = function(stop.place)
+        inside = say(" in {name}", name=name) if name else ""
+        cause = say(
+            "Your program never comes out of a loop{inside}{where}: it goes round "
+            "without waiting for anything{since}.",
+            inside=inside,
+            where=line(stop.place),
+            since=since(stop.time_s),
         )
         return Diagnosis("endless_loop", cause, help_, time_s=stop.time_s, place=stop.place)
     if case.run.outcome == "stalled" and any(_WITHOUT_WAITING in f for f in case.run.flags):
-        cause = (
+        cause = say(
             "Your program computes without end: it used processor time, and never waited for ROS."
         )
         return Diagnosis("endless_loop", cause, help_)
@@ -101,18 +114,22 @@ def stays_in_init(case: Case) -> Diagnosis | None:
     is_mute = bool(publishers) and not any(end.used for end in publishers)
     if not is_mute and never_spins(case) is None:
         return None
-    cause = (
-        f"Your program never leaves __init__(): it stays at {_code(stop.place)}"
-        f"{line(stop.place)}, and what comes after is never reached."
+    cause = say(
+        "Your program never leaves __init__(): it stays at {code}{where}, and "
+        "what comes after is never reached.",
+        code=_code(stop.place),
+        where=line(stop.place),
     )
-    help_ = (
-        "Let __init__ only make the publisher, the subscription and a timer, and return; main() "
-        "then calls rclpy.spin(node), and create_timer() lets you act again and again."
+    help_ = say(
+        "Let __init__ only make the publisher, the subscription and a timer, "
+        "and return; main() then calls rclpy.spin(node), and create_timer() "
+        "lets you act again and again."
     )
     if "spin(" in stop.place.text:
-        help_ = (
-            "spin() comes back only when the program ends. A loop of your own calls "
-            f"rclpy.spin_once(self, timeout_sec=0.01) each time instead. Or: {help_}"
+        help_ = say(
+            "spin() comes back only when the program ends. A loop of your own calls"
+            " rclpy.spin_once(self, timeout_sec=0.01) each time instead. Or: {other_help}",
+            other_help=help_,
         )
     return Diagnosis("stays_in_init", cause, help_, place=stop.place)
 
@@ -124,14 +141,19 @@ def spins_in_loop(case: Case) -> Diagnosis | None:
     if stop is None or stop.kind != "spin" or not publishers or any(e.used for e in publishers):
         return None
     cause = (
-        f"The loop round {_code(stop.place)}{line(stop.place)} never goes round: spin() comes back "
-        "only when the program ends, and nothing behind it is reached."
+        say(
+            "The loop round {code}{where} never goes round: spin() comes back only "
+            "when the program ends, and nothing behind it is reached.",
+            code=_code(stop.place),
+            where=line(stop.place),
+        )
         if stop.place
-        else "A loop calls spin(), which comes back only when the program ends."
+        else say("A loop calls spin(), which comes back only when the program ends.")
     )
-    help_ = (
-        "A loop of your own calls rclpy.spin_once(node, timeout_sec=0.01) each time. Or let "
-        "create_timer() call what the loop does, and call rclpy.spin(node) once, without a loop."
+    help_ = say(
+        "A loop of your own calls rclpy.spin_once(node, timeout_sec=0.01) each "
+        "time. Or let create_timer() call what the loop does, and call "
+        "rclpy.spin(node) once, without a loop."
     )
     return Diagnosis("spins_in_loop", cause, help_, place=stop.place)
 
@@ -140,11 +162,12 @@ def does_nothing(case: Case) -> Diagnosis | None:
     """It came to its end without having made anything of ROS."""
     if case.ended_s is None or case.conduct.ends or case.conduct.spun_s is not None:
         return None
-    cause = (
-        f"Your program ended {after(case.ended_s)} without a publisher, a subscription or a "
-        "client: is main() ever called?"
+    cause = say(
+        "Your program ended {after} without a publisher, a subscription or a "
+        "client: is main() ever called?",
+        after=after(case.ended_s),
     )
-    help_ = "Let the file end with:  if __name__ == '__main__': main()"
+    help_ = say("Let the file end with: if __name__ == '__main__': main()")
     return Diagnosis("does_nothing", cause, help_, time_s=case.ended_s)
 
 
@@ -163,23 +186,32 @@ def never_spins(case: Case) -> Diagnosis | None:
     sends = [end for end in conduct.ends if end.kind == "publisher" and end.used]
     if not conduct.ends or (sends and not deaf):
         return None
-    none = "none of its subscriptions and timers is ever called"
+    none = say("none of its subscriptions and timers is ever called")
     place = deaf[0].place if deaf else None
     help_ = _SPIN
     if (loop := _loop_at_end(case)) is not None:
         place = loop
-        help_ = (
-            "Instead of the loop take create_timer() with a callback, and then rclpy.spin(node): "
-            "it hands out messages and timers until the node ends."
+        help_ = say(
+            "Instead of the loop take create_timer() with a callback, and then "
+            "rclpy.spin(node): it hands out messages and timers until the node "
+            "ends."
         )
-        cause = (
-            f"Your program stays in the loop {_code(loop)}{line(loop)} and never spins its node, "
-            f"so {none}."
+        cause = say(
+            "Your program stays in the loop {code}{where} and never spins its node, so {none}.",
+            code=_code(loop),
+            where=line(loop),
+            none=none,
         )
     elif case.ended_s is None:
-        cause = f"Your program never spins its node, so {none}{line(place)}."
+        cause = say(
+            "Your program never spins its node, so {none}{where}.", none=none, where=line(place)
+        )
     else:
-        cause = f"Your program ended {after(case.ended_s)} and never spun its node, so {none}."
+        cause = say(
+            "Your program ended {after} and never spun its node, so {none}.",
+            after=after(case.ended_s),
+            none=none,
+        )
     return Diagnosis("never_spins", cause, help_, time_s=case.ended_s, place=place)
 
 
@@ -189,18 +221,27 @@ def ends_early(case: Case) -> Diagnosis | None:
     if ended_s is None or ended_s > _SOON_S or case.run.outcome not in ("exited", "finished"):
         return None
     sent = sum(end.used for end in case.conduct.ends if end.kind == "publisher")
-    what = {0: "nothing", 1: "one message"}.get(sent, f"{sent} messages")
+    what = say("nothing")
+    if sent:
+        what = say_many("one message", "{n} messages", sent)
     if last := printed.last_line(case.recording.output):
-        what = f"{what}, and the last that it printed is: {clip(told(last), _LONGEST_CODE)!r}"
+        what = say(
+            "{what}, and the last that it printed is: {last!r}",
+            what=what,
+            last=clip(told(last), _LONGEST_CODE),
+        )
     raised = case.conduct.raised
     place = raised.place if raised is not None else None
-    cause = (
-        f"Your program ended {after(ended_s)}, by itself{line(place)}; until then it had published "
-        f"{what}."
+    cause = say(
+        "Your program ended {after}, by itself{where}; until then it had published {what}.",
+        after=after(ended_s),
+        where=line(place),
+        what=what,
     )
-    help_ = (
-        "rclpy.spin_once(node) handles one message and returns: rclpy.spin(node) goes on. If it "
-        "does spin, look for what ends it: shutdown(), sys.exit(), a loop that is left too soon."
+    help_ = say(
+        "rclpy.spin_once(node) handles one message and returns: "
+        "rclpy.spin(node) goes on. If it does spin, look for what ends it: "
+        "shutdown(), sys.exit(), a loop that is left too soon."
     )
     return Diagnosis("ends_early", cause, help_, time_s=ended_s, place=place)
 
@@ -215,14 +256,18 @@ def slow_callback(case: Case) -> Diagnosis | None:
     )
     if slow is None:
         return None
-    who = function(slow.place) or "A callback"
-    cause = (
-        f"{who} lets up to {slow.longest_s:.2g} s pass each time that it is called"
-        f"{line(slow.place)}; meanwhile your node hears no message and no timer."
+    who = function(slow.place) or say("A callback")
+    cause = say(
+        "{who} lets up to {longest_s:.2g} s pass each time that it is "
+        "called{where}; meanwhile your node hears no message and no timer.",
+        who=who,
+        longest_s=slow.longest_s,
+        where=line(slow.place),
     )
-    help_ = (
-        "Do not sleep or wait in a callback: do what is to be done now, and return. The next "
-        "message comes by itself, and create_timer() calls you later."
+    help_ = say(
+        "Do not sleep or wait in a callback: do what is to be done now, and "
+        "return. The next message comes by itself, and create_timer() calls you"
+        " later."
     )
     return Diagnosis("slow_callback", cause, help_, place=slow.place)
 
@@ -235,12 +280,25 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
         if end.kind != "publisher" or not case.conduct.is_told or rate < _FLOOD_PER_S:
             continue
         loop = _loop_at_end(case)
-        where = f": nothing in the loop {_code(loop)}{line(loop)} waits" if loop is not None else ""
-        cause = f"You published {end.used} messages on {told(end.name)} in {run_s:.0f} s"
-        cause += f"{where or f'{line(end.place)}: nothing in that loop waits'}."
-        help_ = (
-            "A few commands a second are enough: publish in the callback of create_timer(), and "
-            "let rclpy.spin(node) call it."
+        words = {"sent": end.used, "topic": told(end.name), "run_s": run_s}
+        if loop is not None:
+            cause = say(
+                "You published {sent} messages on {topic} in {run_s:.0f} s: nothing in the loop "
+                "{code}{where} waits.",
+                code=_code(loop),
+                where=line(loop),
+                **words,
+            )
+        else:
+            cause = say(
+                "You published {sent} messages on {topic} in {run_s:.0f} s{where}: nothing in "
+                "that loop waits.",
+                where=line(end.place),
+                **words,
+            )
+        help_ = say(
+            "A few commands a second are enough: publish in the callback of "
+            "create_timer(), and let rclpy.spin(node) call it."
         )
         place = loop or end.place
         return Diagnosis("publishes_without_waiting", cause, help_, place=place)
@@ -262,21 +320,29 @@ def hears_once(case: Case) -> Diagnosis | None:
         if asked_once or not is_alone:
             continue
         if (end.name, end.type) in published and 0 < end.used <= _ONCE:
-            cause = (
-                f"Your node has heard {told(end.name)} hardly more than once in {run_s:.0f} s"
-                f"{line(end.place)}, though it is published all the time."
+            cause = say(
+                "Your node has heard {topic} hardly more than once in {run_s:.0f} "
+                "s{where}, though it is published all the time.",
+                topic=told(end.name),
+                run_s=run_s,
+                where=line(end.place),
             )
             if loop is not None:
-                cause = (
-                    f"Your node stays in the loop {_code(loop)}{line(loop)}, so it has heard "
-                    f"{told(end.name)} hardly more than once in {run_s:.0f} s."
+                cause = say(
+                    "Your node stays in the loop {code}{where}, so it has heard {topic} "
+                    "hardly more than once in {run_s:.0f} s.",
+                    code=_code(loop),
+                    where=line(loop),
+                    topic=told(end.name),
+                    run_s=run_s,
                 )
-            help_ = (
-                "The next message is handed out when the callback has returned: no loop may wait "
-                "in it; let create_timer() call you."
+            help_ = say(
+                "The next message is handed out when the callback has returned: no loop"
+                " may wait in it; let create_timer() call you."
             )
             if loop is None or function(loop) in ("", "main()"):
-                help_ += " And rclpy.spin(node) has to go on meanwhile."
+                more = say("And rclpy.spin(node) has to go on meanwhile.")
+                help_ = sentences(help_, more)
             return Diagnosis("hears_once", cause, help_, place=loop or end.place)
     return None
 
@@ -292,6 +358,6 @@ def _code(place: Place) -> str:
     return f"`{clip(told(place.text), _LONGEST_CODE)}`"
 
 
-def _for(call: str) -> str:
+def _in_call(call: str) -> str:
     """' in Client.call()'; '' where that is not known."""
-    return f" in {told(call)}()" if call else ""
+    return say(" in {call}()", call=told(call)) if call else ""

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from grader.diagnosis.case import told
+from grader.language.phrase import say
 from grader.recording.conduct import Place, Raised
 
 #: So much of an exception's text is looked at [characters].
@@ -35,23 +36,28 @@ _IN_ORDER = {
     "create_client": "create_client(SetPen, '/service')",
     "create_service": "create_service(SetPen, '/service', self.on_request)",
 }
-_NOT_CALLED = (
-    "A callback is handed over by its name, without brackets: self.NAME, not self.NAME(), which "
-    "calls it at once and hands over what it returns."
+_NOT_CALLED = say(
+    "A callback is handed over by its name, without brackets: self.NAME, "
+    "not self.NAME(), which calls it at once and hands over what it "
+    "returns."
 )
 #: What may be said of an exception of which no more is known.
 _MEANING = {
-    "KeyError": "What that line looks into has no such entry: compare it with those that it has.",
-    "IndexError": "That line asks for an element beyond the end of a list, or of an empty one.",
-    "ZeroDivisionError": "That line divides by what can be 0: look at it before dividing.",
-    "UnboundLocalError": (
+    "KeyError": say(
+        "What that line looks into has no such entry: compare it with those that it has."
+    ),
+    "IndexError": say(
+        "That line asks for an element beyond the end of a list, or of an empty one."
+    ),
+    "ZeroDivisionError": say("That line divides by what can be 0: look at it before dividing."),
+    "UnboundLocalError": say(
         "On the way that was taken the variable was given no value before that line: give it one "
         "at the start of the function, or write self. before it where it is the node's."
     ),
-    "NameError": "Import it, define it above, or write self. before it.",
-    "ValueError": "That line was given a value of the right type that it cannot take.",
-    "TypeError": "That line was given something of another type, or another number of values.",
-    "RecursionError": "A function goes on calling itself: look for what should end that.",
+    "NameError": say("Import it, define it above, or write self. before it."),
+    "ValueError": say("That line was given a value of the right type that it cannot take."),
+    "TypeError": say("That line was given something of another type, or another number of values."),
+    "RecursionError": say("A function goes on calling itself: look for what should end that."),
 }
 
 
@@ -85,16 +91,16 @@ def _without_init(name: str, text: str, _: Place | None) -> Said | None:
     """ROS or the node has not been started."""
     if name == "NotInitializedException" or "rclpy.init() has not been called" in text:
         return Said(
-            "Call rclpy.init() at the start of main(), before the node is made.",
-            "rclpy.init() has not been called",
+            say("Call rclpy.init() at the start of main(), before the node is made."),
+            say("rclpy.init() has not been called"),
         )
     if name == "AttributeError" and re.search(f"has no attribute {_NODE_ATTRIBUTE}", text):
         return Said(
-            "super().__init__('name_of_the_node') must come first in __init__.",
-            "the Node is not made yet when that line uses it",
+            say("super().__init__('name_of_the_node') must come first in __init__."),
+            say("the Node is not made yet when that line uses it"),
         )
     if "__init__() missing" in text and "'node_name'" in text:
-        return Said("Give the node a name: super().__init__('name_of_the_node').")
+        return Said(say("Give the node a name: super().__init__('name_of_the_node')."))
     return None
 
 
@@ -107,9 +113,17 @@ def _taken_name(_: str, text: str, __: Place | None) -> Said | None:
         return None
     if found[1] in _OF_A_NODE:
         return Said(
-            f"A Node has a `{found[1]}` of its own: choose another name, as self.my_{found[1]}."
+            say(
+                "A Node has a `{name}` of its own: choose another name, as self.my_{name}.",
+                name=told(found[1]),
+            )
         )
-    return Said(f"`{found[1]}` can only be read: choose another name for what you keep.")
+    return Said(
+        say(
+            "`{name}` can only be read: choose another name for what you keep.",
+            name=told(found[1]),
+        )
+    )
 
 
 def _class_for_instance(name: str, text: str, place: Place | None) -> Said | None:
@@ -118,28 +132,31 @@ def _class_for_instance(name: str, text: str, place: Place | None) -> Said | Non
     got = re.search(r"got <class '[\w.]{0,100}\.Metaclass_(\w{1,60})'>", text)
     if got is not None:
         return Said(
-            f"The brackets are missing: {got[1]}() makes a message.",
-            f"publish() was given the class {got[1]} itself, not a message",
+            say("The brackets are missing: {type}() makes a message.", type=told(got[1])),
+            say("publish() was given the class {type} itself, not a message", type=told(got[1])),
         )
     wrong = re.search(r"Expected <class '[\w.]+\.(\w{1,60})'>, got <class '([\w.]{1,100})'>", text)
     if wrong is not None:
-        was = wrong[2].rpartition(".")[2]
+        wanted, was = told(wrong[1]), told(wrong[2].rpartition(".")[2])
         return Said(
-            f"Give it a {wrong[1]}.", f"{wrong[1]} is what can be sent there, it was given: {was}"
+            say("Give it a {wanted}.", wanted=wanted),
+            say("{wanted} is what can be sent there, it was given: {was}", wanted=wanted, was=was),
         )
     if name == "TypeError" and not text and "call" in line:
         return Said(
-            "Are brackets missing where the request is made? SetPen.Request() makes one, "
-            "SetPen.Request is only its class.",
-            "the call was given something that is no request of this service",
+            say(
+                "Are brackets missing where the request is made? SetPen.Request() makes"
+                " one, SetPen.Request is only its class."
+            ),
+            say("the call was given something that is no request of this service"),
         )
     if "'property' object" in text or "'getset_descriptor' object" in text:
         if "spin" in line:
             return Said(
-                "The brackets are missing where the node is made: node = MyNode().",
-                "spin was given a class, not a node that was made of it",
+                say("The brackets are missing where the node is made: node = MyNode()."),
+                say("spin was given a class, not a node that was made of it"),
             )
-        return Said("The brackets are missing where the message is made, as in Twist().")
+        return Said(say("The brackets are missing where the message is made, as in Twist()."))
     return None
 
 
@@ -149,8 +166,8 @@ def _no_node(_: str, text: str, place: Place | None) -> Said | None:
     if found is None or place is None or "spin" not in place.text:
         return None
     return Said(
-        "Make a node and spin that: node = MyNode(), then rclpy.spin(node).",
-        f"spin has to be given the node, it was given: {found[1]}",
+        say("Make a node and spin that: node = MyNode(), then rclpy.spin(node)."),
+        say("spin has to be given the node, it was given: {was}", was=told(found[1])),
     )
 
 
@@ -160,24 +177,37 @@ def _callback(_: str, text: str, place: Place | None) -> Said | None:
         return Said(_NOT_CALLED)
     if "callback should be" in text:
         return Said(
-            "A method takes self before all else, and a callback of a subscription the message: "
-            "def on_pose(self, pose).",
-            "this callback of a subscription takes no message",
+            say(
+                "A method takes self before all else, and a callback of a subscription "
+                "the message: def on_pose(self, pose)."
+            ),
+            say("this callback of a subscription takes no message"),
         )
     if found := _GIVEN.search(text):
         owner, name, takes, given = found.groups()
         if owner and takes == "0":
-            return Said(f"Write def {name}(self{', msg' if int(given) > 1 else ''}).")
+            takes = "self, msg" if int(given) > 1 else "self"
+            return Said(say("Write def {name}({takes}).", name=told(name), takes=takes))
         if owner and (takes, given) == ("1", "2"):
             return Said(
-                f"Write def {name}(self, msg): the callback of a subscription is given the "
-                "message, one that add_done_callback() was given the future."
+                say(
+                    "Write def {name}(self, msg): the callback of a subscription is given "
+                    "the message, one that add_done_callback() was given the future.",
+                    name=told(name),
+                )
             )
-        return Said(f"Compare that call with what stands at `def {name}`.")
+        return Said(say("Compare that call with what stands at `def {name}`.", name=told(name)))
     if found := _MISSING.search(text):
         is_called_by_rclpy = place is None or "spin" in place.text or "def " in place.text
-        timer = "; the callback of a timer is given nothing but self" if is_called_by_rclpy else ""
-        return Said(f"Compare with what stands at `def {found[1]}`{timer}.")
+        if not is_called_by_rclpy:
+            return Said(say("Compare with what stands at `def {name}`.", name=told(found[1])))
+        return Said(
+            say(
+                "Compare with what stands at `def {name}`; the callback of a timer is given "
+                "nothing but self.",
+                name=told(found[1]),
+            )
+        )
     return None
 
 
@@ -187,15 +217,18 @@ def _arguments(_: str, text: str, place: Place | None) -> Said | None:
     if "incompatible function arguments" in text:
         if found := _CREATES.search(line):
             return Said(
-                f"Compare the order: {_IN_ORDER[found[1]]}.",
-                f"{found[1]}() was given values of other types, or in another order",
+                say("Compare the order: {in_order}.", in_order=_IN_ORDER[found[1]]),
+                say(
+                    "{function}() was given values of other types, or in another order",
+                    function=found[1],
+                ),
             )
         return Said(
-            "Compare the order and the types with ROS's documentation.",
-            "a function of rclpy's was given values of other types, or in another order",
+            say("Compare the order and the types with ROS's documentation."),
+            say("a function of rclpy's was given values of other types, or in another order"),
         )
     if "create_timer(" in line and "float() argument" in text:
-        return Said("The time comes first: create_timer(0.1, self.on_timer).")
+        return Said(say("The time comes first: create_timer(0.1, self.on_timer)."))
     return None
 
 
@@ -207,8 +240,11 @@ def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
     if found is None:
         return None
     return Said(
-        f"{told(found[1])} has no entry {told(text)}: compare with those that it has, and with "
-        "what can come."
+        say(
+            "{name} has no entry {entry}: compare with those that it has, and with what can come.",
+            name=told(found[1]),
+            entry=told(text),
+        )
     )
 
 
@@ -216,12 +252,16 @@ def _parameter(name: str, text: str, _: Place | None) -> Said | None:
     """A parameter of the node, instead of its value, or one that nobody has declared."""
     if name == "ParameterNotDeclaredException":
         asked = re.search(r"parameter\(s\): ([\w.]{1,60})", text)
-        of = asked[1] if asked else "NAME"
-        return Said(f"Declare it first, in __init__: self.declare_parameter('{of}', 1.0).")
+        of = told(asked[1]) if asked else "NAME"
+        return Said(
+            say("Declare it first, in __init__: self.declare_parameter('{name}', 1.0).", name=of)
+        )
     if name == "TypeError" and "'Parameter'" in text:
         return Said(
-            "get_parameter() gives a Parameter; what it is set to is its value: "
-            "self.get_parameter('NAME').value."
+            say(
+                "get_parameter() gives a Parameter; what it is set to is its value: "
+                "self.get_parameter('NAME').value."
+            )
         )
     return None
 
@@ -230,28 +270,37 @@ def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
     """None, a name that is not there, a spin within a spin."""
     if "NoneType" in text and place is not None and ".result()" in place.text:
         return Said(
-            "The answer has not come yet when that line runs: go on without it, or use it in a "
-            "callback that is given to add_done_callback()."
+            say(
+                "The answer has not come yet when that line runs: go on without it, or "
+                "use it in a callback that is given to add_done_callback()."
+            )
         )
     if "NoneType" in text:
         return Said(
-            "Something there is still None: a message that has not come yet, or a function that "
-            "returns nothing. Return early as long as it is None."
+            say(
+                "Something there is still None: a message that has not come yet, or a "
+                "function that returns nothing. Return early as long as it is None."
+            )
         )
     own = re.search(r"has no attribute '(\w{1,60})'", text)
     if own is not None and place is not None and f"self.{own[1]}" in place.text:
         return Said(
-            f"self.{own[1]} has no value when that line runs: write self.{own[1]} = ... in "
-            "__init__, before the first callback; or compare the name."
+            say(
+                "self.{name} has no value when that line runs: write self.{name} = ... in"
+                " __init__, before the first callback; or compare the name.",
+                name=told(own[1]),
+            )
         )
     if "has no attribute" in text:
         return Said(
-            "Compare the name; `ros2 interface show TYPE` lists the fields of a message. An "
-            "attribute of your own (self. ...) has to be set in __init__, before the first "
-            "callback."
+            say(
+                "Compare the name; `ros2 interface show TYPE` lists the fields of a "
+                "message. An attribute of your own (self. ...) has to be set in "
+                "__init__, before the first callback."
+            )
         )
     if "Executor is already spinning" in text:
-        return Said("Do not spin in a callback: use call_async() and add_done_callback().")
+        return Said(say("Do not spin in a callback: use call_async() and add_done_callback()."))
     return None
 
 

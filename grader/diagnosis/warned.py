@@ -8,6 +8,7 @@ from pathlib import PurePath
 from grader.diagnosis import printed
 from grader.diagnosis.case import OPPOSITE, Case, line, told
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.language.phrase import say
 from grader.recording.conduct import EndKind, Place
 
 #: rclpy's warning that two ends of a topic do not fit, from either side.
@@ -38,20 +39,43 @@ def has_unfit_qos(case: Case) -> Diagnosis | None:
             continue
         mine = [end for end in case.conduct.ends if (end.kind, end.name) == (kind, topic)]
         place = mine[0].place if mine else None
-        sends, wants = _TOO_LITTLE.get(found["policy"], ("", ""))
-        if kind == "publisher":
-            differs = f"is {sends}, the {case.thing} listens {wants}: nothing arrives"
-        else:
-            differs = f"asks for {wants}, but it is published {sends}: nothing reaches you"
-        if not sends:
-            differs = f"does not fit the other end's, by its {found['policy']}: nothing arrives"
         return Diagnosis(
             "has_unfit_qos",
-            f"Your {kind} on {topic}{line(place)} {differs}.",
-            "Write 10 instead of the QoS profile.",
+            _unfit(case, kind, topic, found["policy"], line(place)),
+            say("Write 10 instead of the QoS profile."),
             place=place,
         )
     return None
+
+
+def _unfit(case: Case, kind: EndKind, topic: str, policy: str, where: str) -> str:
+    """In what a publisher or subscription and the other end differ."""
+    sends, wants = _TOO_LITTLE.get(policy, ("", ""))
+    words = {"topic": topic, "where": where, "sends": sends, "wants": wants, "policy": policy}
+    if kind == "publisher" and sends:
+        return say(
+            "Your publisher on {topic}{where} is {sends}, {the_thing} listens {wants}: nothing "
+            "arrives.",
+            the_thing=case.the_thing,
+            **words,
+        )
+    if sends:
+        return say(
+            "Your subscription on {topic}{where} asks for {wants}, but it is published {sends}: "
+            "nothing reaches you.",
+            **words,
+        )
+    if kind == "publisher":
+        return say(
+            "Your publisher on {topic}{where} does not fit the other end's, by its {policy}: "
+            "nothing arrives.",
+            **words,
+        )
+    return say(
+        "Your subscription on {topic}{where} does not fit the other end's, by its {policy}: "
+        "nothing arrives.",
+        **words,
+    )
 
 
 def never_awaits(case: Case) -> Diagnosis | None:
@@ -64,10 +88,16 @@ def never_awaits(case: Case) -> Diagnosis | None:
         name = told(found["name"].rpartition(".")[2])
         return Diagnosis(
             "never_awaits",
-            f"An `async def` that nobody awaits was called{line(place)}: nothing of {name}() was "
-            "run.",
-            f"Make it a plain `def {name}`: call_async(request) in it sends the request, and you "
-            "go on without waiting for the answer.",
+            say(
+                "An `async def` that nobody awaits was called{where}: nothing of {name}() was run.",
+                where=line(place),
+                name=name,
+            ),
+            say(
+                "Make it a plain `def {name}`: call_async(request) in it sends the "
+                "request, and you go on without waiting for the answer.",
+                name=name,
+            ),
             place=place,
         )
     return None

@@ -78,6 +78,11 @@ def say_many(one: str, many: str, n: float, /, **values: Any) -> Phrase:
     return Phrase(fill(one if n == 1 else many, values), one, values, many)
 
 
+def marked(key: str) -> str:
+    """A key that is filled elsewhere: what stands in quotes here is found for the catalogues."""
+    return key
+
+
 def joined(parts: Sequence[str], between: str = "") -> Phrase:
     """Texts one behind the other, with the same between each two."""
     row: list[str] = []
