@@ -13,7 +13,7 @@ from grader.diagnosis import standstill
 from grader.diagnosis.case import OPPOSITE, Case, line, since, told
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.language.phrase import joined, say
+from grader.language.phrase import say
 from grader.recording.conduct import End, EndKind
 from grader.scenes.scene import Endpoint
 
@@ -68,18 +68,21 @@ def publishes_to_nobody(case: Case) -> Diagnosis | None:
     def told_of(end: End, near: Endpoint) -> str:
         if end.name == near.name:
             return say(
-                "You publish {type} on {name}, but {the_thing} listens to {wanted} there",
+                "You publish {type} on {name}, but {the_thing} listens to {wanted} there{where}.",
                 type=told(end.type),
                 name=near.name,
                 the_thing=case.the_thing,
                 wanted=near.type,
+                where=line(end.place),
             )
         return say(
-            "You publish {type} on {name}, where nobody listens; {the_thing} listens to {wanted}",
+            "You publish {type} on {name}, where nobody listens; {the_thing} listens to "
+            "{wanted}{where}.",
             type=told(end.type),
             name=told(end.name),
             the_thing=case.the_thing,
             wanted=_near(end, near),
+            where=line(end.place),
         )
 
     return _first(case, "publisher", "publishes_to_nobody", told_of)
@@ -92,15 +95,17 @@ def hears_nobody(case: Case) -> Diagnosis | None:
         if end.name == near.name:
             return say(
                 "You subscribe to {name} as {type}, but {wanted} is published there, so no "
-                "message reaches you",
+                "message reaches you{where}.",
                 name=near.name,
                 type=told(end.type),
                 wanted=near.type,
+                where=line(end.place),
             )
         return say(
-            "You subscribe to {name}, which nobody publishes; there is {wanted}",
+            "You subscribe to {name}, which nobody publishes; there is {wanted}{where}.",
             name=told(end.name),
             wanted=_near(end, near),
+            where=line(end.place),
         )
 
     return _first(case, "subscription", "hears_nobody", told_of)
@@ -117,16 +122,20 @@ def calls_nobody(case: Case) -> Diagnosis | None:
     """It calls a service or an action under a name or with a type that nobody offers."""
 
     def told_of(end: End, near: Endpoint) -> str:
-        what = _served(end.kind, end.name)
+        words = {"what": _served(end.kind, end.name), "where": line(end.place)}
         if end.name == near.name:
-            words = {"what": what, "type": told(end.type), "wanted": near.type}
+            words |= {"type": told(end.type), "wanted": near.type}
             if end.used:
-                return say("You call {what} as {type}, but it is {wanted}", **words)
-            return say("You have a client for {what} as {type}, but it is {wanted}", **words)
-        words = {"what": what, "wanted": _near(end, near)}
+                return say("You call {what} as {type}, but it is {wanted}{where}.", **words)
+            return say(
+                "You have a client for {what} as {type}, but it is {wanted}{where}.", **words
+            )
+        words |= {"wanted": _near(end, near)}
         if end.used:
-            return say("You call {what}, which nobody offers; there is {wanted}", **words)
-        return say("You have a client for {what}, which nobody offers; there is {wanted}", **words)
+            return say("You call {what}, which nobody offers; there is {wanted}{where}.", **words)
+        return say(
+            "You have a client for {what}, which nobody offers; there is {wanted}{where}.", **words
+        )
 
     return _first(case, "client", "calls_nobody", told_of) or _first(
         case, "action_client", "calls_nobody", told_of
@@ -147,8 +156,7 @@ def _first(
             continue
         if end.kind == "subscription" and end.used:
             continue  # somebody has published
-        cause = joined([told_of(end, near), line(end.place), "."])
-        return Diagnosis(key, cause, _mending(end, near), place=end.place)
+        return Diagnosis(key, told_of(end, near), _mending(end, near), place=end.place)
     return None
 
 

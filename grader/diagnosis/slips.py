@@ -14,7 +14,7 @@ from grader.diagnosis.case import Case, function, line, sentences, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.standstill import never_spins
 from grader.diagnosis.usual import Said
-from grader.language.phrase import Phrase, joined, say
+from grader.language.phrase import Phrase, say
 from grader.recording.conduct import Place, Raised, Slip, SlipKind
 
 #: So much of an exception's text is looked at [characters].
@@ -170,19 +170,20 @@ def beside(found: Diagnosis, case: Case) -> Diagnosis:
     """The finding of a check, behind a slip that may be its cause."""
     for slip in _of_kind(case, "uncalled", "unread", "local"):
         text, help_ = _told(slip)
-        cause = sentences(joined([text, line(slip.place), "."]), found.cause)
+        cause = sentences(text, found.cause)
         return replace(found, cause=cause, help=help_, place=slip.place)
     return found
 
 
 def _told(slip: Slip) -> tuple[str, str]:
-    name, near = told(slip.name), told(slip.near)
+    name, near, where = told(slip.name), told(slip.near), line(slip.place)
     if slip.kind == "unread":
         return (
             say(
-                "`self.{name}` is set and never read; what is read is `self.{near}`",
+                "`self.{name}` is set and never read; what is read is `self.{near}`{where}.",
                 name=name,
                 near=near,
+                where=where,
             ),
             say("Write self.{near} there, if that is what you mean.", near=near),
         )
@@ -190,9 +191,10 @@ def _told(slip: Slip) -> tuple[str, str]:
         return (
             say(
                 "`{name}` is a variable of this function and never read; what is read "
-                "elsewhere is `{near}`",
+                "elsewhere is `{near}`{where}.",
                 name=name,
                 near=near,
+                where=where,
             ),
             say("Write {near} = ... there.", near=near),
         )
@@ -200,18 +202,25 @@ def _told(slip: Slip) -> tuple[str, str]:
         return (
             say(
                 "`{name}` is set in this function only, and never read; outside there "
-                "is another `{name}`",
+                "is another `{name}`{where}.",
                 name=name,
+                where=where,
             ),
             say("Write `{near}` as the first line of the function.", near=near),
         )
     text = slip.place.text.lstrip()
     if text.partition(";")[0].rstrip() == slip.name:
-        return say("`{name}` stands there without brackets, and does nothing", name=name), say(
-            "Write {name}().", name=name
-        )
+        return say(
+            "`{name}` stands there without brackets, and does nothing{where}.",
+            name=name,
+            where=where,
+        ), say("Write {name}().", name=name)
     return (
-        say("`{name}` stands there without brackets: a function as such is always true", name=name),
+        say(
+            "`{name}` stands there without brackets: a function as such is always true{where}.",
+            name=name,
+            where=where,
+        ),
         say("Write {name}().", name=name),
     )
 
