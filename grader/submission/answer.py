@@ -8,10 +8,11 @@ from __future__ import annotations
 import json
 from itertools import islice
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from grader import strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
+from grader.language import stored
 from grader.submission.start import (
     EntryPoint,
     Imports,
@@ -33,6 +34,8 @@ _MAX_NAME: Final = 200
 #: So many notes are told, and so much of each [characters].
 _MAX_NOTES: Final = 20
 _MAX_NOTE: Final = 1000
+
+_Texts = TypeVar("_Texts", str, tuple[str, ...])
 
 _REFUSALS: Final = {each.whose: each for each in (SubmissionError, UsageError)}
 
@@ -56,7 +59,10 @@ def found(submission: Submission) -> bytes:
             "unlaunched": [clip(note, _MAX_NOTE) for note in submission.unlaunched[:_MAX_NOTES]],
             "added": [str(each) for each in submission.added],
             "in_package": str(submission.package) if submission.package else None,
-        }
+        },
+        submission.found,
+        *submission.notes[:_MAX_NOTES],
+        *submission.unlaunched[:_MAX_NOTES],
     )
 
 
@@ -78,7 +84,7 @@ def _told(start: EntryPoint | Script | Launch | Whole) -> dict[str, object]:
 
 def refused(error: GraderError) -> bytes:
     """The answer of one who cannot use the submission."""
-    return _line({"refused": error.whose, "message": error.message})
+    return _line({"refused": error.whose, "message": error.message}, error.message)
 
 
 def unable(error: OSError) -> bytes:
@@ -121,7 +127,7 @@ def decoded(said: dict[str, Any]) -> Submission:
     """
     match said:
         case {"refused": str(whose), "message": str(message)} if whose in _REFUSALS:
-            raise _REFUSALS[whose](message)
+            raise _REFUSALS[whose](_phrased(message, said))
         case {"errno": int() | None as number, "message": str(message)}:
             raise OSError(number, message)
         case {"failed": str(what)}:
@@ -140,8 +146,9 @@ def decoded(said: dict[str, Any]) -> Submission:
         } if all(isinstance(note, str) for note in (*notes, *unlaunched, *added)):
             imports = Imports(_texts(surely), _texts(perhaps))
             return Submission(
-                *(name, Path(root), _start(start), sentence, imports, tuple(notes)),
-                unlaunched=tuple(unlaunched),
+                *(name, Path(root), _start(start), _phrased(sentence, said), imports),
+                notes=_phrased(tuple(notes), said),
+                unlaunched=_phrased(tuple(unlaunched), said),
                 added=tuple(map(Path, added)),
                 package=Path(package) if package else None,
             )
@@ -185,8 +192,19 @@ def _some(modules: dict[str, str]) -> dict[str, str]:
     return dict(islice(named, _MAX_MODULES))
 
 
-def _line(data: dict[str, Any]) -> bytes:
-    line = json.dumps(data).encode() + b"\n"
+def _phrased(texts: _Texts, said: dict[str, Any]) -> _Texts:
+    """Texts of an answer, as phrases again."""
+    phrases = said.get("phrases", {})
+    try:
+        return stored.restored(texts, phrases)
+    except (ValueError, TypeError, AttributeError):
+        raise _nonsense() from None
+
+
+def _line(data: dict[str, Any], *texts: str) -> bytes:
+    """A line of JSON; those of its texts that are phrases are told as such beside it."""
+    phrases = stored.phrases_in(texts)
+    line = json.dumps({**data, "phrases": phrases} if phrases else data).encode() + b"\n"
     if len(line) > MAX_BYTES:
         raise ValueError(f"an answer of {len(line)} bytes")
     return line

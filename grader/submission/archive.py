@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import SubmissionError
+from grader.language.phrase import say
 from grader.submission import tar_archive, zip_archive
 from grader.submission.archive_members import PACK_AGAIN, Budget, ListTooLong, write
 from grader.submission.folder import MAX_BYTES, shown
@@ -44,11 +45,18 @@ def unpack(archive: Path, into: Path, budget: Budget) -> None:
     name = shown(archive.name)
     size = archive.stat().st_size
     if size == 0:
-        raise SubmissionError(f"{name} is empty (0 bytes). {PACK_AGAIN}")
+        raise SubmissionError(
+            say("{name} is empty (0 bytes). {pack_again}", name=name, pack_again=PACK_AGAIN)
+        )
     if size > MAX_BYTES:
         raise SubmissionError(
-            f"{name} has more than {MAX_BYTES / 1e6:g} MB, the limit for a submission. "
-            "Leave out recordings, videos and virtual environments, and pack it again."
+            say(
+                "{name} has more than {max_bytes:g} MB, the limit for a submission. "
+                "Leave out recordings, videos and virtual environments, and pack it "
+                "again.",
+                name=name,
+                max_bytes=MAX_BYTES / 1e6,
+            )
         )
     is_zip = archive.suffix.lower() == ".zip"
     kind = "zip" if is_zip else "tar"
@@ -61,22 +69,37 @@ def unpack(archive: Path, into: Path, budget: Budget) -> None:
             write(name, members, into, budget)
     except ListTooLong as error:
         raise SubmissionError(
-            f"{name} lists too many files, or too long names: {error}. {PACK_AGAIN}"
+            say(
+                "{name} lists too many files, or too long names: {error}. {pack_again}",
+                name=name,
+                error=error.args[0],
+                pack_again=PACK_AGAIN,
+            )
         ) from error
     except NotImplementedError as error:
         raise SubmissionError(
-            f"{name} is packed in a way that cannot be read here ({shown(str(error))}). "
-            f"{PACK_AGAIN}"
+            say(
+                "{name} is packed in a way that cannot be read here ({why}). {pack_again}",
+                name=name,
+                why=shown(str(error)),
+                pack_again=PACK_AGAIN,
+            )
         ) from error
     except DAMAGED as error:
-        raise _damaged(name, kind, str(error) or "it ends too early") from error
+        raise _damaged(name, kind, shown(str(error)) or say("it ends too early")) from error
     except OSError as error:
         if error.errno not in _DAMAGED_ERRNOS:
             raise
-        raise _damaged(name, kind, error.strerror or str(error)) from error
+        raise _damaged(name, kind, shown(error.strerror or str(error))) from error
 
 
 def _damaged(name: str, kind: str, why: str) -> SubmissionError:
     return SubmissionError(
-        f"{name} cannot be unpacked as a {kind} file: {shown(why)}. {PACK_AGAIN}"
+        say(
+            "{name} cannot be unpacked as a {kind} file: {why}. {pack_again}",
+            name=name,
+            kind=kind,
+            why=why,
+            pack_again=PACK_AGAIN,
+        )
     )

@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from grader.errors import SubmissionError
+from grader.language.phrase import joined, say
 from grader.submission.folder import (
     BEGINNING_BYTES,
     MAX_BYTES,
@@ -23,7 +24,7 @@ from grader.submission.folder import (
 
 MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
 MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more
-PACK_AGAIN: Final = "Pack your .py file or package folder into a new .zip and hand that in."
+PACK_AGAIN: Final = say("Pack your .py file or package folder into a new .zip and hand that in.")
 
 _CHUNK_BYTES: Final = 1 << 16
 
@@ -91,9 +92,13 @@ class Budget:
         self._bytes_left -= count
         if self._bytes_left < 0:
             raise SubmissionError(
-                f"{name} unpacks to more than {self._all_bytes / 1e6:g} MB, the limit for a "
-                "submission. Leave out recordings, videos and virtual environments, and pack it "
-                "again."
+                say(
+                    "{name} unpacks to more than {all_bytes:g} MB, the limit for a "
+                    "submission. Leave out recordings, videos and virtual environments, and"
+                    " pack it again.",
+                    name=name,
+                    all_bytes=self._all_bytes / 1e6,
+                )
             )
 
     def take_files(self, name: str, count: int) -> None:
@@ -105,8 +110,14 @@ class Budget:
         self._files_left -= count
         if self._files_left < 0:
             raise SubmissionError(
-                f"{name} holds {count:,} files; the limit for a submission is "
-                f"{self._all_files:,}. {PACK_AGAIN}"
+                say(
+                    "{name} holds {count:,} files; the limit for a submission is "
+                    "{all_files:,}. {pack_again}",
+                    name=name,
+                    count=count,
+                    all_files=self._all_files,
+                    pack_again=PACK_AGAIN,
+                )
             )
 
 
@@ -144,11 +155,17 @@ def _chosen(
         and left_out.isdisjoint(path.parents)
     ]
     if not chosen:
-        raise SubmissionError(f"{name} is an empty archive: it holds no files. {PACK_AGAIN}")
+        raise SubmissionError(
+            say(
+                "{name} is an empty archive: it holds no files. {pack_again}",
+                name=name,
+                pack_again=PACK_AGAIN,
+            )
+        )
     budget.take_files(name, len(chosen))
     for _, member in chosen:
         if member.refusal:
-            raise SubmissionError(f"{name} {member.refusal}")
+            raise SubmissionError(joined([name, member.refusal], " "))
     return chosen
 
 
@@ -165,13 +182,25 @@ def _inside(name: str, member: str) -> PurePosixPath:
     text = member.replace("\\", "/")
     if len(text) > MAX_NAME:
         raise SubmissionError(
-            f"{name} holds a name of {len(text):,} characters ({shown(member)}); the limit is "
-            f"{MAX_NAME:,}. {PACK_AGAIN}"
+            say(
+                "{name} holds a name of {length:,} characters ({member}); the limit is "
+                "{max_name:,}. {pack_again}",
+                name=name,
+                length=len(text),
+                member=shown(member),
+                max_name=MAX_NAME,
+                pack_again=PACK_AGAIN,
+            )
         )
     path = PurePosixPath(text)
     if path.is_absolute() or ".." in path.parts or re.match("[A-Za-z]:/", text):
         raise SubmissionError(
-            f"{name} holds {shown(member)}, which would be written outside of its own folder. "
-            f"{PACK_AGAIN}"
+            say(
+                "{name} holds {member}, which would be written outside of its own "
+                "folder. {pack_again}",
+                name=name,
+                member=shown(member),
+                pack_again=PACK_AGAIN,
+            )
         )
     return path

@@ -10,15 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
-from typing import Final
 
+from grader.language.phrase import say
 from grader.submission.constants import UNKNOWN
 from grader.submission.folder import HandedIn, listed, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
 from grader.submission.setup_files import ConsoleScript, Package
-
-_BUILD: Final = "colcon would not build this"
-_FIND: Final = "ros2 run would not find this"
 
 
 def shortcomings(
@@ -35,12 +32,12 @@ def shortcomings(
         return  # ament_cmake_python, by other rules
     setup_py = folder / "setup.py"
     if not setup_py.is_file():
-        yield f"{_BUILD}: no setup.py{_in(handed_in, folder)}"
+        yield _not_built(_no("setup.py", handed_in, folder))
         return
     manifest = None
     if not (folder / FILE).is_file():
-        is_listed = FILE in _data_files(package)
-        yield f"{_BUILD if is_listed else _FIND}: no {FILE} beside {handed_in.called(setup_py)}"
+        why = say("no {file} beside {other}", file=FILE, other=handed_in.called(setup_py))
+        yield _not_built(why) if FILE in _data_files(package) else _not_found(why)
     elif (manifest := read_manifest(folder / FILE)) is not None:
         yield from _of_manifest(manifest, handed_in.called(folder / FILE))
     yield from _of_setup(handed_in, package, script)
@@ -50,12 +47,23 @@ def shortcomings(
 
 def _of_manifest(manifest: Manifest, called: str) -> Iterator[str]:
     if manifest.fault:
-        yield f"{_FIND}: {called} {manifest.fault}, so that colcon takes it for no ROS package"
+        yield _not_found(
+            say(
+                "{file} {fault}, so that colcon takes it for no ROS package",
+                file=called,
+                fault=manifest.fault,
+            )
+        )
     elif manifest.build_type is not None and manifest.build_type != "ament_python":
-        named = f"the build type {shown(manifest.build_type)}"
-        yield (
-            f"{_BUILD}: {called} names {named if manifest.build_type else 'no build type'}; "
-            "expected <build_type>ament_python</build_type> in <export>"
+        named = say("no build type")
+        if manifest.build_type:
+            named = say("the build type {name}", name=shown(manifest.build_type))
+        yield _not_built(
+            say(
+                "{file} names {named}; expected <build_type>ament_python</build_type> in <export>",
+                file=called,
+                named=named,
+            )
         )
 
 
@@ -64,24 +72,47 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
     called = handed_in.called(package.folder / "setup.py")
     named = (name for name in _data_files(package) if name != FILE)
     if missing := [name for name in named if not _may_be_there(package.folder, name)]:
-        yield f"{_BUILD}: {called} installs {listed(missing)}, and there is no such file"
+        yield _not_built(
+            say(
+                "{file} installs {names}, and there is no such file",
+                file=called,
+                names=listed(missing),
+            )
+        )
     if package.setup.get("package_dir") is not None or package.source_folders:
         return  # not where their names say
     packages = _all_texts(package.setup.get("packages"))
     absent = [name for name in packages or () if not (package.folder / _path(name)).is_dir()]
     if absent:
-        yield f"{_BUILD}: {called} lists the package {listed(absent)}, and there is no such folder"
+        yield _not_built(
+            say(
+                "{file} lists the package {names}, and there is no such folder",
+                file=called,
+                names=listed(absent),
+            )
+        )
     if script is None:
         return
     parent = script.module.rpartition(".")[0]
     if parent and packages is not None and parent not in packages:
-        found = f"lists the packages {listed(packages)}" if packages else "lists no packages"
-        yield f"ros2 run would not start this: {called} {found}, and so does not install {parent}"
+        words = {"file": called, "parent": shown(parent)}
+        yield _not_started(
+            say(
+                "{file} lists the packages {names}, and so does not install {parent}",
+                names=listed(packages),
+                **words,
+            )
+            if packages
+            else say("{file} lists no packages, and so does not install {parent}", **words)
+        )
     bare = [each for each in _parents(script.module) if _is_bare(package.folder / _path(each))]
     if bare and package.finds_packages:
-        yield (
-            f"ros2 run would not start this: find_packages() in {called} passes over "
-            f"{listed(bare)}, which has no __init__.py"
+        yield _not_started(
+            say(
+                "find_packages() in {file} passes over {names}, which has no __init__.py",
+                file=called,
+                names=listed(bare),
+            )
         )
 
 
@@ -92,17 +123,35 @@ def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]
     expected = f"$base/lib/{name}"
     setup_cfg = package.folder / "setup.cfg"
     if not package.scripts_folder:
-        lacking = f"install_scripts={expected} below [install]"
+        lacking = say("install_scripts={expected} below [install]", expected=expected)
         if setup_cfg.is_file():
-            yield f"{_FIND}: {handed_in.called(setup_cfg)} has no {lacking}"
+            file = handed_in.called(setup_cfg)
+            yield _not_found(say("{file} has no {lacking}", file=file, lacking=lacking))
         else:
-            yield f"{_FIND}: no setup.cfg{_in(handed_in, package.folder)} with {lacking}"
+            why = _no("setup.cfg", handed_in, package.folder)
+            yield _not_found(say("{none} with {lacking}", none=why, lacking=lacking))
     elif package.scripts_folder.rstrip("/") != expected:
-        yield (
-            f"ros2 run {name} would find nothing: {handed_in.called(setup_cfg)} installs programs "
-            f"in {shown(package.scripts_folder)}, and {FILE} calls the package {name}: expected "
-            f"install_scripts={expected}"
+        yield say(
+            "ros2 run {name} would find nothing: {setup} installs programs in {place}, and "
+            "{manifest} calls the package {name}: expected install_scripts={expected}",
+            name=name,
+            setup=handed_in.called(setup_cfg),
+            place=shown(package.scripts_folder),
+            manifest=FILE,
+            expected=expected,
         )
+
+
+def _not_built(why: str) -> str:
+    return say("colcon would not build this: {why}", why=why)
+
+
+def _not_found(why: str) -> str:
+    return say("ros2 run would not find this: {why}", why=why)
+
+
+def _not_started(why: str) -> str:
+    return say("ros2 run would not start this: {why}", why=why)
 
 
 def _may_place_programs(setup: Mapping[str, object]) -> bool:
@@ -157,5 +206,7 @@ def _is_bare(folder: Path) -> bool:
     return folder.is_dir() and not (folder / "__init__.py").exists()
 
 
-def _in(handed_in: HandedIn, folder: Path) -> str:
-    return "" if folder == handed_in.base else f" in {handed_in.called(folder)}"
+def _no(file: str, handed_in: HandedIn, folder: Path) -> str:
+    if folder == handed_in.base:
+        return say("no {file}", file=file)
+    return say("no {file} in {folder}", file=file, folder=handed_in.called(folder))

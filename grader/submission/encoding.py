@@ -13,9 +13,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
+from grader.language.phrase import joined, say
 from grader.submission.folder import read_bounded, shown
 
-_SAVE: Final = "save it as UTF-8"
+_SAVE: Final = say("save it as UTF-8")
 _UTF_16: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
@@ -25,17 +26,24 @@ def fault(data: bytes) -> str:
     "is saved as UTF-16, and Python reads UTF-8: save it as UTF-8"
     """
     if data.startswith(_UTF_16):
-        return f"is saved as UTF-16, and Python reads UTF-8: {_SAVE}"
+        return say("is saved as UTF-16, and Python reads UTF-8: {save}", save=_SAVE)
     if b"\0" in data:
-        return f"has a null byte in line {_line(data, data.index(0))}, as no text has: {_SAVE}"
+        return say(
+            "has a null byte in line {line}, as no text has: {save}",
+            line=_line(data, data.index(0)),
+            save=_SAVE,
+        )
     try:
         encoding = _declared(data)
         data.decode(encoding)
     except UnicodeDecodeError as error:
-        return (
-            f"has a byte (0x{error.object[error.start]:02x}) in line {_line(data, error.start)} "
-            f"that is no {shown(encoding.removesuffix('-sig').upper())}, so that `python3` refuses "
-            f"it: {_SAVE}"
+        return say(
+            "has a byte (0x{byte:02x}) in line {line} that is no {encoding}, so that"
+            " `python3` refuses it: {save}",
+            byte=error.object[error.start],
+            line=_line(data, error.start),
+            encoding=shown(encoding.removesuffix("-sig").upper()),
+            save=_SAVE,
         )
     except (SyntaxError, LookupError, ValueError):
         pass  # of the declaration: Python's own words are clear
@@ -44,13 +52,13 @@ def fault(data: bytes) -> str:
 
 def faults(files: Iterable[Path], root: Path) -> list[str]:
     """A sentence on each of some files below a folder that Python refuses for its bytes."""
-    found = []
+    found: list[str] = []
     for file in files:
         try:
             why = fault(read_bounded(file) or b"")
         except OSError:
             continue
-        found += [f"{shown(file.relative_to(root))} {why}"] if why else []
+        found += [joined([shown(file.relative_to(root)), why], " ")] if why else []
     return found
 
 

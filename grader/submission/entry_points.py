@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from grader.errors import SubmissionError
+from grader.language.phrase import say
 from grader.submission.folder import USUAL_NAME, HandedIn, files_below, listed, near, shown
 from grader.submission.python_source import read_source
 from grader.submission.setup_files import SETUP_FILES, ConsoleScript, Package, read_package
 
 Choice = tuple[Package, ConsoleScript]
+#: Of what there may be several that could be started.
+Kind = Literal["console script", "Python file", "program"]
 
 
 @dataclass(frozen=True)
@@ -68,21 +72,36 @@ class Packages:
     def _twice(self, matching: list[Choice]) -> SubmissionError:
         where = listed(self.handed_in.called(script.file) for _, script in matching)
         return SubmissionError(
-            f"{self.handed_in.name} has the console script {shown(matching[0][1].name)} more than "
-            f"once: {where}. Hand in only one of these packages."
+            say(
+                "{name} has the console script {script} more than once: {where}. Hand in"
+                " only one of these packages.",
+                name=self.handed_in.name,
+                script=shown(matching[0][1].name),
+                where=where,
+            )
         )
 
     def _several(self, names: list[str]) -> SubmissionError:
         return SubmissionError(
-            f"{self.handed_in.name} has several console scripts: {listed(names)}. "
-            f"Expected one called {self.handed_in.usual}; choose another with --executable NAME."
+            say(
+                "{name} has several console scripts: {names}. Expected one called "
+                "{usual}; choose another with --executable NAME.",
+                name=self.handed_in.name,
+                names=listed(names),
+                usual=self.handed_in.usual,
+            )
         )
 
     def _computed(self, file: Path, wanted: str, names: list[str]) -> SubmissionError:
         return SubmissionError(
-            f"{self.handed_in.called(file)} computes console scripts, and is not run to learn "
-            f"them. Expected to read there: {example('my_package.turtle_controller', wanted)}; "
-            f"found: {listed(names) or 'none'}. Write the entry point out in full."
+            say(
+                "{file} computes console scripts, and is not run to learn them. "
+                "Expected to read there: {example}; found: {names}. Write the entry "
+                "point out in full.",
+                file=self.handed_in.called(file),
+                example=example("my_package.turtle_controller", wanted),
+                names=listed(names) or say("none"),
+            )
         )
 
 
@@ -124,21 +143,39 @@ def find_module(handed_in: HandedIn, package: Package, script: ConsoleScript) ->
 
 
 def no_such_executable(
-    handed_in: HandedIn, kind: str, executable: str, names: list[str]
+    handed_in: HandedIn, kind: Kind, executable: str, names: list[str]
 ) -> SubmissionError:
     """Say that nothing has the name that was asked for."""
+    words = {"name": handed_in.name, "executable": shown(executable), "names": listed(names)}
+    if kind == "console script":
+        return SubmissionError(
+            say(
+                "{name} has no console script {executable}; it has: {names}. Choose one of these "
+                "with --executable NAME, or correct the name.",
+                **words,
+            )
+        )
     return SubmissionError(
-        f"{handed_in.name} has no {kind} {shown(executable)}; it has: {listed(names)}. "
-        "Choose one of these with --executable NAME, or correct the name."
+        say(
+            "{name} has no Python file {executable}; it has: {names}. Choose one of these with "
+            "--executable NAME, or correct the name.",
+            **words,
+        )
     )
 
 
-def not_started(kind: str, names: list[str]) -> list[str]:
+def not_started(kind: Kind, names: list[str]) -> list[str]:
     """A note on what of a submission nobody has started; none where there is nothing."""
     if not names:
         return []
-    others = f"other {kind}s were" if len(names) > 1 else f"another {kind} was"
-    return [f"{others} not started: {listed(names)}"]
+    words = {"names": listed(names)}
+    if kind == "console script":
+        if len(names) > 1:
+            return [say("other console scripts were not started: {names}", **words)]
+        return [say("another console script was not started: {names}", **words)]
+    if len(names) > 1:
+        return [say("other programs were not started: {names}", **words)]
+    return [say("another program was not started: {names}", **words)]
 
 
 def example(module: str, name: str = USUAL_NAME) -> str:
@@ -153,9 +190,14 @@ def _must_define(handed_in: HandedIn, script: ConsoleScript, file: Path) -> None
         return
     names = dict.fromkeys([*near(wanted, source.defined), *source.defined])
     raise SubmissionError(
-        f"{handed_in.called(file)} defines no function {shown(wanted)} "
-        f"(it defines: {listed(names) or 'nothing'}). {_starts(handed_in, script)}: "
-        "give the function that name, or correct the entry point."
+        say(
+            "{file} defines no function {wanted} (it defines: {names}). {starts}: "
+            "give the function that name, or correct the entry point.",
+            file=handed_in.called(file),
+            wanted=shown(wanted),
+            names=listed(names) or say("nothing"),
+            starts=_starts(handed_in, script),
+        )
     )
 
 
@@ -168,13 +210,27 @@ def _no_module(
     nodes = (file for file in found if file.name not in ("setup.py", "__init__.py"))
     others = [handed_in.called(file) for file in nodes]
     meant = list(dict.fromkeys(near(wanted, others) + same_name))
-    there = f"Near: {listed(meant)}." if meant else f"Python files: {listed(others) or 'none'}."
+    there = (
+        say("Near: {names}.", names=listed(meant))
+        if meant
+        else say("Python files: {names}.", names=listed(others) or say("none"))
+    )
     return SubmissionError(
-        f"{_starts(handed_in, script)}, but there is no file {wanted}. {there} "
-        "Correct the entry point, or the name or place of the file."
+        say(
+            "{starts}, but there is no file {wanted}. {there} Correct the entry "
+            "point, or the name or place of the file.",
+            starts=_starts(handed_in, script),
+            wanted=wanted,
+            there=there,
+        )
     )
 
 
 def _starts(handed_in: HandedIn, script: ConsoleScript) -> str:
     target = shown(f"{script.module}:{script.function}")
-    return f"{handed_in.called(script.file)} starts {shown(script.name)} by {target}"
+    return say(
+        "{file} starts {script} by {target}",
+        file=handed_in.called(script.file),
+        script=shown(script.name),
+        target=target,
+    )

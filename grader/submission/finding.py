@@ -23,6 +23,7 @@ from sys import stdlib_module_names
 from typing import Final
 
 from grader.errors import SubmissionError, UsageError
+from grader.language.phrase import Phrase, say
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
     Choice,
@@ -91,15 +92,25 @@ def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Subm
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
-            f"{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice(path)}"
+            say(
+                "{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice}",
+                name=name,
+                advice=advice(path),
+            )
         )
     if not path.is_file():
-        raise SubmissionError(f"{name} is not an ordinary file. {HAND_IN}")
+        raise SubmissionError(
+            say("{name} is not an ordinary file. {hand_in}", name=name, hand_in=HAND_IN)
+        )
     if is_python:
         if executable is not None and executable not in (path.stem, path.name):
             raise UsageError(
-                f"there is no {executable!r} in {name}: a single .py file is itself what is "
-                "started, and there is nothing to choose. Leave out --executable."
+                say(
+                    "there is no {executable!r} in {name}: a single .py file is itself what"
+                    " is started, and there is nothing to choose. Leave out --executable.",
+                    executable=Phrase(executable),
+                    name=name,
+                )
             )
         folder = path.parent.resolve()
         return _from_file(HandedIn(name, folder, usual), folder / path.name)
@@ -110,7 +121,9 @@ def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Subm
 def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking) -> Submission:
     top = top_of(handed_in.base)
     if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
-        raise SubmissionError(f"{handed_in.name} is an empty folder. {HAND_IN}")
+        raise SubmissionError(
+            say("{name} is an empty folder. {hand_in}", name=handed_in.name, hand_in=HAND_IN)
+        )
     files = files_below(top)
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
@@ -146,14 +159,21 @@ def _in_archive(
     """Look into the one archive that a folder holds, as those are that a course's server makes."""
     if len(archives) > 1:
         raise SubmissionError(
-            f"{handed_in.name} holds several archives, and no Python file beside them: "
-            f"{listed(map(handed_in.called, archives))}. Hand in only one of them."
+            say(
+                "{name} holds several archives, and no Python file beside them: "
+                "{names}. Hand in only one of them.",
+                name=handed_in.name,
+                names=listed(map(handed_in.called, archives)),
+            )
         )
     (archive,) = archives
     handed_in.must_hold(archive)
     inside = replace(handed_in, base=unpacking.unpack(archive))
     found = _in_folder(inside, executable, unpacking)
-    return replace(found, found=f"{found.found}, in {handed_in.called(archive)}")
+    return replace(
+        found,
+        found=say("{found}, in {file}", found=found.found, file=handed_in.called(archive)),
+    )
 
 
 def _from_script(
@@ -162,7 +182,11 @@ def _from_script(
     package, script = choice
     module = find_module(handed_in, package, script)
     start = EntryPoint(script.module, script.function)
-    found = f"console script {shown(script.name)} in {handed_in.called(script.file)}"
+    found = say(
+        "console script {script} in {file}",
+        script=shown(script.name),
+        file=handed_in.called(script.file),
+    )
     others = not_started("console script", packages.others(script))
     notes = (*shortcomings(handed_in, package, script), *others)
     folder = package.folder
@@ -174,7 +198,7 @@ def _from_script(
     for folder in module.bare:
         (mended / folder / "__init__.py").touch()
     missing = listed(str(folder / "__init__.py") for folder in module.bare)
-    found += f", with the missing {missing} added"
+    found = say("{found}, with the missing {missing} added", found=found, missing=missing)
     inside = folder.is_relative_to(module.root)
     folder = mended / folder.relative_to(module.root) if inside else mended
     added = tuple(each / "__init__.py" for each in module.bare)
@@ -191,7 +215,7 @@ def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submis
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
         return replace(_from_file(handed_in, file), notes=short, package=package.folder)
     start = EntryPoint(".".join(inside), "main")
-    found = f"function main of {handed_in.called(file)}"
+    found = say("function main of {file}", file=handed_in.called(file))
     folder = package.folder
     return Submission(handed_in.name, folder, start, found, notes=short, package=folder)
 
@@ -212,11 +236,15 @@ def _from_file(handed_in: HandedIn, file: Path) -> Submission:
     called = handed_in.called(file)
     is_imported = source.parses and not source.is_refused and source.has_main
     if not is_imported or source.has_guard or source.calls_main:
-        return Submission(handed_in.name, file.parent, Script(file), f"file {called}")
+        return Submission(
+            handed_in.name, file.parent, Script(file), say("file {file}", file=called)
+        )
     # one called like a module of Python may find that loaded already, instead of itself
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
     start = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
-    return Submission(handed_in.name, file.parent, start, f"function main of {called}")
+    return Submission(
+        handed_in.name, file.parent, start, say("function main of {file}", file=called)
+    )
 
 
 def _is_source(file: Path) -> bool:
@@ -240,9 +268,14 @@ def _only(handed_in: HandedIn, candidates: list[Path], executable: str | None) -
         chosen = _usual(handed_in, candidates)
     if len(chosen) > 1:
         raise SubmissionError(
-            f"{handed_in.name} has several Python files to start: "
-            f"{listed(map(handed_in.called, chosen))}. Expected one, called {handed_in.usual}.py; "
-            "choose another with --executable NAME, or hand in only that file."
+            say(
+                "{name} has several Python files to start: {names}. Expected one, "
+                "called {usual}.py; choose another with --executable NAME, or hand in "
+                "only that file.",
+                name=handed_in.name,
+                names=listed(map(handed_in.called, chosen)),
+                usual=handed_in.usual,
+            )
         )
     return chosen[0]
 
@@ -264,7 +297,9 @@ def _no_script(handed_in: HandedIn, package: Package, starting: list[Path]) -> s
     if len(likely) == 1:
         module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)
     called = handed_in.called(package.folder / "setup.py")
-    return (
-        f"{called} names no console script, so that `ros2 run` finds nothing to start. "
-        f"Expected in its entry_points: {example(module, module.rpartition('.')[2])}"
+    return say(
+        "{file} names no console script, so that `ros2 run` finds nothing to "
+        "start. Expected in its entry_points: {example}",
+        file=called,
+        example=example(module, module.rpartition(".")[2]),
     )

@@ -11,6 +11,7 @@ from pathlib import Path, PurePath
 from typing import Final
 
 from grader.errors import SubmissionError
+from grader.language.phrase import Phrase, joined, say
 from grader.text import clip_inside, without_controls
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
@@ -26,7 +27,7 @@ _OUR_RESULT: Final = re.compile(rb'\s*\{\s*"schema"\s*:\s*"turtlesim-grader/resu
 _NEAR_NAMES: Final = 200  # that a name is compared with: the time goes with the cube of their
 _NEAR_LENGTH: Final = 100  # length
 
-HAND_IN: Final = "Hand in a .py file, the folder of your package, or a .zip of it."
+HAND_IN: Final = say("Hand in a .py file, the folder of your package, or a .zip of it.")
 
 _JUNK: Final = {"__pycache__", "__MACOSX", "Thumbs.db", "desktop.ini"}
 _COLCON: Final = {"build", "install", "log"}
@@ -57,8 +58,12 @@ class HandedIn:
         """
         if not Path(os.path.realpath(file)).is_relative_to(os.path.realpath(self.base)):
             raise SubmissionError(
-                f"{self.called(file)} is a link to a place outside of {self.name}. "
-                "Hand in the file itself in that place."
+                say(
+                    "{file} is a link to a place outside of {name}. Hand in the file "
+                    "itself in that place.",
+                    file=self.called(file),
+                    name=self.name,
+                )
             )
 
 
@@ -147,8 +152,13 @@ def files_below(top: Path) -> list[Path]:
 def too_many(top: Path) -> SubmissionError:
     """The refusal of a folder with more than MAX_ENTRIES files and folders."""
     return SubmissionError(
-        f"{shown(top.name)} holds more than {MAX_ENTRIES:,} files and folders, too many for a "
-        f"submission. {HAND_IN}"
+        say(
+            "{name} holds more than {max_entries:,} files and folders, too many "
+            "for a submission. {hand_in}",
+            name=shown(top.name),
+            max_entries=MAX_ENTRIES,
+            hand_in=HAND_IN,
+        )
     )
 
 
@@ -195,22 +205,34 @@ def copy(top: Path, into: Path) -> None:
                 size += entry.stat().st_size
                 if size > MAX_BYTES:
                     raise SubmissionError(
-                        f"{shown(top.name)} has more than {MAX_BYTES / 1e6:g} MB, the limit for a "
-                        f"submission. {HAND_IN}"
+                        say(
+                            "{name} has more than {max_bytes:g} MB, the limit for a submission. "
+                            "{hand_in}",
+                            name=shown(top.name),
+                            max_bytes=MAX_BYTES / 1e6,
+                            hand_in=HAND_IN,
+                        )
                     )
                 shutil.copy2(entry, target / entry.name)
 
 
-def shown(name: str | PurePath) -> str:
-    """A name of a student's in a message: in one line, and not longer than anybody reads."""
-    return clip_inside(without_controls(str(name), "?"), MAX_SHOWN)
+def shown(name: str | PurePath) -> Phrase:
+    """A name of a student's in a message: in one line, and not longer than anybody reads.
+
+    It is the same in any language.
+    """
+    return Phrase(clip_inside(without_controls(str(name), "?"), MAX_SHOWN))
 
 
 def listed(names: Iterable[str], limit: int = 10) -> str:
     """Join names as in "a, b, c and 4 more"."""
     every = list(names)
-    first = ", ".join(map(shown, every[:limit]))
-    return first if len(every) <= limit else f"{first} and {len(every) - limit} more"
+    first = joined([shown(name) for name in every[:limit]], ", ")
+    return (
+        first
+        if len(every) <= limit
+        else say("{names} and {n} more", names=first, n=len(every) - limit)
+    )
 
 
 def near(wanted: str, names: Sequence[str]) -> list[str]:

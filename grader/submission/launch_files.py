@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from grader.language.phrase import say
 from grader.submission.constants import Constants
 from grader.submission.folder import read_bounded, shown
 from grader.submission.manifest import parse_xml
@@ -72,17 +73,17 @@ def read_launch_file(file: Path) -> LaunchFile:
     data = read_bounded(file)
     try:
         if data is None:
-            raise _Unread("it is too large")
+            raise _Unread(say("it is too large"))
         if file.suffix == ".py":
             nodes = list(_of_python(data))
         elif file.suffix == ".xml":
             nodes = list(_of_xml(data))
         else:
-            raise _Unread("it is written in YAML")
+            raise _Unread(say("it is written in YAML"))
         if len(nodes) > _MAX_NODES:
-            raise _Unread("it starts too many nodes")
+            raise _Unread(say("it starts too many nodes"))
     except _Unread as unread:
-        return LaunchFile(file, unread=str(unread))
+        return LaunchFile(file, unread=unread.args[0])
     return LaunchFile(file, tuple(nodes))
 
 
@@ -90,10 +91,10 @@ def _of_python(data: bytes) -> Iterator[Node]:
     try:
         tree = parse(data, "launch")
     except SyntaxError as error:
-        raise _Unread("it does not parse") from error
+        raise _Unread(say("it does not parse")) from error
     functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
     if [function.name for function in functions] != ["generate_launch_description"]:
-        raise _Unread("it has no function generate_launch_description, or others as well")
+        raise _Unread(say("it has no function generate_launch_description, or others as well"))
     constants, bound = Constants(tree), _Actions()
     for statement in functions[0].body:
         bound.take(statement)
@@ -127,29 +128,32 @@ class _Actions:
             case ast.Expr(value=ast.Constant()):
                 pass
             case _:
-                raise _Unread(f"it does more than list nodes, in line {statement.lineno}")
+                raise _Unread(
+                    say("it does more than list nodes, in line {line}", line=statement.lineno)
+                )
 
     def described(self) -> list[ast.Call]:
         """The actions of the description that is returned."""
         name = self._returned.id if isinstance(self._returned, ast.Name) else ""
         description = self._value(self._returned)
         if _called(description) != "LaunchDescription":
-            raise _Unread("it returns no LaunchDescription")
+            raise _Unread(say("it returns no LaunchDescription"))
         assert isinstance(description, ast.Call)
         keywords = {keyword.arg: keyword.value for keyword in description.keywords}
         lists = [*description.args, *keywords.values()]
         if len(lists) > 1 or keywords.keys() - {"initial_entities"}:
-            raise _Unread("its LaunchDescription has other arguments than a list")
+            raise _Unread(say("its LaunchDescription has other arguments than a list"))
         listed = self._value(lists[0]) if lists else ast.List(elts=[])
         if not isinstance(listed, ast.List):
-            raise _Unread("its LaunchDescription has other arguments than a list")
+            raise _Unread(say("its LaunchDescription has other arguments than a list"))
         actions = [self._value(item) for item in (*listed.elts, *self._added.pop(name, []))]
         if self._added:
-            raise _Unread("it adds actions to something else")
+            raise _Unread(say("it adds actions to something else"))
         for action in actions:
             if _called(action) != "Node":
-                what = _called(action) or "something else"
-                raise _Unread(f"it holds {shown(what)} beside nodes")
+                called = _called(action)
+                what = shown(called) if called else say("something else")
+                raise _Unread(say("it holds {what} beside nodes", what=what))
         return [action for action in actions if isinstance(action, ast.Call)]
 
     def _value(self, node: ast.expr | None) -> ast.expr | None:
@@ -171,18 +175,28 @@ def _python_node(call: ast.Call, constants: Constants) -> Node:
     others = said.keys() - _IDLE - {"package", "executable", "name", "namespace"}
     others -= {"arguments", "remappings", "parameters"}
     if call.args or others:
-        raise _Unread(f"a node in line {call.lineno} has {shown(', '.join(sorted(others)))}")
+        raise _Unread(
+            say(
+                "a node in line {line} has {what}",
+                line=call.lineno,
+                what=shown(", ".join(sorted(others))),
+            )
+        )
 
     def text(key: str) -> str:
         value = constants.value(said[key]) if key in said else ""
         if not isinstance(value, str):
-            raise _Unread(f"the {key} of a node in line {call.lineno} is computed")
+            raise _Unread(
+                say("the {key} of a node in line {line} is computed", key=key, line=call.lineno)
+            )
         return value
 
     def listed(key: str) -> list[object]:
         value = constants.value(said[key]) if key in said else []
         if not isinstance(value, list):
-            raise _Unread(f"the {key} of a node in line {call.lineno} are computed")
+            raise _Unread(
+                say("the {key} of a node in line {line} are computed", key=key, line=call.lineno)
+            )
         return value
 
     remappings = [_pair(item) for item in listed("remappings")]
@@ -197,14 +211,14 @@ def _parameters(node: ast.expr | None) -> Iterator[tuple[str, str]]:
     try:
         dictionaries = ast.literal_eval(node) if node is not None else []
     except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError) as error:
-        raise _Unread("the parameters of a node are computed") from error
+        raise _Unread(say("the parameters of a node are computed")) from error
     for dictionary in dictionaries if isinstance(dictionaries, list) else [None]:
         if not isinstance(dictionary, dict):
-            raise _Unread("the parameters of a node are not written out")
+            raise _Unread(say("the parameters of a node are not written out"))
         for name, value in dictionary.items():
             items = value if isinstance(value, list) else [value]
             if not all(isinstance(item, (bool, int, float, str)) for item in items):
-                raise _Unread("a parameter of a node is neither a number nor a text")
+                raise _Unread(say("a parameter of a node is neither a number nor a text"))
             yield _text(name), json.dumps(value)
 
 
@@ -212,24 +226,24 @@ def _pair(item: object) -> tuple[str, str]:
     match item:
         case [str(old), str(new)]:
             return old, new
-    raise _Unread("a remapping is computed")
+    raise _Unread(say("a remapping is computed"))
 
 
 def _text(item: object) -> str:
     if not isinstance(item, str):
-        raise _Unread("an argument of a node is computed")
+        raise _Unread(say("an argument of a node is computed"))
     return item
 
 
 def _of_xml(data: bytes) -> Iterator[Node]:
     root = parse_xml(data)
     if root is None or isinstance(root, str) or root.tag != "launch":
-        raise _Unread("it does not parse")
+        raise _Unread(say("it does not parse"))
     if root.attrib:
-        raise _Unread("<launch> has settings")
+        raise _Unread(say("<launch> has settings"))
     for element in root:
         if element.tag != "node":
-            raise _Unread(f"it holds <{shown(element.tag)}> beside nodes")
+            raise _Unread(say("it holds <{what}> beside nodes", what=shown(element.tag)))
         yield _xml_node(element)
 
 
@@ -245,7 +259,7 @@ def _xml_node(element: Element) -> Node:
             pair = _plain(inner, {"name", "value"})
             parameters[pair.get("name", "")] = pair.get("value", "")
         else:
-            raise _Unread(f"a node has <{shown(inner.tag)}>")
+            raise _Unread(say("a node has <{what}>", what=shown(inner.tag)))
     words = _ros_arguments(said.get("name", ""), said.get("namespace", ""), remappings, parameters)
     return _node(said.get("pkg", ""), said.get("exec", ""), (*said.get("args", "").split(), *words))
 
@@ -254,9 +268,9 @@ def _plain(element: Element, allowed: set[str]) -> dict[str, str]:
     """The attributes of an element; all of them known, none of them computed."""
     said = {name: value for name, value in element.attrib.items() if name not in _IDLE}
     if said.keys() - allowed:
-        raise _Unread(f"<{shown(element.tag)}> has other settings")
+        raise _Unread(say("<{what}> has other settings", what=shown(element.tag)))
     if any("$" in value for value in said.values()):
-        raise _Unread(f"<{shown(element.tag)}> computes a value")
+        raise _Unread(say("<{what}> computes a value", what=shown(element.tag)))
     return said
 
 
@@ -269,7 +283,7 @@ def _ros_arguments(
     rules = [(old, new) for old, new in rules if new] + remappings
     names = [*(each for rule in rules for each in rule), *parameters]
     if not all(_NAME.fullmatch(each) for each in names):
-        raise _Unread("a name in it is none of ROS")
+        raise _Unread(say("a name in it is none of ROS"))
     words = [word for old, new in rules for word in ("-r", f"{old}:={new}")]
     words += [word for key, value in parameters.items() for word in ("-p", f"{key}:={value}")]
     return ["--ros-args", *words] if words else []
@@ -277,7 +291,7 @@ def _ros_arguments(
 
 def _node(package: str, executable: str, arguments: tuple[str, ...]) -> Node:
     if not package or not executable:
-        raise _Unread("a node names no package, or no executable")
+        raise _Unread(say("a node names no package, or no executable"))
     if any("\0" in word for word in arguments):
-        raise _Unread("an argument of a node cannot be passed on")
+        raise _Unread(say("an argument of a node cannot be passed on"))
     return Node(package, executable, arguments)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader.errors import SubmissionError
+from grader.language.phrase import say
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import Packages, find_module, not_started
 from grader.submission.folder import HandedIn, listed, shown
@@ -45,12 +46,18 @@ class Launched:
         notes = [*shortcomings(handed_in, *self.first), *not_started("console script", left)]
         if self.others:
             names = listed(f"{node.package} {node.executable}" for node in self.others)
-            notes.append(f"{called} starts programs of other packages, and these were not: {names}")
+            notes.append(
+                say(
+                    "{file} starts programs of other packages, and these were not: {names}",
+                    file=called,
+                    names=names,
+                )
+            )
         names = listed(program.name for program in programs)
         return replace(
             found,
             start=Launch(programs),
-            found=f"{called}, which starts {names}",
+            found=say("{file}, which starts {names}", file=called, names=names),
             notes=tuple(notes),
         )
 
@@ -98,21 +105,34 @@ def not_run(
         called = handed_in.called(launch.file)
         if launch.unread:
             yield (
-                f"{called} was not run, and what it starts cannot be read ({launch.unread}): "
-                f"judged is {shown(started.name)} alone"
+                say(
+                    "{file} was not run, and what it starts cannot be read ({unread}): "
+                    "judged is {program} alone",
+                    file=called,
+                    unread=launch.unread,
+                    program=shown(started.name),
+                )
             )
             continue
         own = [node for node in launch.nodes if node.package in names]
         others = [node.executable for node in own if node.executable != started.name]
         if others:
             yield (
-                f"{called} was not run: judged is {shown(started.name)} alone, without "
-                f"{listed(dict.fromkeys(others))}"
+                say(
+                    "{file} was not run: judged is {program} alone, without {names}",
+                    file=called,
+                    program=shown(started.name),
+                    names=listed(dict.fromkeys(others)),
+                )
             )
         elif not all(node.is_as_by_itself for node in own):
             yield (
-                f"{called} was not run: {shown(started.name)} was started without its "
-                "namespace, remappings or parameters"
+                say(
+                    "{file} was not run: {program} was started without its namespace, "
+                    "remappings or parameters",
+                    file=called,
+                    program=shown(started.name),
+                )
             )
 
 

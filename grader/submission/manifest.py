@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from grader.language.phrase import say
 from grader.submission.folder import read_bounded, shown
 
 if TYPE_CHECKING:
@@ -79,23 +80,29 @@ def parse_xml(data: bytes) -> Element | str | None:
         return None
     except ElementTree.ParseError as error:
         line, _ = error.position
-        return f"does not parse, line {line}: {shown(str(error).partition(':')[0])}"
+        return say(
+            "does not parse, line {line}: {found}",
+            line=line,
+            found=shown(str(error).partition(":")[0]),
+        )
     except (ValueError, LookupError) as error:  # its encoding
-        return f"does not parse: {shown(str(error))}"
+        return say("does not parse: {found}", found=shown(str(error)))
 
 
 def _fault(root: Element, name: str) -> str:
     if root.tag != "package":
-        return f"begins with <{shown(root.tag)}>; expected <package>"
+        return say("begins with <{found}>; expected <package>", found=shown(root.tag))
     for tag in _REQUIRED:
         nodes = root.findall(tag)
         if not nodes or not any("".join(node.itertext()).strip() for node in nodes):
-            return f"has no <{tag}>"
+            return say("has no <{tag}>", tag=tag)
     if not _NAME.fullmatch(name):
-        return f"names the package {shown(name)}; expected letters, digits and _"
+        return say("names the package {found}; expected letters, digits and _", found=shown(name))
     version = (root.findtext("version") or "").strip()
     if not _VERSION.fullmatch(version):
-        return f"has the version {shown(version)}; expected three numbers, as 0.1.0"
+        return say(
+            "has the version {found}; expected three numbers, as 0.1.0", found=shown(version)
+        )
     if not all(node.get("email") for node in root.findall("maintainer")):
-        return 'has a <maintainer> without email="..."'
+        return say('has a <maintainer> without email="..."')
     return ""

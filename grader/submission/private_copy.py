@@ -25,12 +25,14 @@ from sys import stdlib_module_names
 from typing import Final
 
 from grader.errors import SubmissionError
+from grader.language.phrase import say
 from grader.submission.folder import (
     MAX_BYTES,
     MAX_ENTRIES,
     is_generated,
     is_junk,
     listed,
+    shown,
     too_many,
 )
 from grader.text import without_controls
@@ -154,8 +156,14 @@ def not_handed_in(name: str, copy: PrivateCopy | None, modules: Iterable[str]) -
     if copy is None or (beside := copy.beside) is None:
         return ()
     found = [lying for module in modules if (lying := _lying(beside, module))]
-    remark = "{} lies beside {}, but was not handed in: grade the folder"
-    return tuple(without_controls(remark.format(each, name), "?") for each in found)
+    return tuple(
+        say(
+            "{module} lies beside {name}, but was not handed in: grade the folder",
+            module=shown(each),
+            name=shown(name),
+        )
+        for each in found
+    )
 
 
 def _lying(folder: Path, module: str) -> str:
@@ -208,9 +216,16 @@ class _Copying:
         """What to say about the copy."""
         found = []
         if self.outside:
-            found.append(f"not handed in, but links to somewhere else: {listed(self.outside)}")
+            found.append(
+                say(
+                    "not handed in, but links to somewhere else: {names}",
+                    names=listed(self.outside),
+                )
+            )
         if self.failed:
-            found.append(f"left out, since they cannot be copied: {listed(self.failed)}")
+            found.append(
+                say("left out, since they cannot be copied: {names}", names=listed(self.failed))
+            )
         return tuple(without_controls(remark, "?") for remark in found)
 
     def copy_alone(self, file: Path, into: Path) -> None:
@@ -218,7 +233,10 @@ class _Copying:
         real = file.resolve()
         if not real.is_relative_to(self.top):
             raise SubmissionError(
-                f"{file.name} is a link to a place outside of its folder. Hand in the file itself."
+                say(
+                    "{name} is a link to a place outside of its folder. Hand in the file itself.",
+                    name=shown(file.name),
+                )
             )
         self._copy_file(real, into / file.name)
 
@@ -274,8 +292,13 @@ class _Copying:
                     self.size += len(chunk)
                     if self.size > MAX_BYTES:
                         raise SubmissionError(
-                            f"{self.top.name} has more than {MAX_BYTES / 1e6:g} MB, the limit for "
-                            "a submission. Leave out recordings and videos, and hand it in again."
+                            say(
+                                "{name} has more than {max_bytes:g} MB, the limit for a "
+                                "submission. Leave out recordings and videos, and hand it in "
+                                "again.",
+                                name=shown(self.top.name),
+                                max_bytes=MAX_BYTES / 1e6,
+                            )
                         )
                     writing.write(chunk)
 

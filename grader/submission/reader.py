@@ -21,6 +21,7 @@ from typing import Final
 
 from grader import strict_json
 from grader.errors import GraderFailure, SubmissionError
+from grader.language.phrase import say
 from grader.submission import answer, limits
 from grader.submission.folder import USUAL_NAME, shown
 from grader.submission.start import Submission
@@ -37,14 +38,19 @@ _ENVIRONMENT: Final = (
     *("LANG", "LC_ALL", "LC_CTYPE", "SYSTEMROOT"),
     *("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH"),
 )
-_PLAIN: Final = "Hand in nothing but the files of your package, written plainly."
+_PLAIN: Final = say("Hand in nothing but the files of your package, written plainly.")
 _WAITED, _SHORT_OF_MEMORY = "SIGALRM", "SIGKILL"
 #: What was too much, by how the process has ended.
 _TOO_MUCH: Final = {
-    "SIGXCPU": f"that takes more than {limits.CPU_S} s of a processor's time",
-    _WAITED: f"that takes more than {limits.WALL_S} s",
-    _SHORT_OF_MEMORY: f"that takes more than {limits.MEMORY_BYTES / 1e6:.0f} MB of memory",
-    **dict.fromkeys(("SIGSEGV", "SIGBUS", "SIGABRT"), "Python's own parser breaks down over it"),
+    "SIGXCPU": say("that takes more than {cpu_s} s of a processor's time", cpu_s=limits.CPU_S),
+    _WAITED: say("that takes more than {wall_s} s", wall_s=limits.WALL_S),
+    _SHORT_OF_MEMORY: say(
+        "that takes more than {memory_bytes:.0f} MB of memory",
+        memory_bytes=limits.MEMORY_BYTES / 1e6,
+    ),
+    **dict.fromkeys(
+        ("SIGSEGV", "SIGBUS", "SIGABRT"), say("Python's own parser breaks down over it")
+    ),
 }
 
 _warm: list[_Process] = []
@@ -98,8 +104,23 @@ def read(
         end = _SHORT_OF_MEMORY
     if end not in _TOO_MUCH:
         told = shown(last.decode("utf-8", "replace").strip())
-        raise GraderFailure(f"{name} could not be read: the process for it ended ({end}): {told}")
-    raise SubmissionError(f"{name} cannot be read: {_TOO_MUCH[end]}{_place(at)}. {_PLAIN}")
+        raise GraderFailure(
+            say(
+                "{name} could not be read: the process for it ended ({end}): {told}",
+                name=name,
+                end=end,
+                told=told,
+            )
+        )
+    raise SubmissionError(
+        say(
+            "{name} cannot be read: {too_much}{place}. {plain}",
+            name=name,
+            too_much=_TOO_MUCH[end],
+            place=_place(at),
+            plain=_PLAIN,
+        )
+    )
 
 
 class _Process:
@@ -177,7 +198,7 @@ class _Process:
 def _place(at: str) -> str:
     """How far it got: a name of the submission's, which comes as a string in JSON."""
     with contextlib.suppress(ValueError):
-        return f" (it got as far as {shown(str(strict_json.loads(at)))})"
+        return say(" (it got as far as {place})", place=shown(str(strict_json.loads(at))))
     return ""
 
 

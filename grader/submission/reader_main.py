@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.errors import SubmissionError, UsageError
+from grader.language.phrase import say
 from grader.submission import answer, encoding, limits, unpacking, whole
 from grader.submission.finding import find
 from grader.submission.folder import shown
@@ -50,7 +51,9 @@ def _answer(request: dict[str, Any]) -> bytes:
         return answer.unable(error)
     except RecursionError:
         name = shown(path.name or path.resolve().name)
-        return answer.refused(SubmissionError(f"{name} is nested too deeply to be read."))
+        return answer.refused(
+            SubmissionError(say("{name} is nested too deeply to be read.", name=name))
+        )
     except MemoryError:
         return _SHORT_OF_MEMORY
     except Exception:

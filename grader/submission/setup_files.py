@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 from grader.errors import SubmissionError
+from grader.language.phrase import say
 from grader.submission.constants import UNKNOWN, Constants
 from grader.submission.folder import MAX_SOURCE_BYTES, HandedIn, read_bounded, shown
 from grader.submission.python_source import parse
@@ -128,22 +129,32 @@ def _read(file: Path, handed_in: HandedIn, read: Callable[[bytes], _Said]) -> _S
     data = read_bounded(file)
     if data is None:
         raise SubmissionError(
-            f"{called} is larger than {MAX_SOURCE_BYTES / 1e6:.0f} MB; not a set-up file."
+            say(
+                "{file} is larger than {max_source_bytes:.0f} MB; not a set-up file.",
+                file=called,
+                max_source_bytes=MAX_SOURCE_BYTES / 1e6,
+            )
         )
     try:
         return read(data)
     except SyntaxError as error:
-        where = f", line {error.lineno}" if error.lineno else ""
+        where = say(", line {line}", line=error.lineno) if error.lineno else ""
         raise SubmissionError(
-            f"{called} does not parse{where}: {shown(error.msg)}. "
-            "Correct it until `colcon build` succeeds."
+            say(
+                "{file} does not parse{where}: {why}. Correct it until `colcon build` succeeds.",
+                file=called,
+                where=where,
+                why=shown(error.msg),
+            )
         ) from error
     except (_Unreadable, UnicodeDecodeError) as error:
         why = shown(" ".join(str(error).split()))
-        raise SubmissionError(f"{called} cannot be read: {why}. Correct that line.") from error
+        raise SubmissionError(
+            say("{file} cannot be read: {why}. Correct that line.", file=called, why=why)
+        ) from error
     except RecursionError as error:
         raise SubmissionError(
-            f"{called} is nested too deeply to be read. Write it plainly."
+            say("{file} is nested too deeply to be read. Write it plainly.", file=called)
         ) from error
 
 
@@ -151,11 +162,16 @@ def _console_script(name: str, target: str, file: Path, handed_in: HandedIn) -> 
     match = _TARGET.fullmatch(target.strip())
     if not name or match is None:
         found = shown(f"{name} = {target}" if name else target)
-        hint = " A comma seems to be missing between two entries." if "=" in target else ""
+        hint = say(" A comma seems to be missing between two entries.") if "=" in target else ""
         raise SubmissionError(
-            f"{handed_in.called(file)} has the console script '{found}'.{hint} "
-            "Expected 'name = package.module:function', "
-            "for example 'turtle_controller = my_package.turtle_controller:main'."
+            say(
+                "{file} has the console script '{found}'.{hint} Expected 'name = "
+                "package.module:function', for example 'turtle_controller = "
+                "my_package.turtle_controller:main'.",
+                file=handed_in.called(file),
+                found=found,
+                hint=hint,
+            )
         )
     return ConsoleScript(name, match[1], match[2], file)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import SubmissionError
+from grader.language.phrase import say, say_many
 from grader.submission.folder import HandedIn, files_below, listed, near, shown, top_of
 from grader.submission.manifest import FILE, read_manifest
 from grader.submission.refusals import missing, unreadable
@@ -13,7 +14,7 @@ from grader.submission.setup_files import SETUP_FILES
 from grader.submission.start import Submission, Whole
 from grader.submission.unpacking import Unpacking, is_archive
 
-_HAND_IN: Final = "Hand in the folder of your ROS 2 package, or a .zip of it."
+_HAND_IN: Final = say("Hand in the folder of your ROS 2 package, or a .zip of it.")
 _MARKS: Final = (FILE, "CMakeLists.txt", *SETUP_FILES)
 
 
@@ -44,7 +45,13 @@ def _find(path: Path, package: str | None, scratch: Path) -> Submission:
     elif is_archive(path):
         handed_in = HandedIn(name, unpacking.unpack(path))
     else:
-        raise SubmissionError(f"{name} is neither a folder nor a .zip or .tar.gz. {_HAND_IN}")
+        raise SubmissionError(
+            say(
+                "{name} is neither a folder nor a .zip or .tar.gz. {hand_in}",
+                name=name,
+                hand_in=_HAND_IN,
+            )
+        )
     files = files_below(top_of(handed_in.base))
     archives = [file for file in files if is_archive(file)]
     if len(archives) == 1 and not any(file.name in _MARKS for file in files):
@@ -55,16 +62,27 @@ def _find(path: Path, package: str | None, scratch: Path) -> Submission:
     if not folders:
         names = [handed_in.called(file) for file in files]
         raise SubmissionError(
-            f"{name} holds no ROS 2 package: no package.xml, setup.py or CMakeLists.txt "
-            f"(it holds: {listed(names) or 'only folders that are not searched'}). {_HAND_IN}"
+            say(
+                "{name} holds no ROS 2 package: no package.xml, setup.py or "
+                "CMakeLists.txt (it holds: {names}). {hand_in}",
+                name=name,
+                names=listed(names) or say("only folders that are not searched"),
+                hand_in=_HAND_IN,
+            )
         )
     manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
     names = sorted({shown(each.name) for each in manifests if each is not None and each.name})
     if package is not None and package not in names:
         meant = near(package, names) or names
         raise SubmissionError(
-            f"{name} has no package {shown(package)}; there is: {listed(meant) or 'none'}."
+            say(
+                "{name} has no package {package}; there is: {names}.",
+                name=name,
+                package=shown(package),
+                names=listed(meant) or say("none"),
+            )
         )
-    count = "the package" if len(names) == 1 else "packages"
-    found = f"{count} {listed(names)}" if names else f"a package without {FILE}"
+    found = say("a package without {file}", file=FILE)
+    if names:
+        found = say_many("the package {names}", "packages {names}", len(names), names=listed(names))
     return Submission(name, handed_in.base, Whole(package or ""), found)
