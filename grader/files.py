@@ -18,6 +18,7 @@ from typing import BinaryIO
 
 from grader import locks
 from grader.errors import UsageError
+from grader.language.phrase import say
 
 _STREAMS = {"/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
 _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,9})")
@@ -47,7 +48,9 @@ def write(path: Path, content: str) -> None:
         else:
             _write_beside(_target(path), data)
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
+        ) from None
 
 
 def check_writable(path: Path) -> None:
@@ -61,7 +64,7 @@ def check_writable(path: Path) -> None:
     except OSError as error:
         why_not = error.strerror
     if why_not:
-        raise UsageError(f"cannot write {path}: {why_not}")
+        raise UsageError(say("cannot write {path}: {why}", path=str(path), why=why_not))
 
 
 def _why_not(path: Path) -> str | None:
@@ -70,14 +73,14 @@ def _why_not(path: Path) -> str | None:
         import fcntl  # here: who names a descriptor by a path is not on Windows, which lacks it
 
         mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
-        return "it is open for reading only" if mode == os.O_RDONLY else None
+        return say("it is open for reading only") if mode == os.O_RDONLY else None
     if path.is_dir():
-        return "it is a folder; expected the name of a file to write"
+        return say("it is a folder; expected the name of a file to write")
     if path.exists() and not path.is_file():
-        return None if os.access(path, os.W_OK) else "you may not write into it"
+        return None if os.access(path, os.W_OK) else say("you may not write into it")
     there = next(folder for folder in _target(path).parents if os.path.lexists(folder))
     if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
-        return f"{there} is no folder that you may write into"
+        return say("{there} is no folder that you may write into", there=str(there))
     return None
 
 
@@ -99,11 +102,16 @@ def check_replaceable(path: Path, schema: str, inputs: Iterable[Path]) -> None:
         with path.open("rb") as file:
             begin = file.read(_BEGINNING)
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
+        ) from None
     if begin and not re.match(rb'\s*\{\s*"schema"\s*:\s*"' + re.escape(schema.encode()), begin):
         raise UsageError(
-            f"cannot write {path}: there is a file already that this grader has not written; "
-            "give another name, or remove it. Nothing was changed."
+            say(
+                "cannot write {path}: there is a file already that this grader has not "
+                "written; give another name, or remove it. Nothing was changed.",
+                path=str(path),
+            )
         )
 
 
@@ -117,8 +125,11 @@ def check_is_no_input(path: Path, inputs: Iterable[Path]) -> None:
         for one in inputs:
             if one.is_file() and path.exists() and path.samefile(one):
                 raise UsageError(
-                    f"cannot write {path}: this call reads it; give another name. "
-                    "Nothing was changed."
+                    say(
+                        "cannot write {path}: this call reads it; give another name. Nothing "
+                        "was changed.",
+                        path=str(path),
+                    )
                 )
 
 
@@ -131,7 +142,13 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UsageError(f"cannot make the folder {folder}: {error.strerror}") from None
+        raise UsageError(
+            say(
+                "cannot make the folder {folder}: {why}",
+                folder=str(folder),
+                why=str(error.strerror),
+            )
+        ) from None
 
 
 @contextlib.contextmanager
@@ -144,7 +161,10 @@ def sole_writer(folder: Path) -> Iterator[None]:
     lock = locks.take_folder(folder)
     if lock is None:
         raise UsageError(
-            f"another grading writes into {folder}: wait for its end, or give each an --out"
+            say(
+                "another grading writes into {folder}: wait for its end, or give each an --out",
+                folder=str(folder),
+            )
         )
     try:
         yield
@@ -162,7 +182,9 @@ def withdraw(path: Path) -> None:
         if _descriptor(path) is None and path.is_file():
             _target(path).unlink(missing_ok=True)
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
+        ) from None
 
 
 def put(path: Path, content: bytes) -> None:
@@ -174,7 +196,9 @@ def put(path: Path, content: bytes) -> None:
     try:
         _write_beside(path, content)
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
+        ) from None
 
 
 @contextlib.contextmanager
@@ -188,7 +212,9 @@ def putting(path: Path) -> Iterator[BinaryIO]:
         with _beside(path) as unfinished, unfinished.open("wb") as file:
             yield file
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
+        ) from None
 
 
 def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] = ()) -> None:
@@ -203,7 +229,9 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     """
     mode = _mode(path)
     if mode is not None and stat.S_ISDIR(mode):
-        raise UsageError(f"cannot write {path}: it is a folder; expected a file, or nothing")
+        raise UsageError(
+            say("cannot write {path}: it is a folder; expected a file, or nothing", path=str(path))
+        )
     if mode is not None and stat.S_ISREG(mode) and schema is not None:
         check_replaceable(path, schema, inputs)
     check_writable(path.parent / uuid.uuid4().hex)
@@ -217,7 +245,12 @@ def check_can_fill(folder: Path) -> None:
     """
     mode = _mode(folder)
     if mode is not None and not (stat.S_ISDIR(mode) or stat.S_ISLNK(mode)):
-        raise UsageError(f"cannot write into {folder}: it is a file; expected a folder, or nothing")
+        raise UsageError(
+            say(
+                "cannot write into {folder}: it is a file; expected a folder, or nothing",
+                folder=str(folder),
+            )
+        )
     check_writable((folder.parent if mode is None or stat.S_ISLNK(mode) else folder) / "new")
 
 
@@ -235,8 +268,12 @@ def check_leads_nowhere_else(folder: Path, foreign: Path) -> None:
     for at in (whole, *whole.parents):
         if at.is_symlink() and Path(os.path.realpath(at.parent)).is_relative_to(base):
             raise UsageError(
-                f"cannot write into {folder}: {at} is a link that lies with the submission; name "
-                "the folder itself, or another"
+                say(
+                    "cannot write into {folder}: {at} is a link that lies with the "
+                    "submission; name the folder itself, or another",
+                    folder=str(folder),
+                    at=str(at),
+                )
             )
 
 
@@ -251,7 +288,9 @@ def clear(path: Path) -> None:
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
-            raise UsageError(f"cannot write {path}: {error.strerror}") from None
+            raise UsageError(
+                say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
+            ) from None
 
 
 def _mode(path: Path) -> int | None:
@@ -261,7 +300,9 @@ def _mode(path: Path) -> int | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
+        ) from None
 
 
 def _write_beside(path: Path, data: bytes) -> None:

@@ -22,6 +22,7 @@ from grader.diagnosis.diagnose import diagnose
 from grader.errors import GraderFailure, UsageError
 from grader.exercise import DEFAULT, check, early
 from grader.exercise.loading import Exercise, load_exercise
+from grader.language.phrase import say
 from grader.recording import folder as recording_folder
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings
@@ -326,9 +327,15 @@ def _record(
     progress: Progress | None,
 ) -> Recordings:
     if time not in RUNNERS:
-        raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
+        raise UsageError(
+            say(
+                "time: expected one of {runners}, found {time!r}",
+                runners=", ".join(RUNNERS),
+                time=time,
+            )
+        )
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
-        raise UsageError(f"seed: expected a whole number, found {seed!r}")
+        raise UsageError(say("seed: expected a whole number, found {seed!r}", seed=seed))
     return run_all(submission, exercise, runner(exercise, time), seed=seed, progress=progress)
 
 

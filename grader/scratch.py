@@ -18,6 +18,7 @@ from typing import IO
 
 from grader import locks, system
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 from grader.removal import remove
 
 PREFIX = "run-"
@@ -44,8 +45,12 @@ def home() -> Path:
         else:
             return folder
     raise GraderFailure(
-        f"there is no place for the files of a run ({'; '.join(refused)}). Have the first of these "
-        "removed, or set TMPDIR to a folder that only you may write into."
+        say(
+            "there is no place for the files of a run ({refused}). Have the first "
+            "of these removed, or set TMPDIR to a folder that only you may write "
+            "into.",
+            refused="; ".join(refused),
+        )
     )
 
 
@@ -132,7 +137,12 @@ def make_folder() -> Iterator[Path]:
                     _forget(beside)
                 break
     else:
-        raise GraderFailure(f"somebody removes the locks of runs in {place}; find out who does")
+        raise GraderFailure(
+            say(
+                "somebody removes the locks of runs in {place}; find out who does",
+                place=str(place),
+            )
+        )
     _forget(beside)
 
 

@@ -296,7 +296,7 @@ def _limit(case: Case) -> str:
     """A sentence of the run's remarks on what it was refused; '' for none."""
     for flag in case.run.flags:
         if flag.startswith("the node ended with "):
-            known = flag.values.get("remark") if isinstance(flag, Phrase) else None
+            known = flag.values.get("limit") if isinstance(flag, Phrase) else None
             return _remark(flag.partition(": ")[2], known or flag)
         if case.run.outcome == "killed" and flag.startswith("the node "):
             return _remark(flag, flag)

@@ -34,7 +34,10 @@ from typing import TYPE_CHECKING, Any
 
 from grader import limited, strict_json
 from grader.errors import RecordingError
+from grader.language import stored
+from grader.language.phrase import Phrase
 from grader.limited import Limits
+from grader.recording import remarks
 from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
@@ -64,6 +67,8 @@ FILES = (
 )
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
+#: What of the run's remarks the submission's reader has made, for other languages.
+PHRASES = "phrases"
 #: Stands beside them.
 PROVENANCE = "provenance"
 #: What is read back, and its most bytes. A minute's usual run is 0.2 MB.
@@ -238,6 +243,11 @@ def _put(made: Path, folder: Path) -> None:
             (folder / name).unlink(missing_ok=True)
 
 
+def _unknown(flags: Iterable[str]) -> list[str]:
+    """Those that would not be known again by their English texts: what they are made of is kept."""
+    return [flag for flag in flags if not isinstance(remarks.phrase(str(flag)), Phrase)]
+
+
 def _withdraw(folder: Path) -> None:
     (folder / METADATA).unlink(missing_ok=True)
 
@@ -247,6 +257,8 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     mcap = _bag().write(recording.trace, scene, folder)
     run = asdict(recording.run)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
+    if phrases := stored.phrases_in(_unknown(recording.run.flags)):
+        circumstances[PHRASES] = phrases
     if recording.provenance is not None:
         circumstances[PROVENANCE] = recording.provenance.to_json()
     if not recording.run.interfaces:
@@ -335,11 +347,16 @@ def _facts(folder: Path) -> dict[str, Any]:
     if isinstance(facts.get("run"), dict):
         facts["run"].update((k, v) for k, v in circumstances.items() if k in CIRCUMSTANCES)
     facts[PROVENANCE] = circumstances.get(PROVENANCE)
+    phrases = circumstances.get(PHRASES, {})
     from jsonschema.exceptions import best_match  # here: what is only written is not validated
 
     error = best_match(_validator().iter_errors(facts))
     if error is not None:
         raise RecordingError(f"{folder / RUN} is damaged: {error.json_path}: {error.message}")
+    try:
+        facts["run"]["flags"] = stored.restored(tuple(facts["run"]["flags"]), phrases)
+    except (ValueError, TypeError, AttributeError) as wrong:
+        raise RecordingError(f"{path} is damaged: {wrong}") from None
     return facts
 
 
@@ -364,7 +381,7 @@ def _told(folder: Path) -> _Told:
     try:
         digest = _sha256(folder / BAG)
         output = (folder / OUTPUT).read_bytes().decode("utf-8", "surrogatepass")
-        run = Run(**{**facts["run"], "flags": tuple(facts["run"]["flags"])})
+        run = Run(**facts["run"])
     except OSError as error:
         raise RecordingError(f"cannot read the recording: {error}") from None
     except (ValueError, TypeError) as error:

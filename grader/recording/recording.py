@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
+from grader.recording import remarks
 from grader.recording.conduct import Conduct
 from grader.recording.provenance import Provenance
 from grader.scenes import load_scene
@@ -51,6 +52,10 @@ class Run:
     flags: tuple[str, ...] = ()
     seed: int | None = None
     interfaces: str = ""
+
+    def __post_init__(self) -> None:
+        """Its remarks can be said in any language, wherever they were made."""
+        object.__setattr__(self, "flags", tuple(map(remarks.phrase, self.flags)))
 
 
 @dataclass(frozen=True)

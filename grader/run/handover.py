@@ -12,6 +12,7 @@ from pathlib import Path
 from struct import Struct
 
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 from grader.recording.recording import PublishedTopic
 from grader.scenes.scene import Scene, Trace
 
@@ -51,4 +52,6 @@ def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
         topics = tuple(map(_topic, json.loads(data[_LENGTH.size : end].decode("utf-8"))))
         return scene.decode(data[end:]), topics
     except Exception as error:
-        raise GraderFailure(f"the simulator left no recording: {error!s:.200}") from error
+        raise GraderFailure(
+            say("the simulator left no recording: {why}", why=str(error)[:200])
+        ) from error

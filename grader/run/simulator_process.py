@@ -13,6 +13,7 @@ from typing import Any
 
 from grader import system
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 from grader.run.audience import NOBODY, Seat
 from grader.run.environment import simulator_environment
 from grader.run.plan import Plan
@@ -51,9 +52,17 @@ class Simulator:
         deadline = time.monotonic() + SIMULATOR_PATIENCE_S
         while (message := self.next(0.2)) is None:
             if time.monotonic() > deadline:
-                raise self.failure(f"did not say {what!r} in {SIMULATOR_PATIENCE_S:.0f} s")
+                raise self.failure(
+                    say(
+                        "did not say {what!r} in {simulator_patience_s:.0f} s",
+                        what=what,
+                        simulator_patience_s=SIMULATOR_PATIENCE_S,
+                    )
+                )
         if message["say"] != what:
-            raise self.failure(f"said {message!r} where {what!r} was expected")
+            raise self.failure(
+                say("said {message!r} where {what!r} was expected", message=message, what=what)
+            )
 
     def say(self, what: str) -> None:
         """Tell it something.
@@ -92,9 +101,16 @@ class Simulator:
     def failure(self, what: str) -> GraderFailure:
         """The exception for a simulator that did not do its work."""
         code = self._process.wait(2.0)
-        state = "it still runs" if code is None else f"its exit code is {code}"
-        last = self._process.output().strip() or "(it printed nothing)"
-        return GraderFailure(f"the simulator {what}; {state}. Its last words:\n{last[-2000:]}")
+        state = say("it still runs") if code is None else say("its exit code is {code}", code=code)
+        last = self._process.output().strip() or say("(it printed nothing)")
+        return GraderFailure(
+            say(
+                "the simulator {what}; {state}. Its last words:\n{last}",
+                what=what,
+                state=state,
+                last=last[-2000:],
+            )
+        )
 
 
 @contextmanager
@@ -133,4 +149,6 @@ def _connect(line: Line, process: Watched) -> socket.socket:
     try:
         return line.connect(lambda: process.poll() is None, SIMULATOR_PATIENCE_S)
     except ConnectionError:
-        raise GraderFailure(f"the simulator did not call: {process.output()[-2000:]}") from None
+        raise GraderFailure(
+            say("the simulator did not call: {output}", output=process.output()[-2000:])
+        ) from None

@@ -21,6 +21,7 @@ import psutil
 
 from grader import scratch
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 from grader.recording.recording import Outcome, Recording
 from grader.run import stage
 from grader.run.environment import virtual_environment
@@ -153,9 +154,10 @@ def _is_stopped(process: int) -> bool:
 def _failure(output: str) -> str:
     """Why the process that looks has failed, which no package should be able to bring about."""
     last = next((line.strip() for line in reversed(output.splitlines()) if line.strip()), "")
-    return (
-        f"the program that looks at packages failed: {last:.300}. That is no fault of the package; "
-        "please report it, with the package"
+    return say(
+        "the program that looks at packages failed: {last}. That is no "
+        "fault of the package; please report it, with the package",
+        last=last[:300],
     )
 
 

@@ -12,6 +12,7 @@ import time
 from dataclasses import asdict, replace
 
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 from grader.recording.recording import Outcome, Recording
 from grader.run import evidence, handover, real_time, stage, zygotes
 from grader.run.audience import Audience, seats
@@ -132,7 +133,9 @@ def _try(
             finally:
                 student.end(gently=False)
             if student.was_lost:
-                raise GraderFailure("the process from which a submission's was forked has died")
+                raise GraderFailure(
+                    say("the process from which a submission's was forked has died")
+                )
             if message["say"] == "refused":
                 return None, submission.as_handed_in(message["reason"])
             marks.update(message["marks"])
@@ -166,7 +169,7 @@ def _watch(simulator: Simulator, student_pid: int) -> Message:
         if now_used_s != used_s:
             used_s, since = now_used_s, time.monotonic()
         if time.monotonic() > since + SIMULATOR_PATIENCE_S:
-            raise simulator.failure("did not come to an end")
+            raise simulator.failure(say("did not come to an end"))
     return message
 
 

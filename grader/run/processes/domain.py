@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from grader import scratch
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 
 #: Domain ids whose ports stay clear of the ephemeral ones, minus the low ones that people use.
 DOMAINS = (*range(40, 102), *range(215, 233))
@@ -27,4 +28,9 @@ def reserve_domain() -> Iterator[int]:
             with lock:
                 yield domain
             return
-    raise GraderFailure(f"all {len(DOMAINS)} ROS domains are in use by other runs; try again later")
+    raise GraderFailure(
+        say(
+            "all {domains} ROS domains are in use by other runs; try again later",
+            domains=len(DOMAINS),
+        )
+    )

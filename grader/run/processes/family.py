@@ -18,6 +18,7 @@ import psutil
 
 from grader import system
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 from grader.run.processes import supervisor
 from grader.run.processes.appetite import Appetite
 from grader.run.processes.sandbox.confinement import OWN
@@ -133,7 +134,9 @@ class Student(Watched):
             GraderFailure: it could not be started.
         """
         if not self._hear(1, START_S):
-            raise GraderFailure(f"the submission's process did not start: {self.output()}")
+            raise GraderFailure(
+                say("the submission's process did not start: {output}", output=self.output())
+            )
         return int(self._told.split()[0])
 
     def poll(self) -> int | None:
@@ -149,7 +152,9 @@ class Student(Watched):
         code = self._await_end(timeout_s)
         if code == NOT_STARTED:
             why = self._words().removeprefix(supervisor.REFUSED).strip()
-            raise NotConfined(f"the submission's process could not be started: {why}", why)
+            raise NotConfined(
+                say("the submission's process could not be started: {why}", why=why), why
+            )
         return code
 
     def _await_end(self, timeout_s: float) -> int | None:

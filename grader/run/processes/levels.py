@@ -25,6 +25,7 @@ from typing import Any
 
 from grader import scratch, system
 from grader.errors import GraderError, GraderFailure, UsageError
+from grader.language.phrase import say
 from grader.run.processes import family, isolation
 from grader.run.processes.isolation import Isolation
 from grader.run.processes.sandbox import landlock, view
@@ -54,15 +55,21 @@ PATIENCE_S = 20.0
 #: What programs write to that is no file.
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full")
 ADVICE = {
-    NAMESPACES: "Ubuntu 24.04 or later: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0,"
-    " or an AppArmor profile with `userns,` for this Python. Docker: run the container with"
-    " --security-opt seccomp=unconfined --security-opt apparmor=unconfined"
-    " --security-opt systempaths=unconfined --cap-add SYS_ADMIN. Debian: sudo sysctl"
-    " kernel.unprivileged_userns_clone=1. Elsewhere than on Linux there is none",
-    LANDLOCK: "Linux 5.13 or later with `landlock` in its list of security modules"
-    " (/sys/kernel/security/lsm), and a container runtime whose seccomp profile allows it, as"
-    " those of Docker and podman since 2021 do",
-    LIMITS: "Linux with /proc",
+    NAMESPACES: say(
+        "Ubuntu 24.04 or later: sudo sysctl "
+        "kernel.apparmor_restrict_unprivileged_userns=0, or an AppArmor profile"
+        " with `userns,` for this Python. Docker: run the container with "
+        "--security-opt seccomp=unconfined --security-opt apparmor=unconfined "
+        "--security-opt systempaths=unconfined --cap-add SYS_ADMIN. Debian: "
+        "sudo sysctl kernel.unprivileged_userns_clone=1. Elsewhere than on "
+        "Linux there is none"
+    ),
+    LANDLOCK: say(
+        "Linux 5.13 or later with `landlock` in its list of security modules "
+        "(/sys/kernel/security/lsm), and a container runtime whose seccomp "
+        "profile allows it, as those of Docker and podman since 2021 do"
+    ),
+    LIMITS: say("Linux with /proc"),
 }
 
 
@@ -185,7 +192,9 @@ def best(isolated: Isolation) -> Level:
             _found[is_apart] = _look(isolated)
         found = _found[is_apart]
     if _least and not found.is_at_least(_least):
-        raise GraderFailure(f"isolation by {_least} was to be had before, and now is not")
+        raise GraderFailure(
+            say("isolation by {least} was to be had before, and now is not", least=_least)
+        )
     return found
 
 
@@ -199,10 +208,20 @@ def require(level: str) -> None:
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
         there = best(isolated)
     if not there.is_at_least(level):
-        missing = there.refused.get(level, "this system has nothing of it")
-        what = f"the best here is {there.name()!r}" if there.level else "there is none here"
+        missing = there.refused.get(level, say("this system has nothing of it"))
+        what = (
+            say("the best here is {level!r}", level=there.name())
+            if there.level
+            else say("there is none here")
+        )
         raise UsageError(
-            f"isolation by {level} is not to be had: {missing}; {what}. To get it: {ADVICE[level]}."
+            say(
+                "isolation by {level} is not to be had: {missing}; {what}. To get it: {advice}.",
+                level=level,
+                missing=missing,
+                what=what,
+                advice=ADVICE[level],
+            )
         )
     _least = level
 
@@ -210,7 +229,7 @@ def require(level: str) -> None:
 def _look(isolated: Isolation) -> Level:
     refused: dict[str, str] = {}
     if not system.has_supervision():
-        return Level("", refused=dict.fromkeys(LEVELS, "this is not Linux, or it lacks /proc"))
+        return Level("", refused=dict.fromkeys(LEVELS, say("this is not Linux, or it lacks /proc")))
     for level in _candidates():
         if why := _try(level, isolated):
             refused.setdefault(level.level, why)
@@ -235,10 +254,10 @@ def _candidates() -> Iterator[Level]:
 def _try(level: Level, isolated: Isolation) -> str:
     """Confine a process so; what is refused, or ''."""
     if level.level == LANDLOCK and not landlock.abi():
-        return "this kernel has no Landlock, or a container refuses it"
+        return say("this kernel has no Landlock, or a container refuses it")
     is_apart = bool(isolated.namespaces)
     if level.level == NAMESPACES and not is_apart:
-        return "namespaces of users and networks are refused"
+        return say("namespaces of users and networks are refused")
     with scratch.make_folder() as folder:
         tried = folder / "tried"
         (folder / "tmp").mkdir()

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from grader.errors import GraderFailure
+from grader.language.phrase import say
 from grader.run.processes import ZYGOTE, forking
 from grader.run.processes.process import await_readable
 
@@ -221,10 +222,12 @@ class Zygote:
         try:
             data, got = self._hear()
         except ZygoteLost as lost:
-            raise GraderFailure(f"what a process was to be forked from has died: {lost}") from None
+            raise GraderFailure(
+                say("what a process was to be forked from has died: {lost}", lost=str(lost))
+            ) from None
         answer = json.loads(data)
         if "lost" in answer:  # it has begun
-            raise GraderFailure(f"a forked process was lost: {answer['lost']}")
+            raise GraderFailure(say("a forked process was lost: {lost}", lost=str(answer["lost"])))
         if "refused" in answer:
             raise ZygoteLost(str(answer["refused"]))
         pidfd, ending = got
