@@ -28,8 +28,8 @@ KEYWORDS = {
     **{"say": None, "tell": None, "marked": None},
     **{"say_many": (1, 2), "tell_many": (1, 2)},
 }
-#: Below grader/: file name ending -> babel's name of who reads it.
-READERS = {".py": "python", ".html": "jinja2.ext:babel_extract", ".js": "javascript"}
+#: Below grader/: file name ending -> babel's name of who reads it; Python we read ourselves.
+READERS = {".html": "jinja2.ext:babel_extract", ".js": "javascript"}
 #: Of a file's head: dates, which would make each run another file, and who nobody is.
 CHANGING = tuple(
     f'"{name}'
@@ -46,19 +46,34 @@ def sentences() -> Iterator[str | tuple[str, str]]:
     """All marked sentences; a pair has one and many."""
     for path in sorted((ROOT / "grader").rglob("*")):
         reader = READERS.get(path.suffix)
-        if reader is None or not _is_ours(path):
+        if not _is_ours(path):
+            continue
+        if path.suffix == ".py":
+            tree = ast.parse(path.read_bytes())
+            yield from _called(tree)
+            yield from _titles(tree)
+        if reader is None:
             continue
         source = path.read_bytes()
         options = {"encoding": "utf-8", "trimmed": "true"}
         for _, message, _, _ in extract(reader, io.BytesIO(source), KEYWORDS, (), options):
             if message:
                 yield message if isinstance(message, str) else (message[0], message[1])
-        if path.suffix == ".py":
-            yield from _titles(ast.parse(source))
 
 
 def _is_ours(path: Path) -> bool:
     return not set(path.relative_to(ROOT).parts) & set(NOT_OURS)
+
+
+def _called(tree: ast.Module) -> Iterator[str | tuple[str, str]]:
+    """What functions of these names are given; methods called so say something else."""
+    for node in ast.walk(tree):
+        if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
+            continue
+        count = 2 if KEYWORDS.get(node.func.id) else 1
+        texts = [each.value for each in node.args[:count] if isinstance(each, ast.Constant)]
+        if node.func.id in KEYWORDS and len(texts) == count:
+            yield texts[0] if count == 1 else (texts[0], texts[1])
 
 
 def _titles(tree: ast.Module) -> Iterator[str]:

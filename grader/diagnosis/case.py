@@ -10,7 +10,7 @@ from grader.diagnosis import printed
 from grader.language.phrase import Phrase, joined, say
 from grader.recording.conduct import Conduct, End, EndKind, Place, Raised, Stop
 from grader.recording.recording import Recording, Run
-from grader.scenes import load_scene
+from grader.scenes import load_scene, load_words
 from grader.scenes.scene import Endpoint, EndpointKind
 from grader.text import clip, one_line, plain
 
@@ -21,8 +21,6 @@ OPPOSITE: dict[EndKind, EndpointKind] = {
     "client": "service",
     "action_client": "action",
 }
-#: Things that are driven, with the article that a language needs.
-_THE = {"turtle": say("the turtle"), "robot": say("the robot")}
 _LONGEST = 200
 #: Shown as 0.0 [s].
 _AT_ONCE_S = 0.05
@@ -94,9 +92,9 @@ class Case:
 
     @cached_property
     def the_thing(self) -> str:
-        """What is driven: 'the turtle'."""
-        thing = load_scene(self.recording.scene).thing
-        return _THE.get(thing) or f"the {thing}"
+        """What is driven, with its article: 'the robot'."""
+        the_thing: Phrase = load_words(self.recording.scene).THE_THING
+        return the_thing
 
 
 def told(text: str) -> Phrase:

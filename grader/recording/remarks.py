@@ -11,12 +11,13 @@ import string
 from functools import cache
 
 from grader.language.phrase import Phrase, marked
+from grader.scenes import NAMES, load_words
 
 #: Longer ones are not looked at [characters].
 _LONGEST = 2000
 #: Sentences in sentences: none is deeper.
 _DEEPEST = 4
-#: The sentences; of two that fit the first is taken.
+#: The sentences, but for those of scenes; of two that fit the first is taken.
 KEYS = (
     # how the program ended, or was ended
     marked("every thread of the node waits for something that will not come"),
@@ -55,17 +56,7 @@ KEYS = (
     marked("the node published on more than {number} topics"),
     marked("messages on {channel} were too long or too many to be taken"),
     marked("a message on {channel} could not be read"),
-    marked("what the node sent after its first {number} messages was not taken"),
-    marked("of the node's messages the first {number}, or {megabytes} MB, were taken"),
-    marked("of the simulator's log the first {number} lines were kept"),
-    marked("save_canvas wrote {number} pictures and no more"),
-    marked("requests for more than {number} parameters were refused"),
-    marked("more than {number} rotation goals in ten seconds were refused"),
-    marked("the parameter use_sim_time cannot be set: the run has a clock of its own"),
-    marked("the parameter canvas_folder cannot be set: the run has a folder of its own"),
     marked("the simulator could not serve {what}: {error}"),
-    marked("more than {number} turtles at a time: the others were refused"),
-    marked("more than {number} turtles in a run: the others were refused"),
     # which run was made, and why
     marked("graded in real time, because {why}"),
     marked("several programs were started, each in a process of its own: {names}"),
@@ -91,10 +82,6 @@ KEYS = (
         "{words}. What only drives cannot do that; if this node does nothing else, the grader is "
         "wrong"
     ),
-    # what looks at packages
-    marked("looking at the package took more than {seconds} s"),
-    marked("the package's own code has stopped (SIGSTOP) the process that looks at it"),
-    marked("the process that looked at the package left nothing that can be read: {why_not}"),
 )
 #: Values that are sentences themselves.
 _SENTENCES = {"limit", "why", "does"}
@@ -122,7 +109,8 @@ def phrase(text: str, depth: int = 0) -> str:
 
 @cache
 def _patterns() -> tuple[tuple[str, re.Pattern[str]], ...]:
-    return tuple((key, re.compile(_pattern(key), re.DOTALL)) for key in KEYS)
+    keys = (*KEYS, *(key for scene in NAMES for key in load_words(scene).REMARKS))
+    return tuple((key, re.compile(_pattern(key), re.DOTALL)) for key in keys)
 
 
 def _pattern(key: str) -> str:

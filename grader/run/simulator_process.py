@@ -54,9 +54,9 @@ class Simulator:
             if time.monotonic() > deadline:
                 raise self.failure(
                     say(
-                        "did not say {what!r} in {simulator_patience_s:.0f} s",
+                        "did not say {what!r} in {seconds:.0f} s",
                         what=what,
-                        simulator_patience_s=SIMULATOR_PATIENCE_S,
+                        seconds=SIMULATOR_PATIENCE_S,
                     )
                 )
         if message["say"] != what:

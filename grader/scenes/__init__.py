@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 from collections.abc import Callable
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -31,6 +32,11 @@ def load_scene(name: str) -> Scene:
         raise KeyError(f"there is no scene {name!r}; there are: {', '.join(NAMES)}")
     scene: Scene = importlib.import_module(f"{__name__}.{name}.scene").SCENE
     return scene
+
+
+def load_words(name: str) -> ModuleType:
+    """What a scene's processes say as texts: `THE_THING` and `REMARKS`."""
+    return importlib.import_module(f"{__name__}.{name}.said")
 
 
 def load_player(name: str) -> Callable[[Playback], str] | None:

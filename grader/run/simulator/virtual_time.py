@@ -242,20 +242,20 @@ def main(argv: list[str]) -> int:
     student, core = int(argv[4]), int(argv[5])
     link = StudentLink(theirs, student, Patience(**json.loads(argv[6])))
 
-    def say(what: str, **more: Any) -> None:
+    def answer(what: str, **more: Any) -> None:
         control.sendall(json.dumps({"say": what, **more}).encode() + b"\n")
 
     def share_core() -> None:
         # for both, from here: a submission's process may not say where threads run
         cores.pin(core, os.getpid(), student)
 
-    lockstep = Lockstep(link, Plan.from_json(argv[2]), share_core, lambda: say("met"), argv[7])
+    lockstep = Lockstep(link, Plan.from_json(argv[2]), share_core, lambda: answer("met"), argv[7])
     gc.freeze()
     gc.set_threshold(GARBAGE)
     try:
         ending = lockstep.run()
         lockstep.save(Path(argv[1]))
-        say("done", **ending)
+        answer("done", **ending)
     except Refused as refusal:
-        say("refused", reason=str(refusal))
+        answer("refused", reason=str(refusal))
     return 0

@@ -18,6 +18,7 @@ from grader.run.plan import Plan
 from grader.run.simulator.link import Patience
 from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
+from tests.grader.language.holes import holes
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 TABLE: dict[str, dict[str, Any]] = yaml.safe_load(
@@ -59,3 +60,11 @@ def test_the_first_line_is_the_cause(diagnoses, name):
         assert piece in said[begin:], f"{found.key}: {said}"
         begin = said.index(piece, begin) + len(piece)
     assert found.key == row["key"], said
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", TABLE)
+def test_the_first_line_is_said_in_other_languages(diagnoses, name):
+    found = diagnoses[name].result()
+    for language in ("fr", "zh"):
+        assert holes(found.cause, language) == holes(found.help, language) == []

@@ -1,0 +1,14 @@
+"""Sentences that the processes of this scene's runs say as texts, for other languages."""
+
+from __future__ import annotations
+
+from grader.language.phrase import marked, say
+
+#: What is driven, with the article that a language needs.
+THE_THING = say("the package")
+#: Remarks on a run; see `grader.recording.remarks`.
+REMARKS = (
+    marked("looking at the package took more than {seconds} s"),
+    marked("the package's own code has stopped (SIGSTOP) the process that looks at it"),
+    marked("the process that looked at the package left nothing that can be read: {why_not}"),
+)
