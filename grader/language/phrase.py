@@ -64,6 +64,11 @@ class Phrase(str):
         return _kept(self, super().strip(*chars))
 
 
+def marked(key: str) -> str:
+    """A key that is filled elsewhere: what stands in quotes here is found for the catalogues."""
+    return key
+
+
 def say(key: str, /, **values: Any) -> Phrase:
     """A sentence: `say("It made {turns:.1f} turns.", turns=2.5)`.
 
@@ -76,11 +81,6 @@ def say_many(one: str, many: str, n: float, /, **values: Any) -> Phrase:
     """A sentence about `{n}` things: `say_many("{n} pin", "{n} pins", 3)`."""
     values = {"n": n, **values}
     return Phrase(fill(one if n == 1 else many, values), one, values, many)
-
-
-def marked(key: str) -> str:
-    """A key that is filled elsewhere: what stands in quotes here is found for the catalogues."""
-    return key
 
 
 def joined(parts: Sequence[str], between: str = "") -> Phrase:

@@ -36,7 +36,7 @@ def load_scene(name: str) -> Scene:
 
 def load_words(name: str) -> ModuleType:
     """What a scene's processes say as texts: `THE_THING` and `REMARKS`."""
-    return importlib.import_module(f"{__name__}.{name}.said")
+    return importlib.import_module(f"{__name__}.{name}.remarked")
 
 
 def load_player(name: str) -> Callable[[Playback], str] | None:
