@@ -33,6 +33,8 @@ HOST = (
     *("grader/run/processes/__init__.py", "grader/run/processes/cores.py"),
     # of a package that is looked at
     *("grader/limited.py", "grader/scenes/__init__.py", "grader/scenes/package"),
+    # ... and what says how far it may be
+    *("grader/language/__init__.py", "grader/language/phrase.py"),
 )
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
 #: Of /etc, where libraries are, and the time zone; who is here, the process is told otherwise.
