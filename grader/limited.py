@@ -29,6 +29,7 @@ from types import TracebackType
 from typing import NoReturn, Self
 
 from grader import system
+from grader.language.phrase import say
 
 #: A number: of the question, and how long an answer is.
 _NUMBER = Struct("<q")
@@ -55,6 +56,11 @@ class Limits:
     wall_s: float = 60.0
     memory_bytes: int = 2 * 2**30
     answer_bytes: int = 2**24
+
+
+#: Made before: who has no memory left makes no sentence.
+_TOO_MUCH = say("needed more memory than it may have")
+_TOO_DEEP = say("called itself too deeply")
 
 
 class LimitHit(Exception):
@@ -138,7 +144,9 @@ class Copy:
             head = self._read(1 + _NUMBER.size, deadline)
             (length,) = _NUMBER.unpack(head[1:])
             if not 0 <= length <= self._limits.answer_bytes:
-                raise LimitHit(f"answered with more than {_mb(self._limits.answer_bytes)}")
+                raise LimitHit(
+                    say("answered with more than {size}", size=_mb(self._limits.answer_bytes))
+                )
             body = self._read(length, deadline)
         except (EOFError, BrokenPipeError):
             raise self._why_it_ended() from None
@@ -158,7 +166,9 @@ class Copy:
         while rest:
             left_s = deadline - time.monotonic()
             if left_s <= 0 or not waiting.poll(left_s * 1000):
-                raise _Slow(f"did not come to an end in {self._limits.wall_s:g} s")
+                raise _Slow(
+                    say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
+                )
             count = os.readv(self._answers, [rest])
             if not count:
                 raise EOFError
@@ -171,17 +181,25 @@ class Copy:
         status = self._reaped(self._pid)
         self.close()
         if status is None:
-            return LimitHit("ended the process that it ran in")
+            return LimitHit(say("ended the process that it ran in"))
         if os.WIFEXITED(status):
             code = os.WEXITSTATUS(status)
-            return LimitHit(f"ended the process that it ran in (exit code {code})")
+            return LimitHit(
+                say("ended the process that it ran in (exit code {code})", code=str(code))
+            )
         ended_by = os.WTERMSIG(status)
         if ended_by == signal.SIGPROF:
-            what = f"{self._limits.cpu_s:g} s of processor time"
-            return NoEnd(f"did not come to an end in {what}")
+            return NoEnd(
+                say(
+                    "did not come to an end in {cpu_s:g} s of processor time",
+                    cpu_s=self._limits.cpu_s,
+                )
+            )
         if ended_by == signal.SIGALRM:
-            return _Slow(f"did not come to an end in {self._limits.wall_s:g} s")
-        return LimitHit(f"ended the process that it ran in (signal {ended_by})")
+            return _Slow(say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s))
+        return LimitHit(
+            say("ended the process that it ran in (signal {signal})", signal=str(ended_by))
+        )
 
     def _reaped(self, pid: int) -> int | None:
         """How a copy that has hung up ended; None: it has not, or nobody knows."""
@@ -252,9 +270,9 @@ def _within_python(answer: Callable[[int], bytes], number: int) -> bytes:
     try:
         return answer(number)
     except MemoryError:
-        raise LimitHit("needed more memory than it may have") from None
+        raise LimitHit(_TOO_MUCH) from None
     except RecursionError:
-        raise LimitHit("called itself too deeply") from None
+        raise LimitHit(_TOO_DEEP) from None
 
 
 def _confine(limits: Limits, kept: Iterable[int]) -> None:

@@ -9,18 +9,21 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from grader.errors import CheckFailed
 from grader.exercise.asking import Asked, NoFinding
 from grader.exercise.verdict import Finding, Verdict
+from grader.language.phrase import authored, joined, say
 from grader.limited import LimitHit
 from grader.recording.recording import Recordings
 
 Tolerances = Mapping[str, Any]
 CheckFunction = Callable[[Recordings, Tolerances], Finding]
+#: Name of a check -> language -> text.
+Words = Mapping[str, Mapping[str, str]]
 #: Raises a ValueError where a tolerance cannot be used.
 LookAt = Callable[[Any], None]
 
@@ -61,6 +64,20 @@ class Checks:
         """Their functions by their names."""
         return {check.name: check.function for check in self}
 
+    def said(self, titles: Words, rubrics: Words) -> Checks:
+        """The same checks with titles and rubrics in other languages, each by its check's name."""
+        made = Checks()
+        made._looks = self._looks
+        made._checks = [
+            replace(
+                check,
+                title=authored(check.title, titles.get(check.name)),
+                rubric=authored(check.rubric, rubrics.get(check.name)),
+            )
+            for check in self
+        ]
+        return made
+
     def tolerance(self, look: LookAt) -> LookAt:
         """Have the tolerances looked at by the decorated function when the exercise is loaded.
 
@@ -77,7 +94,7 @@ class Checks:
                 if name in tolerances:
                     look(tolerances[name])
             except ValueError as error:
-                return name, str(error)
+                return name, error.args[0] if error.args else ""  # a phrase stays one
         return None
 
     def __call__(
@@ -105,9 +122,9 @@ class Checks:
             if not _takes_two(function):
                 found = inspect.signature(function)
                 raise TypeError(f"{name}: expected (recordings, tolerances), found {found}")
-            self._checks.append(
-                Check(name, title.strip().rstrip("."), function, tuple(after), rubric.strip())
-            )
+            title = authored(title.strip().rstrip("."))
+            check = Check(name, title, function, tuple(after), authored(rubric.strip()))
+            self._checks.append(check)
             return function
 
         return register
@@ -173,18 +190,27 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
 
     missing = [n for n in check.depends_on if n in earlier and earlier[n].status != "passed"]
     if missing:
-        titles = " and ".join(f"“{earlier[name].title}”" for name in missing)
+        titles = [say("“{title}”", title=earlier[name].title) for name in missing]
         return not_judged(
-            f"Not judged, because {titles} did not pass.",
-            f"Look at “{earlier[missing[0]].title}” first.",
+            say(
+                "Not judged, because {titles} did not pass.",
+                titles=joined(titles, say(" and ")),
+            ),
+            say("Look at {title} first.", title=titles[0]),
         )
     try:
         finding = ask(check.name)
     except LimitHit as hit:
         return not_judged(
-            f"Not judged: the check {hit}. That is a fault of the exercise, not of the submission.",
-            "Tell whoever made the exercise: when the check is mended, the recording can be judged "
-            "again.",
+            say(
+                "Not judged: the check {what}. That is a fault of the exercise, not of the "
+                "submission.",
+                what=hit.args[0],
+            ),
+            say(
+                "Tell whoever made the exercise: when the check is mended, the recording can be "
+                "judged again."
+            ),
         )
     except NoFinding as error:
         raise CheckFailed(_told(check, error)) from error
@@ -208,8 +234,14 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
 
 def _told(check: Check, error: NoFinding) -> str:
     if error.was_raised:
-        return f"the check {check.name!r} failed itself, so nothing was judged: {error}"
-    return (
-        f"the check {check.name!r} returned what it should not, so nothing was judged: "
-        f"{Path(check.function.__code__.co_filename).name}: {error}"
+        return say(
+            "the check {check!r} failed itself, so nothing was judged: {error}",
+            check=check.name,
+            error=str(error),
+        )
+    return say(
+        "the check {check!r} returned what it should not, so nothing was judged: {file}: {error}",
+        check=check.name,
+        file=Path(check.function.__code__.co_filename).name,
+        error=str(error),
     )

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grader.exercise.verdict import Evidence
+from grader.language.phrase import say
 from grader.recording.recording import Recording
 from grader.scenes import load_scene
 from grader.scenes.scene import Start
@@ -176,7 +177,7 @@ class DrivenPath:
 
     def place(self, row: int) -> str:
         """Where it was, in words."""
-        return f"({self.x[row]:.2f}, {self.y[row]:.2f})"
+        return say("({x:.2f}, {y:.2f})", x=self.x[row], y=self.y[row])
 
     def evidence(self, row: int, note: str) -> Evidence:
         """What a finding can point at: its place and time at a row. -1 is the last."""

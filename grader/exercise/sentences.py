@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from grader.exercise.verdict import Finding
+from grader.language.phrase import joined, say
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recording, Recordings
 from grader.scenes import load_scene
@@ -23,22 +24,26 @@ _ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]*)(?:: (?P<text>.*))?$")
 
 def how_it_ended(recording: Recording) -> str:
     """A sentence (with a space before it) about an end that matters; '' where there is none."""
+    sentence = _ending(recording)
+    return joined([" ", sentence]) if sentence else ""
+
+
+def _ending(recording: Recording) -> str:
     run = recording.run
     if run.outcome == "crashed":
-        return f" The node ended with an error: {_error(recording)}."
+        return say("The node ended with an error: {error}.", error=_error(recording))
     if run.outcome == "exited":
-        return " The node ended by itself, without an error."
-    if run.outcome == "killed":
-        signal = f" (signal {-run.exit_code})" if run.exit_code else ""
-        return f" The node was killed{signal}."
-    return ""
+        return say("The node ended by itself, without an error.")
+    if run.outcome == "killed" and run.exit_code:
+        return say("The node was killed (signal {signal}).", signal=str(-run.exit_code))
+    return say("The node was killed.") if run.outcome == "killed" else ""
 
 
 def _error(recording: Recording) -> str:
     """The error with the last line of the submission's own, where it is known."""
     error, raised = last_error(recording.output), recording.conduct.raised
     if raised is None or raised.place is None:
-        return error or f"exit code {recording.run.exit_code}"
+        return error or say("exit code {code}", code=str(recording.run.exit_code))
     file, line = PurePath(raised.place.file).name, raised.place.line
     said = _PLACE.sub("", error) or f"{raised.type}: {raised.text}".rstrip(".: ")
     if said.partition(":")[0].rpartition(".")[2] != raised.type.rpartition(".")[2]:
@@ -82,7 +87,8 @@ def error_first(recordings: Recordings, finding: Finding) -> Finding:
     )
     if not crashed:
         return finding
-    return replace(finding, help="See the error first: what would have come after it is not there.")
+    help_ = say("See the error first: what would have come after it is not there.")
+    return replace(finding, help=help_)
 
 
 def remarks(recording: Recording, all_passed: bool = False) -> list[str]:
@@ -91,14 +97,17 @@ def remarks(recording: Recording, all_passed: bool = False) -> list[str]:
     Args:
         all_passed: whether every check of the exercise did.
     """
-    found = []
+    found: list[str] = []
     if recording.run.outcome == "crashed" and all_passed:
         found.append(
-            f"After its work was done the node ended with an error: {_error(recording)}; "
-            "it costs no points."
+            say(
+                "After its work was done the node ended with an error: {error}; it costs no "
+                "points.",
+                error=_error(recording),
+            )
         )
     elif recording.run.outcome == "crashed":
-        found.append(how_it_ended(recording).strip())
+        found.append(_ending(recording))
     published = [topic.topic for topic in recording.topics]
     found += load_scene(recording.scene).remarks(
         recording.trace, published, recording.run.interfaces
@@ -116,8 +125,13 @@ def not_followed(origin: Provenance | None, conditions: Mapping[str, float]) -> 
     told = {} if origin is None else origin.conditions
     then = {**_OFF, **told} if told else {}
     return [
-        f"The recording was made with {key} {then[key]:g}; the exercise now says {value:g}. "
-        "Run the submission again for that."
+        say(
+            "The recording was made with {key} {then:g}; the exercise now says {value:g}. "
+            "Run the submission again for that.",
+            key=key,
+            then=then[key],
+            value=value,
+        )
         for key, value in {**_OFF, **conditions}.items()
         if key in then and then[key] != value
     ]

@@ -26,12 +26,14 @@ class Phrase(str):
         values: what the names stand for; each a text, a number, or a phrase again.
         many: the key for more than one, where the value `n` decides; '' for none.
         parts: instead of a key: texts and phrases, one behind the other.
+        words: language -> how its author says it there; what it has comes before any catalogue.
     """
 
     key: str
     many: str
     values: Mapping[str, Any]
     parts: tuple[str, ...]
+    words: Mapping[str, str]
 
     def __new__(
         cls,
@@ -40,11 +42,13 @@ class Phrase(str):
         values: Mapping[str, Any] | None = None,
         many: str = "",
         parts: Sequence[str] = (),
+        words: Mapping[str, str] | None = None,
     ) -> Self:
         """A text as it is in English, and what it is made of."""
         made = super().__new__(cls, english)
         made.key, made.many = key, many
         made.values, made.parts = dict(values or {}), tuple(parts)
+        made.words = dict(words or {})
         return made
 
     def __deepcopy__(self, memo: object) -> Self:
@@ -81,6 +85,15 @@ def say_many(one: str, many: str, n: float, /, **values: Any) -> Phrase:
     """A sentence about `{n}` things: `say_many("{n} pin", "{n} pins", 3)`."""
     values = {"n": n, **values}
     return Phrase(fill(one if n == 1 else many, values), one, values, many)
+
+
+def authored(text: str, words: Mapping[str, str] | None = None) -> Phrase:
+    """What an exercise's author has written, with its words in other languages, if there are some.
+
+    Args:
+        words: language -> text. In a language that is left out, a catalogue may know the text.
+    """
+    return Phrase(text, text.replace("{", "{{").replace("}", "}}"), words=words)
 
 
 def joined(parts: Sequence[str], between: str = "") -> Phrase:

@@ -49,7 +49,10 @@ def phrase(text: str, data: Any, depth: int = 0) -> Phrase:
     key, many = data.get("key", ""), data.get("many", "")
     if not isinstance(key, str) or not isinstance(many, str):
         raise ValueError("expected texts as keys of a phrase")
-    return Phrase(text, key, values, many, parts)
+    words = data.get("words", {})
+    if not isinstance(words, dict) or not all(isinstance(word, str) for word in words.values()):
+        raise ValueError("expected texts as the words of a phrase, by languages")
+    return Phrase(text, key, values, many, parts, words)
 
 
 def _part(data: Any, depth: int) -> str:
@@ -86,6 +89,8 @@ def _data(value: Phrase) -> dict[str, Any]:
     if value.parts:
         return {"parts": [_inner(part) for part in value.parts]}
     data: dict[str, Any] = {"key": value.key}
+    if value.words:
+        data["words"] = dict(value.words)
     if value.many:
         data["many"] = value.many
     if value.values:

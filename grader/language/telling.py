@@ -37,6 +37,8 @@ def told(text: str, language: str = "") -> str:
         return str(text)
     if not isinstance(text, Phrase):
         return catalogue(language).gettext(text) if text else text
+    if language in text.words:
+        return text.words[language]
     if text.parts:
         return "".join(told(part, language) for part in text.parts)
     if not knows(language, text.key, text.many):

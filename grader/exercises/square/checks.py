@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,8 +18,10 @@ from grader.exercises.square.shape import (
     judge_straight,
 )
 from grader.exercises.square.way import Way
+from grader.language.phrase import Phrase, joined, say
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.text import place
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 
@@ -41,25 +44,38 @@ def drives(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if not commands:
         return Finding(
             0,
-            "No velocity command came to turtle1.",
-            "Does your node publish on the topic that turtle1 listens to, and is it spinning?",
+            say("No velocity command came to turtle1."),
+            say("Does your node publish on the topic that turtle1 listens to, and is it spinning?"),
         )
     way = Way(recording)
     if way.length_m < tolerances["driven_m"]:
         return Finding(
             0,
-            f"{len(commands)} velocity commands came, but turtle1 drove {way.length_m:.2f} m.",
-            "Look at what your commands contain: which speed moves a turtle ahead?",
+            say(
+                "{commands} velocity commands came, but turtle1 drove {way_m:.2f} m.",
+                commands=len(commands),
+                way_m=way.length_m,
+            ),
+            say("Look at what your commands contain: which speed moves a turtle ahead?"),
         )
     if way.broken_by:
         return Finding(
             0,
-            f"turtle1 drove {way.length_m:.2f} m, then {way.broken_by}.",
-            "Only velocity commands should move the turtle between its start and its return, "
-            "and they must hold finite numbers.",
-            (way.evidence(-1, f"after this, {way.broken_by}"),),
+            say(
+                "turtle1 drove {way_m:.2f} m, then {what}.", way_m=way.length_m, what=way.broken_by
+            ),
+            say(
+                "Only velocity commands should move the turtle between its start and its return, "
+                "and they must hold finite numbers."
+            ),
+            (way.evidence(-1, say("after this, {what}", what=way.broken_by)),),
         )
-    return Finding(1, f"turtle1 drove {way.length_m:.2f} m by {len(commands)} velocity commands.")
+    text = say(
+        "turtle1 drove {way_m:.2f} m by {commands} velocity commands.",
+        way_m=way.length_m,
+        commands=len(commands),
+    )
+    return Finding(1, text)
 
 
 @checks(after=("drives",))
@@ -71,7 +87,7 @@ def sides(recordings: Recordings, tolerances: Tolerances) -> Finding:
     {side_error_m} m. The points are the number of right sides, four at most, divided by the number
     of sides or by four, whichever is more: 3 right sides of 5 are 3/5 of the points.
     """
-    return judge_sides(Way(recordings.nominal), tolerances)
+    return sentence(judge_sides(Way(recordings.nominal), tolerances))
 
 
 @checks(after=("drives",))
@@ -82,7 +98,7 @@ def corners(recordings: Recordings, tolerances: Tolerances) -> Finding:
     hand to which most corners turn. The start is a corner, too, if the way leads back to it. The
     points are counted as for the sides.
     """
-    return judge_corners(Way(recordings.nominal), tolerances)
+    return sentence(judge_corners(Way(recordings.nominal), tolerances))
 
 
 @checks(after=("drives", "corners"))
@@ -92,7 +108,7 @@ def straight(recordings: Recordings, tolerances: Tolerances) -> Finding:
     Between its corners the way lies {crooked_m} m at most beside the straight line. The points are
     the part of the sides for which that holds.
     """
-    return judge_straight(Way(recordings.nominal), tolerances)
+    return sentence(judge_straight(Way(recordings.nominal), tolerances))
 
 
 @checks(after=("drives",))
@@ -103,7 +119,7 @@ def returns(recordings: Recordings, tolerances: Tolerances) -> Finding:
     {further_m} m after its first return. Half of the points if it comes to rest {near_m} m or less
     from its start, or was there before and drove on.
     """
-    return judge_returns(Way(recordings.nominal), tolerances)
+    return sentence(judge_returns(Way(recordings.nominal), tolerances))
 
 
 @checks(after=("drives",))
@@ -117,37 +133,52 @@ def stops(recordings: Recordings, tolerances: Tolerances) -> Finding:
     recording = recordings.nominal
     way = Way(recording)
     if not way.rests(tolerances):
-        drove_on = stopped_and_drove_on(recording, way, tolerances)
-        if drove_on is not None:
-            stop, further = (command.tick for command in drove_on)
-            return Finding(
-                0,
-                f"turtle1 was stopped at {stop * TICK_S:.2f} s, back at its start, and then your "
-                f"node sent another command, to drive on, at {further * TICK_S:.2f} s.",
-                "What else in your node publishes velocities, and how does it learn that the "
-                "turtle is to stand?",
-                (way.at(stop, "told to stop here"), way.at(further, "told to drive on")),
-            )
-        return Finding(
-            0,
-            f"turtle1 was still moving when the run ended after {recording.run.simulated_s:.1f} s.",
-            "How does your node know that it is done, and what does it tell the turtle then?",
-            (way.evidence(-1, "still moving"),),
-        )
+        return _unrested(way, stopped_and_drove_on(recording, way, tolerances))
     tick = stop_command(recording, int(way.ticks[way.rest]))
     if tick is None:
         return Finding(
             0.5,
-            "turtle1 rests because no commands came any more: the simulator stops a turtle one "
-            "second after its last command. None of speed 0 came while it was moving.",
-            "Ceasing to publish is not stopping. What must the last command say?",
-            (way.evidence(way.rest, "it came to rest without a command"),),
+            say(
+                "turtle1 rests because no commands came any more: the simulator stops a turtle one "
+                "second after its last command. None of speed 0 came while it was moving."
+            ),
+            say("Ceasing to publish is not stopping. What must the last command say?"),
+            (way.evidence(way.rest, say("it came to rest without a command")),),
+        )
+    text = say(
+        "A command of speed 0 came at {time_s:.2f} s; turtle1 then rested for {rested_s:.1f} s.",
+        time_s=tick * TICK_S,
+        rested_s=way.rested_s,
+    )
+    return Finding(1, text, evidence=(way.evidence(way.rest, say("here it came to rest")),))
+
+
+def _unrested(way: Way, drove_on: tuple[CmdVel, CmdVel] | None) -> Finding:
+    """It moves at the end."""
+    if drove_on is not None:
+        stop, further = (command.tick for command in drove_on)
+        return Finding(
+            0,
+            say(
+                "turtle1 was stopped at {stop_s:.2f} s, back at its start, and then your "
+                "node sent another command, to drive on, at {further_s:.2f} s.",
+                stop_s=stop * TICK_S,
+                further_s=further * TICK_S,
+            ),
+            say(
+                "What else in your node publishes velocities, and how does it learn that the "
+                "turtle is to stand?"
+            ),
+            (way.at(stop, say("told to stop here")), way.at(further, say("told to drive on"))),
         )
     return Finding(
-        1,
-        f"A command of speed 0 came at {tick * TICK_S:.2f} s; turtle1 then rested for "
-        f"{way.rested_s:.1f} s.",
-        evidence=(way.evidence(way.rest, "here it came to rest"),),
+        0,
+        say(
+            "turtle1 was still moving when the run ended after {seconds:.1f} s.",
+            seconds=way.recording.run.simulated_s,
+        ),
+        say("How does your node know that it is done, and what does it tell the turtle then?"),
+        (way.evidence(-1, say("still moving")),),
     )
 
 
@@ -171,12 +202,24 @@ def anywhere(recordings: Recordings, tolerances: Tolerances) -> Finding:
         share, wrong, where = judge_square(Way(recording, number), tolerances)
         shares.append(share)
         evidence += where[:2]
-        sentences.append(f"Run {number} ({start_of(recording)}): {wrong or 'a right square'}.")
-    help = (
+        sentences.append(
+            say(
+                "Run {run} ({start}): {seen}.",
+                run=number,
+                start=start_of(recording),
+                seen=wrong or say("a right square"),
+            )
+        )
+    help = say(
         "Does your node take for granted where the turtle starts, or which way it looks? Whatever "
         "is wrong in the nominal run is wrong here too: mend that first."
     )
-    return Finding(float(np.mean(shares)), " ".join(sentences), help, tuple(evidence))
+    return Finding(float(np.mean(shares)), joined(sentences, " "), help, tuple(evidence))
+
+
+def sentence(finding: Finding) -> Finding:
+    """What a clause tells, as a sentence."""
+    return replace(finding, rationale=say("{clause}.", clause=finding.rationale))
 
 
 def stop_command(recording: Recording, last_motion: int) -> int | None:
@@ -211,9 +254,13 @@ def is_stop(command: CmdVel) -> bool:
     return command.linear[0] == 0 and command.angular[2] == 0
 
 
-def start_of(recording: Recording) -> str:
+def start_of(recording: Recording) -> Phrase:
     """Where a varied run started."""
     start = recording.start
     if start is None:
-        return "from the usual start"
-    return f"from ({start.x:.2f}, {start.y:.2f}), heading {math.degrees(start.theta):.0f} degrees"
+        return say("from the usual start")
+    return say(
+        "from {place}, heading {heading:.0f} degrees",
+        place=place(start.x, start.y),
+        heading=math.degrees(start.theta),
+    )

@@ -15,6 +15,7 @@ import numpy as np
 
 from grader.exercise.check import Tolerances
 from grader.exercise.driven_path import DrivenPath
+from grader.language.phrase import say
 from grader.recording.recording import Recording
 from grader.scenes.scene import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
@@ -65,10 +66,10 @@ class Way(DrivenPath):
     """
 
     def __init__(self, recording: Recording, number: int = 0) -> None:
-        self.broken_by = ""
+        self.broken_by: str = ""
         whole = DrivenPath(recording, TurtleTrace.of(recording.trace).trajectory(), number)
         if whole.lost is not None:
-            self.broken_by = "its pose was no number any more"
+            self.broken_by = say("its pose was no number any more")
         path = whole.until_lost().begun_at(recording.start or USUAL_START)
         driven = (path.steps_m > STILL_M) & ~path.jumping
         first = int(np.argmax(driven)) - 1 if driven.any() else len(path) - 1
@@ -77,7 +78,7 @@ class Way(DrivenPath):
         end = None
         if later.size:
             end = first + 1 + int(later[0])
-            self.broken_by = "it jumped to another place"
+            self.broken_by = say("it jumped to another place")
         super().__init__(recording, path.way[first:end], number)
 
     def rests(self, tolerances: Tolerances) -> bool:

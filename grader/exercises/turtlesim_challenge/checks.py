@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from grader.exercise.check import Checks, Tolerances
-from grader.exercise.sentences import counted, error_first, how_it_ended
+from grader.exercise.sentences import error_first, how_it_ended
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.calls import judge_calls
 from grader.exercises.turtlesim_challenge.commands import too_fast
@@ -17,6 +17,7 @@ from grader.exercises.turtlesim_challenge.pens import check_demanded
 from grader.exercises.turtlesim_challenge.picture import judge_picture
 from grader.exercises.turtlesim_challenge.rate import judge_rate
 from grader.exercises.turtlesim_challenge.spiral import judge_spiral
+from grader.language.phrase import Phrase, joined, say, say_many
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.events import CmdVel
@@ -41,76 +42,97 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
     recording = recordings.nominal
     path = Path(recording)
     commands = TurtleTrace.of(recording.trace).of_kind(CmdVel)
-    seconds = f"{recording.run.simulated_s:.1f} s"
-    # of a program that ended, its end tells when
-    within = "" if recording.run.outcome in ("crashed", "exited", "killed") else f" in {seconds}"
-    ending = how_it_ended(recording)
     if not commands:
-        rationale = f"Your node published no velocity command on /turtle1/cmd_vel{within}."
-        help_ = _where_it_published(recording)
-        if recording.run.outcome == "crashed":
-            help_ = "Mend that error first; all that the node printed is in output.txt."
-        return Finding(0, rationale + ending, help_)
+        return _silent(recording)
     foreign = _foreign(path)
     if not (path.moving & (path.linear > 0)).any():
-        return _unmoved(path, commands, f"{foreign}{ending}")
-    start = path.at(int(path.ticks[path.first]), "here it starts to move")
-    return Finding(
-        1, f"{len(commands)} velocity commands moved turtle1.{foreign}", evidence=(start,)
-    )
+        return _unmoved(path, commands, joined([*foreign, how_it_ended(recording)]))
+    start = path.at(int(path.ticks[path.first]), say("here it starts to move"))
+    text = say("{commands} velocity commands moved turtle1.", commands=len(commands))
+    return Finding(1, joined([text, *foreign]), evidence=(start,))
+
+
+def _silent(recording: Recording) -> Finding:
+    """No command came."""
+    run = recording.run
+    if run.outcome in ("crashed", "exited", "killed"):  # its end tells when
+        text = say("Your node published no velocity command on /turtle1/cmd_vel.")
+    else:
+        text = say(
+            "Your node published no velocity command on /turtle1/cmd_vel in {seconds:.1f} s.",
+            seconds=run.simulated_s,
+        )
+    help_ = _where_it_published(recording)
+    if run.outcome == "crashed":
+        help_ = say("Mend that error first; all that the node printed is in output.txt.")
+    return Finding(0, joined([text, how_it_ended(recording)]), help_)
 
 
 def _unmoved(path: Path, commands: Sequence[CmdVel], more: str) -> Finding:
     """Commands came, and none has moved it."""
-    seconds = f"{path.recording.run.simulated_s:.1f} s"
-    first = (path.at(commands[0].tick, "the first command"),)
+    seconds = path.recording.run.simulated_s
+    first = (path.at(commands[0].tick, say("the first command")),)
     fast = too_fast(path, int(path.ticks[-1])) if len(path) else None
     if fast is not None:
-        return Finding(0, f"{fast.text}{more}", fast.help)
+        return Finding(0, joined([fast.text, more]), fast.help)
     if not any(value for call in commands for value in (*call.linear, *call.angular)):
-        return Finding(
-            0,
-            f"Your node published {counted(len(commands), 'velocity command')} in {seconds}, and "
-            f"never moved turtle1: all were zeros.{more}",
-            "Is linear.x of the Twist ever set? Look at the condition that is to be true first: is "
-            "it ever?",
-            first,
+        text = say_many(
+            "Your node published {n} velocity command in {seconds:.1f} s, and never moved "
+            "turtle1: all were zeros.",
+            "Your node published {n} velocity commands in {seconds:.1f} s, and never moved "
+            "turtle1: all were zeros.",
+            len(commands),
+            seconds=seconds,
         )
+        help_ = say(
+            "Is linear.x of the Twist ever set? Look at the condition that is to be true first: "
+            "is it ever?"
+        )
+        return Finding(0, joined([text, more]), help_, first)
+    text = say(
+        "Your node published velocity commands ({commands} in {seconds:.1f} s), but they never "
+        "moved turtle1.",
+        commands=len(commands),
+        seconds=seconds,
+    )
     return Finding(
-        0,
-        f"Your node published velocity commands ({len(commands)} in {seconds}), but they never "
-        f"moved turtle1.{more}",
-        "Is linear.x of the Twist different from zero?",
-        first,
+        0, joined([text, more]), say("Is linear.x of the Twist different from zero?"), first
     )
 
 
-def _foreign(path: Path) -> str:
-    """A sentence about motion that was no driving."""
+def _foreign(path: Path) -> list[str]:
+    """A sentence about motion that was no driving, and a blank before it; or nothing."""
     if not path.foreign:
-        return ""
+        return []
     names = ", ".join(sorted({event.op for event in path.foreign}))
-    first = path.foreign[0].tick * TICK_S
-    return (
-        f" It was also moved by {names} ({len(path.foreign)} calls, the first at {first:.2f} s); "
-        "only the longest stretch without them is judged."
+    text = say(
+        "It was also moved by {names} ({calls} calls, the first at {first_s:.2f} s); "
+        "only the longest stretch without them is judged.",
+        names=names,
+        calls=len(path.foreign),
+        first_s=path.foreign[0].tick * TICK_S,
     )
+    return [" ", text]
 
 
-def _where_it_published(recording: Recording) -> str:
+def _where_it_published(recording: Recording) -> Phrase:
     twists = [t.topic for t in recording.topics if t.type.endswith("/Twist")]
     others = [topic for topic in twists if topic != "/turtle1/cmd_vel"]
     types = [t.type for t in recording.topics if t.topic == "/turtle1/cmd_vel"]
     if others:
-        return f"It publishes velocities on {', '.join(others)}: compare the topic's name."
+        return say(
+            "It publishes velocities on {topics}: compare the topic's name.",
+            topics=", ".join(others),
+        )
     if types and types[0] != "geometry_msgs/msg/Twist":
-        return (
-            f"It publishes {types[0]} on /turtle1/cmd_vel; the turtle listens to "
-            "geometry_msgs/msg/Twist."
+        return say(
+            "It publishes {type} on /turtle1/cmd_vel; the turtle listens to "
+            "geometry_msgs/msg/Twist.",
+            type=types[0],
         )
     if types:
-        return "It has a publisher on /turtle1/cmd_vel: is publish() ever called?"
-    return "Does it create a publisher on /turtle1/cmd_vel, and does it spin?"
+        return say("It has a publisher on /turtle1/cmd_vel: is publish() ever called?")
+    return say("Does it create a publisher on /turtle1/cmd_vel, and does it spin?")
 
 
 @checks(after=("moves",))

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from grader.language.phrase import Phrase, say
 from grader.scenes.turtlesim import words
 from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.trajectory import Floats
@@ -69,6 +70,6 @@ def groups(colors: Mapping[int, Color | None], distance: float) -> list[list[int
 def name(color: Color | None) -> str:
     """What to call a colour, as its page does: 'red (255, 0, 0)'; 'off' for none."""
     if color is None:
-        return "off"
+        return Phrase("off", say("off (of a pen)").key)
     said = words.color(*map(int, color))
-    return f"the pen's first colour, {said}" if tuple(color) == FIRST else said
+    return say("the pen's first colour, {color}", color=said) if tuple(color) == FIRST else said

@@ -10,6 +10,7 @@ import numpy as np
 
 from grader.exercises.turtlesim_challenge.cause import Cause
 from grader.exercises.turtlesim_challenge.path import Path
+from grader.language.phrase import joined, say
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
 
@@ -86,10 +87,16 @@ def why_so_few_turns(path: Path) -> Cause | None:
     if wider_m < TOO_WIDE_M:
         return None
     return Cause(
-        f"linear.x grew by {step:.3g} with each command, from {speeds[0]:.3g} to "
-        f"{speeds[-1]:.3g} m/s.",
-        "Let linear.x grow more slowly, or begin smaller: what a command adds decides how far one "
-        "turn lies from the next.",
+        say(
+            "linear.x grew by {step:.3g} with each command, from {first:.3g} to {last:.3g} m/s.",
+            step=step,
+            first=speeds[0],
+            last=speeds[-1],
+        ),
+        say(
+            "Let linear.x grow more slowly, or begin smaller: what a command adds decides how "
+            "far one turn lies from the next."
+        ),
     )
 
 
@@ -100,12 +107,18 @@ def too_fast(path: Path, until: int) -> Cause | None:
             break
         speed = abs(call.linear[0])
         if math.isfinite(speed) and speed * TICK_S > path.size_m:
-            units = " Nanoseconds are not seconds: divide by 1e9." if speed > NANOSECONDS else ""
+            help_ = say("linear.x is in metres a second: 1.0 is a good speed.")
+            if speed > NANOSECONDS:
+                more = say("Nanoseconds are not seconds: divide by 1e9.")
+                help_ = joined([help_, more], " ")
             return Cause(
-                f"linear.x was {call.linear[0]:,.0f} m/s".replace(",", " ")
-                + f" in the command at {call.tick * TICK_S:.2f} s: that crosses the window before "
-                "the next pose comes.",
-                f"linear.x is in metres a second: 1.0 is a good speed.{units}",
+                say(
+                    "linear.x was {speed} m/s in the command at {time_s:.2f} s: that crosses the "
+                    "window before the next pose comes.",
+                    speed=f"{call.linear[0]:,.0f}".replace(",", " "),
+                    time_s=call.tick * TICK_S,
+                ),
+                help_,
             )
     return None
 
@@ -115,11 +128,10 @@ def _straight(commands: Sequence[CmdVel]) -> Cause | None:
     if any(call.angular[2] for call in commands):
         return None
     others = [name for at, name in ((0, "x"), (1, "y")) if any(c.angular[at] for c in commands)]
-    instead = f", angular.{others[0]} was set" if others else ""
-    return Cause(
-        f"angular.z was 0 in every command{instead}.",
-        "The turtle turns by angular.z alone: set that, to 1.0 for example.",
-    )
+    text = say("angular.z was 0 in every command.")
+    if others:
+        text = say("angular.z was 0 in every command, angular.{axis} was set.", axis=others[0])
+    return Cause(text, say("The turtle turns by angular.z alone: set that, to 1.0 for example."))
 
 
 def _shrinks(commands: Sequence[CmdVel]) -> Cause | None:
@@ -130,8 +142,12 @@ def _shrinks(commands: Sequence[CmdVel]) -> Cause | None:
     if not (np.diff(speeds) <= 0).all() or speeds[-1] > 0.999 * speeds[0]:
         return None
     return Cause(
-        f"linear.x began at {speeds[0]:.3g} and became smaller, down to {speeds[-1]:.3g}.",
-        "Begin small, and let linear.x grow a little with each command.",
+        say(
+            "linear.x began at {first:.3g} and became smaller, down to {last:.3g}.",
+            first=speeds[0],
+            last=speeds[-1],
+        ),
+        say("Begin small, and let linear.x grow a little with each command."),
     )
 
 
@@ -140,9 +156,12 @@ def _paused(commands: Sequence[CmdVel]) -> Cause | None:
     if gap <= WATCHDOG_TICKS:
         return None
     return Cause(
-        f"A command came every {gap * TICK_S:.2f} s only, and the turtle paused each time: a "
-        "command moves it for 1 s.",
-        "Publish faster than once a second.",
+        say(
+            "A command came every {gap_s:.2f} s only, and the turtle paused each time: a "
+            "command moves it for 1 s.",
+            gap_s=gap * TICK_S,
+        ),
+        say("Publish faster than once a second."),
     )
 
 
@@ -151,8 +170,12 @@ def _degrees(commands: Sequence[CmdVel]) -> Cause | None:
     if not math.isfinite(turn) or abs(turn) <= DEGREES or abs(turn) > 360:
         return None
     return Cause(
-        f"angular.z is {turn:g} rad/s: {abs(turn) / (2 * math.pi):.1f} turns a second.",
-        "angular.z is in radians a second, not in degrees.",
+        say(
+            "angular.z is {turn:g} rad/s: {turns:.1f} turns a second.",
+            turn=turn,
+            turns=abs(turn) / (2 * math.pi),
+        ),
+        say("angular.z is in radians a second, not in degrees."),
     )
 
 
@@ -165,8 +188,11 @@ def _takes_turns(commands: Sequence[CmdVel]) -> Cause | None:
     if between < TAKE_TURNS * len(commands):
         return None
     return Cause(
-        "Commands to drive and commands with linear.x 0 took turns: each overrules the one before.",
-        "Publish from one place in your node, linear.x and angular.z in one Twist.",
+        say(
+            "Commands to drive and commands with linear.x 0 took turns: each overrules the one "
+            "before."
+        ),
+        say("Publish from one place in your node, linear.x and angular.z in one Twist."),
     )
 
 
@@ -179,9 +205,11 @@ def _same(commands: Sequence[CmdVel]) -> Cause | None:
         return None
     if np.ptp(speeds) < 1e-9:
         return Cause(
-            f"linear.x was {speeds[0]:.3g} in every command.",
-            "For a spiral linear.x has to grow a little with each command: does your node keep "
-            "the greater value?",
+            say("linear.x was {speed:.3g} in every command.", speed=speeds[0]),
+            say(
+                "For a spiral linear.x has to grow a little with each command: does your node "
+                "keep the greater value?"
+            ),
         )
     if len(turns) != len(speeds):
         return None
@@ -189,7 +217,12 @@ def _same(commands: Sequence[CmdVel]) -> Cause | None:
     if np.ptp(radii) > 0.01 * float(radii.mean()):
         return None
     return Cause(
-        f"angular.z grew with linear.x, from {turns[0]:.3g} to {turns[-1]:.3g}: the radius "
-        f"stays {radii.mean():.2f} m.",
-        "Let linear.x grow alone: with a constant angular.z the radius grows.",
+        say(
+            "angular.z grew with linear.x, from {first:.3g} to {last:.3g}: the radius stays "
+            "{radius_m:.2f} m.",
+            first=turns[0],
+            last=turns[-1],
+            radius_m=radii.mean(),
+        ),
+        say("Let linear.x grow alone: with a constant angular.z the radius grows."),
     )

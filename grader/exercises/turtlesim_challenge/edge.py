@@ -8,12 +8,13 @@ from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.stops import (
-    HALF_OF_IT,
+    WALL_NAMES,
     Stop,
     is_told_to_stop_at,
     judge_stop,
     passed_by_m,
 )
+from grader.language.phrase import Phrase, joined, say, say_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.turtle import TICK_S
 
@@ -21,7 +22,7 @@ from turtlesim_py.world.turtle import TICK_S
 SAME_MOMENT_TICKS = 32
 
 
-_BY_THE_POSE = (
+_BY_THE_POSE = say(
     "The stop must depend on the pose, not on the time or on how often something was done."
 )
 
@@ -43,9 +44,13 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if worst.finding.share >= 1 and _all_at_one_moment(stops):
         return Finding(
             0,
-            f"It {first.finding.rationale}, but at the same moment, after "
-            f"{first.path.stop_tick * TICK_S:.2f} s, from wherever it started: that it was near a "
-            "wall each time is chance.",
+            say(
+                "It stopped by a command, {gap_m:.2f} m from the wall, but at the same moment, "
+                "after {time_s:.2f} s, from wherever it started: that it was near a wall each "
+                "time is chance.",
+                gap_m=first.gap_m,
+                time_s=first.path.stop_tick * TICK_S,
+            ),
             _BY_THE_POSE,
             first.finding.evidence,
         )
@@ -54,15 +59,6 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if worst is first or (first.kind == "halfway" and worst.finding.share > 0):
         return worst.finding
     return _not_elsewhere(stops, worst)
-
-
-def in_varied_runs_too(recordings: Recordings) -> str:
-    """The end of a sentence: that it held in all of them."""
-    count = len(recordings.varied)
-    if not count:
-        return ""
-    which = "run that starts" if count == 1 else f"{count} runs that start"
-    return f", and in the {which} elsewhere too"
 
 
 def _all_at_one_moment(stops: list[Stop]) -> bool:
@@ -78,68 +74,108 @@ def _judge_varied(path: Path, tolerances: Tolerances) -> Stop:
     passed_by = passed_by_m(stop)
     if passed_by <= tolerances["passed_by_m"]:
         return stop
-    gap = float(path.wall_distance[path.last])
-    finding = Finding(
-        0,
-        f"the turtle stopped {gap:.2f} m from the {stop.wall} wall, but had been nearer to that "
-        f"wall by {passed_by:.2f} m before, and had driven on.",
-        "",
-        stop.finding.evidence,
+    seen = say(
+        "the turtle stopped {gap_m:.2f} m from the {wall} wall, but had been nearer to that "
+        "wall by {passed_by_m:.2f} m before, and had driven on.",
+        gap_m=stop.gap_m,
+        wall=WALL_NAMES[stop.wall],
+        passed_by_m=passed_by,
     )
+    finding = Finding(0, seen, "", stop.finding.evidence)
     return replace(stop, kind="far", finding=finding)
 
 
 def _all_right(stops: list[Stop]) -> str:
     late = [number for number, stop in enumerate(stops) if stop.kind == "late"]
-    told = next(stop.finding.rationale for stop in stops if stop.kind != "late")
+    told = next(stop for stop in stops if stop.kind != "late")
+    if not late and len(stops) > 1:
+        return say_many(
+            "It stopped by a command, {gap_m:.2f} m from the wall, and in the run that starts "
+            "elsewhere too.",
+            "It stopped by a command, {gap_m:.2f} m from the wall, and in the {n} runs that start "
+            "elsewhere too.",
+            len(stops) - 1,
+            gap_m=told.gap_m,
+        )
     if not late:
-        count = len(stops) - 1
-        which = "run that starts" if count == 1 else f"{count} runs that start"
-        return f"It {told}{f', and in the {which} elsewhere too' if count else ''}."
-    seconds = f"{stops[late[0]].path.recording.run.simulated_s:.0f} s"
-    which = "the run from the centre" if late[0] == 0 else f"run {late[0]}"
-    return f"It {told}. In {which} the time, {seconds}, was up before it came to a stop."
+        return told.finding.rationale
+    more = say(
+        "In {which} the time, {seconds:.0f} s, was up before it came to a stop.",
+        which=_which_run(late[0]),
+        seconds=stops[late[0]].path.recording.run.simulated_s,
+    )
+    return joined([told.finding.rationale, more], " ")
+
+
+def _which_run(number: int) -> Phrase:
+    return say("run {number}", number=number) if number else say("the run from the centre")
 
 
 def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
     """It stops when it starts from the centre, and not elsewhere."""
-    nominal = stops[0].finding.rationale.removesuffix(".")
-    before = "" if stops[0].kind == "late" else f"From the centre it {nominal}, but "
-    if stops[0].kind == "halfway":
-        before = f"{stops[0].finding.rationale.removesuffix(HALF_OF_IT)} "
-    if worst.kind == "void":
-        told = f"The turtle started elsewhere (run {worst.path.number}). {worst.finding.rationale}"
-        lead = f"{before.removesuffix(', but ')}. " if stops[0].kind == "stopped" else before
-        return replace(worst.finding, rationale=lead + told)
     here = stops[0]
+    if worst.kind == "void":
+        return _not_where_it_was_put(here, worst)
     takes_long = here.path.stop_tick > 10 * SAME_MOMENT_TICKS  # else all moments are the same
     if (
         here.kind == "stopped"
         and takes_long
         and is_told_to_stop_at(worst.path, here.path.stop_tick, SAME_MOMENT_TICKS)
     ):
-        return Finding(
-            0,
-            f"{before}when it started elsewhere (run {worst.path.number}) it was told to stop at "
-            f"the same moment, at {here.path.stop_tick * TICK_S:.1f} s, wherever it was: "
-            f"{worst.finding.rationale}",
-            _BY_THE_POSE,
-            worst.finding.evidence,
+        text = say(
+            "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but when it "
+            "started elsewhere (run {run}) it was told to stop at the same moment, at "
+            "{time_s:.1f} s, wherever it was: {seen}",
+            gap_m=here.gap_m,
+            run=worst.path.number,
+            time_s=here.path.stop_tick * TICK_S,
+            seen=worst.finding.rationale,
         )
+        return Finding(0, text, _BY_THE_POSE, worst.finding.evidence)
     only = _one_wall_only(stops)
     if only is not None:
         return only
-    lead = "not when it started" if here.kind == "stopped" else "When it started"
     told = worst.finding.rationale
     if worst.finding.help == here.finding.help and worst.kind == "other":  # one cause, told once
-        gap = float(worst.path.wall_distance[worst.path.last])
-        told = f"it stood {gap:.2f} m from the nearest wall."
+        told = say("it stood {gap_m:.2f} m from the nearest wall.", gap_m=worst.gap_m)
     return Finding(
         worst.finding.share,
-        f"{before}{lead} elsewhere (run {worst.path.number}): {told}",
+        _but_elsewhere(here, worst.path.number, told),
         _BY_THE_POSE if worst.kind == "far" else worst.finding.help,
         worst.finding.evidence,
     )
+
+
+def _not_where_it_was_put(here: Stop, worst: Stop) -> Finding:
+    """In a run from elsewhere the turtle was brought away before it drove."""
+    told = started_elsewhere(worst.path.number, worst.finding.rationale)
+    lead = [here.seen] if here.kind == "halfway" else []
+    if here.kind == "stopped":
+        lead = [
+            say(
+                "From the centre it stopped by a command, {gap_m:.2f} m from the wall.",
+                gap_m=here.gap_m,
+            )
+        ]
+    return replace(worst.finding, rationale=joined([*lead, told], " "))
+
+
+def started_elsewhere(run: int, seen: str) -> Phrase:
+    """What was seen in a run that starts elsewhere."""
+    return say("The turtle started elsewhere (run {run}). {seen}", run=run, seen=seen)
+
+
+def _but_elsewhere(here: Stop, run: int, seen: str) -> Phrase:
+    if here.kind == "stopped":
+        return say(
+            "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but not when "
+            "it started elsewhere (run {run}): {seen}",
+            gap_m=here.gap_m,
+            run=run,
+            seen=seen,
+        )
+    text = say("When it started elsewhere (run {run}): {seen}", run=run, seen=seen)
+    return joined([here.seen, text], " ") if here.kind == "halfway" else text
 
 
 def _one_wall_only(stops: list[Stop]) -> Finding | None:
@@ -150,14 +186,23 @@ def _one_wall_only(stops: list[Stop]) -> Finding | None:
     if not at or not into or len(into) < len(touched):
         return None
     worst = into[0]
-    where = "the run from the centre" if worst.path.number == 0 else f"run {worst.path.number}"
-    walls = " and ".join(at)
+    wall = WALL_NAMES[worst.wall]
     return Finding(
         0,
-        f"It stopped at the {walls} wall{'s' if len(at) > 1 else ''}, but not at the {worst.wall} "
-        f"one. In {where}: {worst.finding.rationale}",
-        f"Is the {worst.wall} wall watched, or is its limit too near (x and y never go below 0 or "
-        f"above {worst.path.size_m:.2f})? There are four: x and y each have a smallest and a "
-        "largest value.",
+        say_many(
+            "It stopped at the {walls} wall, but not at the {wall} one. In {which}: {seen}",
+            "It stopped at the {walls} walls, but not at the {wall} one. In {which}: {seen}",
+            len(at),
+            walls=joined([WALL_NAMES[name] for name in at], say(" and ")),
+            wall=wall,
+            which=_which_run(worst.path.number),
+            seen=worst.finding.rationale,
+        ),
+        say(
+            "Is the {wall} wall watched, or is its limit too near (x and y never go below 0 or "
+            "above {size})? There are four: x and y each have a smallest and a largest value.",
+            wall=wall,
+            size=f"{worst.path.size_m:.2f}",
+        ),
         worst.finding.evidence,
     )

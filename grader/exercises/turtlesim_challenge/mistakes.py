@@ -13,6 +13,7 @@ from grader.exercises.turtlesim_challenge import colours
 from grader.exercises.turtlesim_challenge.cause import Cause
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, QUADRANTS, ROMAN, Path
 from grader.exercises.turtlesim_challenge.pens import Coloring, came_after
+from grader.language.phrase import Phrase, joined, listed, say
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S
@@ -30,16 +31,16 @@ EARLY_TICKS, EARLY = 6, 0.15
 NOW_AND_THEN_S = 0.35
 
 WHERE = {
-    1: "x > middle and y > middle",
-    2: "x < middle and y > middle",
-    3: "x < middle and y < middle",
-    4: "x > middle and y < middle",
+    1: say("x > middle and y > middle"),
+    2: say("x < middle and y > middle"),
+    3: say("x < middle and y < middle"),
+    4: say("x > middle and y < middle"),
 }
-MIDDLE_M = int(100 * CENTRE_M) / 100
-MIDDLE = f"the middle of the window is at {MIDDLE_M:g}"
-
-
-SPIRAL_FIRST = "Look at the spiral first: colours are judged in the quadrants that it goes through."
+#: As it stands in a program.
+MIDDLE = f"{int(100 * CENTRE_M) / 100:g}"
+SPIRAL_FIRST = say(
+    "Look at the spiral first: colours are judged in the quadrants that it goes through."
+)
 
 
 def causes(path: Path, found: Coloring, tolerances: Tolerances) -> Iterator[Cause]:
@@ -69,30 +70,45 @@ def causes(path: Path, found: Coloring, tolerances: Tolerances) -> Iterator[Caus
 def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Cause:
     """Quadrants with one colour: 'Quadrants II and IV are both red ...'."""
     same = [group for group in groups if len(group) > 1]
-    told = []
-    for group in same:
-        names = list(dict.fromkeys(colours.name(own[quadrant]) for quadrant in group))
-        of_two = "are both" if len(group) == 2 else "all are"
-        told.append(
-            f"Quadrants {listed([ROMAN[q] for q in group])} "
-            + (f"{of_two} {names[0]}." if len(names) == 1 else f"are {listed(names)}:")
-            + ("" if len(names) == 1 else " no eye tells them apart.")
+    told = joined([_of_one_colour(group, own) for group in same], " ")
+    if not all(len({own[quadrant] for quadrant in group}) == 1 for group in same):
+        help_ = say(
+            "Give each quadrant a colour of its own, one that an eye tells from the others."
         )
-    help_ = "Give each quadrant a colour of its own, one that an eye tells from the others."
-    if all(len({own[quadrant] for quadrant in group}) == 1 for group in same):
-        where = "; ".join(f"{ROMAN[q]} is {WHERE[q]}" for group in same for q in group)
-        if max(map(len, same)) == QUADRANTS:
-            where = "is each of them ever true?"
-        help_ = (
+    elif max(map(len, same)) == QUADRANTS:
+        help_ = say(
             "Give each quadrant a colour of its own. If your node has four colours, look at its "
-            f"conditions: {where}; {MIDDLE}."
-        ).replace("?;", "? As for limits,")
-    return Cause(" ".join(told), help_)
+            "conditions: is each of them ever true? As for limits, the middle of the window is at "
+            "{middle}.",
+            middle=MIDDLE,
+        )
+    else:
+        where = [
+            say("{quadrant} is {condition}", quadrant=ROMAN[q], condition=WHERE[q])
+            for group in same
+            for q in group
+        ]
+        help_ = say(
+            "Give each quadrant a colour of its own. If your node has four colours, look at its "
+            "conditions: {where}; the middle of the window is at {middle}.",
+            where=joined(where, "; "),
+            middle=MIDDLE,
+        )
+    return Cause(told, help_)
 
 
-def listed(words: list[str]) -> str:
-    """Words as a sentence names them: 'I, II and IV'."""
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+def _of_one_colour(group: list[int], own: dict[int, colours.Color | None]) -> Phrase:
+    names = list(dict.fromkeys(colours.name(own[quadrant]) for quadrant in group))
+    quadrants = {"quadrants": listed([ROMAN[q] for q in group])}
+    if len(names) > 1:
+        return say(
+            "Quadrants {quadrants} are {colours}: no eye tells them apart.",
+            colours=listed(names),
+            **quadrants,
+        )
+    if len(group) == 2:
+        return say("Quadrants {quadrants} are both {color}.", color=names[0], **quadrants)
+    return say("Quadrants {quadrants} all are {color}.", color=names[0], **quadrants)
 
 
 def _once(path: Path, found: Coloring) -> Cause | None:
@@ -101,9 +117,15 @@ def _once(path: Path, found: Coloring) -> Cause | None:
     if calls != 1 or entered < LEAST_CALLS or len(found.own) < 2:
         return None
     return Cause(
-        f"set_pen was called once in the whole run; {entered} quadrants were entered.",
-        "Does your node ever see another quadrant? Its conditions have to compare x and y with "
-        f"{MIDDLE_M:g}, the middle. And if it does: what keeps it from calling once more?",
+        say(
+            "set_pen was called once in the whole run; {entered} quadrants were entered.",
+            entered=entered,
+        ),
+        say(
+            "Does your node ever see another quadrant? Its conditions have to compare x and y "
+            "with {middle}, the middle. And if it does: what keeps it from calling once more?",
+            middle=MIDDLE,
+        ),
     )
 
 
@@ -126,20 +148,28 @@ def _before_the_line(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
     if len(seen) < LEAST_CALLS or len(seen) < EARLY * len(early):
         return None
     return Cause(
-        f"The colour changes elsewhere than at x = {MIDDLE_M:g} or y = {MIDDLE_M:g}: about "
-        f"{float(np.median(seen)) * TICK_S:.2f} s before the turtle is there.",
-        "Is it theta, or the time, by which your node tells the quadrants? Compare x and y of the "
-        f"pose with {MIDDLE_M:g}.",
+        say(
+            "The colour changes elsewhere than at x = {middle} or y = {middle}: about "
+            "{early_s:.2f} s before the turtle is there.",
+            middle=MIDDLE,
+            early_s=float(np.median(seen)) * TICK_S,
+        ),
+        say(
+            "Is it theta, or the time, by which your node tells the quadrants? Compare x and y of "
+            "the pose with {middle}.",
+            middle=MIDDLE,
+        ),
     )
 
 
 def _lifted(found: Coloring) -> Cause:
     lifted = [ROMAN[q] for q, color in sorted(found.own.items()) if color is None]
-    where = "everywhere" if len(lifted) == len(found.own) else f"in quadrant {listed(lifted)}"
-    return Cause(
-        f"The pen is off {where}: it draws nothing there.",
-        "What do your requests say of `off`? 0 is a pen that draws.",
+    text = say(
+        "The pen is off in quadrant {quadrants}: it draws nothing there.", quadrants=listed(lifted)
     )
+    if len(lifted) == len(found.own):
+        text = say("The pen is off everywhere: it draws nothing there.")
+    return Cause(text, say("What do your requests say of `off`? 0 is a pen that draws."))
 
 
 def _other_line(path: Path) -> Cause | None:
@@ -159,8 +189,12 @@ def _other_line(path: Path) -> Cause | None:
     if not lines or explained.mean() < MOST:
         return None
     return Cause(
-        f"The colour changes at {' and '.join(lines)}; {MIDDLE}.",
-        "Which limits does your node compare x and y of the pose with?",
+        say(
+            "The colour changes at {lines}; the middle of the window is at {middle}.",
+            lines=joined(lines, say(" and ")),
+            middle=MIDDLE,
+        ),
+        say("Which limits does your node compare x and y of the pose with?"),
     )
 
 
@@ -191,10 +225,14 @@ def _quadrant_before(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
     if total < LEAST_CALLS or fits_before < 0.95 * total or fits_itself >= fits_before:
         return None
     return Cause(
-        "The pen has the colour of the quadrant that the turtle came from, not of the one that it "
-        "came into.",
-        "Of the two quadrants that your node compares, the one before and the new one: for which "
-        "does it ask the colour?",
+        say(
+            "The pen has the colour of the quadrant that the turtle came from, not of the one "
+            "that it came into."
+        ),
+        say(
+            "Of the two quadrants that your node compares, the one before and the new one: for "
+            "which does it ask the colour?"
+        ),
     )
 
 
@@ -207,16 +245,24 @@ def _late(found: Coloring, tolerances: Tolerances) -> Cause | None:
         return None
     typical = float(np.median(late)) * TICK_S
     allowed = float(np.median([found.waits[entry] for entry in found.bad])) * TICK_S
-    text = f"The colour comes {typical:.2f} s after the turtle; {allowed:.2f} s are allowed."
     came = [delay * TICK_S for delay in delays.values() if delay is not None]
     low, high = np.percentile(came, [10, 90])
     if high - low <= NOW_AND_THEN_S:
         return Cause(
-            text, "Call set_pen in the pose callback, at once: what does your node wait for?"
+            say(
+                "The colour comes {late_s:.2f} s after the turtle; {allowed_s:.2f} s are allowed.",
+                late_s=typical,
+                allowed_s=allowed,
+            ),
+            say("Call set_pen in the pose callback, at once: what does your node wait for?"),
         )
-    high = max(float(high), typical)  # what came too late is told in any case
     return Cause(
-        f"The colour comes now and then only, {low:.2f} to {high:.2f} s after the turtle; "
-        f"{allowed:.2f} s are allowed.",
-        "Look at the quadrant in the pose callback, not in a slow timer.",
+        say(
+            "The colour comes now and then only, {low_s:.2f} to {high_s:.2f} s after the turtle; "
+            "{allowed_s:.2f} s are allowed.",
+            low_s=low,
+            high_s=max(float(high), typical),  # what came too late is told in any case
+            allowed_s=allowed,
+        ),
+        say("Look at the quadrant in the pose callback, not in a slow timer."),
     )

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from grader.exercise.driven_path import DrivenPath
+from grader.language.phrase import say
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.events import (
@@ -26,7 +27,12 @@ from turtlesim_py.world.turtle import SIZE_M
 CENTRE_M = SIZE_M / 2.0
 QUADRANTS = 4
 ROMAN = {1: "I", 2: "II", 3: "III", 4: "IV"}
-NAMES = {1: "I (top right)", 2: "II (top left)", 3: "III (bottom left)", 4: "IV (bottom right)"}
+NAMES = {
+    1: say("I (top right)"),
+    2: say("II (top left)"),
+    3: say("III (bottom left)"),
+    4: say("IV (bottom right)"),
+}
 
 
 @dataclass(frozen=True)

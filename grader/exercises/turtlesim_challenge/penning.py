@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grader.exercise.check import Tolerances
-from grader.exercise.sentences import counted
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import colours, mistakes, pens
-from grader.exercises.turtlesim_challenge.edge import in_varied_runs_too
+from grader.exercises.turtlesim_challenge.edge import started_elsewhere
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Entry, Path
 from grader.exercises.turtlesim_challenge.stops import judge_start
+from grader.language.phrase import Phrase, joined, say, say_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.turtle import TICK_S
@@ -27,8 +27,8 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if not path.calls(SetPen):
         return Finding(
             0,
-            "The pen was never changed.",
-            "Call the service /turtle1/set_pen when the turtle enters another quadrant.",
+            say("The pen was never changed."),
+            say("Call the service /turtle1/set_pen when the turtle enters another quadrant."),
         )
     nominal = pens.coloring(path, tolerances, QUADRANTS)
     paths = [path, *(Path(run, number) for number, run in enumerate(recordings.varied, start=1))]
@@ -40,23 +40,36 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
     worst = min(telling, key=lambda n: colorings[n].share)
     share = colorings[worst].share
     if share >= 1:
-        return Finding(
-            1, _all_right(path, nominal, tolerances) + in_varied_runs_too(recordings) + "."
-        )
+        entered = len(path.entries(tolerances["band_m"]))
+        return Finding(1, _all_right(len(nominal.judged), entered, len(recordings.varied)))
     # What the run from the centre shows as well is told of that one.
     shown = 0 if nominal.share <= SHOWS_IT_TOO else worst
     found, path = colorings[shown], paths[shown]
     sentences, help_ = _told(path, found, tolerances)
     if shown:
-        sentences[0] = f"When the turtle started elsewhere (run {worst}): {sentences[0]}"
+        sentences[0] = say(
+            "When the turtle started elsewhere (run {run}): {seen}", run=worst, seen=sentences[0]
+        )
     sentences += _points(colorings[worst], worst)
-    return Finding(share, " ".join(sentences), help_, _evidence(path, found, tolerances))
+    return Finding(share, joined(sentences, " "), help_, _evidence(path, found, tolerances))
 
 
-def _all_right(path: Path, nominal: pens.Coloring, tolerances: Tolerances) -> str:
-    right, entered = len(nominal.judged), len(path.entries(tolerances["band_m"]))
-    short = "" if right == entered else " (short stays not counted)"
-    return f"All {counted(right, 'entry', 'entries')} gave the pen its quadrant's colour{short}"
+def _all_right(right: int, entered: int, varied: int) -> Phrase:
+    elsewhere = say_many(
+        ", and in the run that starts elsewhere too",
+        ", and in the {n} runs that start elsewhere too",
+        varied,
+    )
+    return say(
+        "All {entries} gave the pen its quadrant's colour{short}{elsewhere}.",
+        entries=_entries(right),
+        short="" if right == entered else say(" (short stays not counted)"),
+        elsewhere=elsewhere if varied else "",
+    )
+
+
+def _entries(number: int) -> Phrase:
+    return say_many("{n} entry", "{n} entries", number)
 
 
 def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pens.Coloring:
@@ -73,15 +86,14 @@ def first_moved_away(recordings: Recordings) -> Finding | None:
     for number, recording in enumerate(recordings.varied, start=1):
         void = judge_start(Path(recording, number))
         if void is not None:
-            told = f"The turtle started elsewhere (run {number}). {void.rationale}"
-            return replace(void, rationale=told)
+            return replace(void, rationale=started_elsewhere(number, void.rationale))
     return None
 
 
 def _told(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple[list[str], str]:
     """What was seen, the cause first, and what to do."""
     if not found.judged:
-        seen = "The turtle left no quadrant in which there was time to change the colour."
+        seen = say("The turtle left no quadrant in which there was time to change the colour.")
         return [seen], mistakes.SPIRAL_FIRST
     causes = list(mistakes.causes(path, found, tolerances))
     sentences = [cause.text for cause in causes]
@@ -89,20 +101,27 @@ def _told(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple[lis
     if found.bad:
         right, of = len(found.judged) - len(found.bad), len(found.judged)
         sentences.append(
-            f"{right} of {counted(of, 'entry', 'entries')} into a quadrant gave the pen that "
-            "quadrant's colour in time."
+            say(
+                "{right} of {entries} into a quadrant gave the pen that quadrant's colour in time.",
+                right=right,
+                entries=_entries(of),
+            )
         )
     sentences += _told_demanded(found, tolerances)
     if found.wanted > len(found.own):
-        entered = len(found.own)
-        were = "was" if entered == 1 else "were"
-        sentences.append(f"Of the four quadrants {entered} {were} entered for long enough.")
+        sentences.append(
+            say_many(
+                "Of the four quadrants {n} was entered for long enough.",
+                "Of the four quadrants {n} were entered for long enough.",
+                len(found.own),
+            )
+        )
     if not found.tells:
-        sentences.append("One quadrant alone tells nothing.")
+        sentences.append(say("One quadrant alone tells nothing."))
     return sentences, help_
 
 
-_LOOK_THERE = (
+_LOOK_THERE = say(
     "Look at the first moment that is named: in which quadrant is the turtle, and which colour "
     "does your node ask for?"
 )
@@ -114,14 +133,26 @@ def _points(found: pens.Coloring, run: int) -> list[str]:
         return []
     right, of = len(found.judged) - len(found.bad), len(found.judged)
     wanted = max(found.wanted, len(found.own))
-    where = f" in run {run}" if run else ""
-    return [f"Points{where}: {right}/{of} (entries) times {found.different}/{wanted} (colours)."]
+    values = {"right": right, "of": of, "different": found.different, "wanted": wanted}
+    if run:
+        return [
+            say(
+                "Points in run {run}: {right}/{of} (entries) times {different}/{wanted} (colours).",
+                run=run,
+                **values,
+            )
+        ]
+    return [say("Points: {right}/{of} (entries) times {different}/{wanted} (colours).", **values)]
 
 
 def _told_demanded(found: pens.Coloring, tolerances: Tolerances) -> list[str]:
     asked = pens.demanded(tolerances)
     return [
-        f"Quadrant {ROMAN[quadrant]} is to be {colours.name(asked[quadrant])}."
+        say(
+            "Quadrant {quadrant} is to be {color}.",
+            quadrant=ROMAN[quadrant],
+            color=colours.name(asked[quadrant]),
+        )
         for quadrant in sorted({entry.quadrant for entry in found.bad} & asked.keys())
     ]
 
@@ -135,17 +166,31 @@ def _evidence(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple
     return tuple(path.at(e.tick, _note(e, found, tolerances)) for e in shown[:SHOWN])
 
 
-def _note(entry: Entry, found: pens.Coloring, tolerances: Tolerances) -> str:
-    enters = f"enters quadrant {NAMES[entry.quadrant]}"
+def _note(entry: Entry, found: pens.Coloring, tolerances: Tolerances) -> Phrase:
+    entered = {"quadrant": NAMES[entry.quadrant]}
     own = found.own[entry.quadrant]
     before = colours.name(found.colors[entry.settled(found.waits[entry])])
     if entry not in found.bad:
-        return f"{enters}, in {before}"
+        return say("enters quadrant {quadrant}, in {color}", color=before, **entered)
     if own is None:
-        return f"{enters} with the pen off"
+        return say("enters quadrant {quadrant} with the pen off", **entered)
+    color = colours.name(own)
     delay = pens.came_after(entry, found, tolerances["color_distance"])
     if delay is None:
-        return f"{enters}, and draws in {before} there, not in {colours.name(own)}"
+        return say(
+            "enters quadrant {quadrant}, and draws in {before} there, not in {color}",
+            before=before,
+            color=color,
+            **entered,
+        )
     if delay <= found.waits[entry]:
-        return f"{enters}; its colour, {colours.name(own)}, does not stay"
-    return f"{enters}; {colours.name(own)} comes {delay * TICK_S:.2f} s later, until then {before}"
+        return say(
+            "enters quadrant {quadrant}; its colour, {color}, does not stay", color=color, **entered
+        )
+    return say(
+        "enters quadrant {quadrant}; {color} comes {late_s:.2f} s later, until then {before}",
+        color=color,
+        late_s=delay * TICK_S,
+        before=before,
+        **entered,
+    )

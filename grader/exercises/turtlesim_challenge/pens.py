@@ -13,6 +13,7 @@ import numpy as np
 from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge.colours import Color, alike, groups
 from grader.exercises.turtlesim_challenge.path import QUADRANTS, Entry, Path
+from grader.language.phrase import say
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.canvas import Pen
@@ -126,19 +127,35 @@ def check_demanded(asked: Any) -> None:
         ValueError: it is no mapping of quadrants, 1 to 4, to different colours.
     """
     if not isinstance(asked, dict):
-        raise ValueError(f"expected quadrants with colours, found {asked!r}")
+        raise ValueError(say("expected quadrants with colours, found {found}", found=repr(asked)))
     for quadrant, color in asked.items():
         if type(quadrant) is not int or not 1 <= quadrant <= QUADRANTS:
-            raise ValueError(f"expected quadrants from 1 to {QUADRANTS}, found {quadrant!r}")
+            raise ValueError(
+                say(
+                    "expected quadrants from 1 to {most}, found {found}",
+                    most=QUADRANTS,
+                    found=repr(quadrant),
+                )
+            )
         is_color = isinstance(color, list) and len(color) == len("rgb")
         if not is_color or not all(type(c) is int and 0 <= c <= 255 for c in color):
             raise ValueError(
-                f"{quadrant}: expected [red, green, blue], each a whole number from 0 to 255, "
-                f"found {color!r}"
+                say(
+                    "{quadrant}: expected [red, green, blue], each a whole number from 0 to 255, "
+                    "found {found}",
+                    quadrant=quadrant,
+                    found=repr(color),
+                )
             )
     for (one, color), (another, other) in combinations(asked.items(), 2):
         if color == other:
-            raise ValueError(f"{one} and {another} are the same; expected different colours")
+            raise ValueError(
+                say(
+                    "{one} and {another} are the same; expected different colours",
+                    one=one,
+                    another=another,
+                )
+            )
 
 
 def came_after(entry: Entry, coloring: Coloring, distance: float) -> int | None:

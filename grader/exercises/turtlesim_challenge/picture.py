@@ -6,6 +6,7 @@ from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Finding
 from grader.exercises.turtlesim_challenge import colours, ink, mistakes, pens, shape
 from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path
+from grader.language.phrase import joined, say
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.events import SetPen
@@ -19,7 +20,10 @@ def judge_picture(recording: Recording, tolerances: Tolerances) -> Finding:
     if empty:
         return Finding(
             0,
-            f"There is next to nothing drawn in quadrant {', '.join(empty)}.",
+            say(
+                "There is next to nothing drawn in quadrant {quadrants}.",
+                quadrants=joined(empty, ", "),
+            ),
             _how_to_draw(recording, near),
         )
     mixed = _mixed(quarters, tolerances)
@@ -34,10 +38,13 @@ def judge_picture(recording: Recording, tolerances: Tolerances) -> Finding:
         shares = ", ".join(f"{ROMAN[q]} {int(100 * quarters[q].share)} %" for q in mixed)
         return Finding(
             0,
-            f"Some quarters mix colours. The main colour should cover "
-            f"{100 * tolerances['own_ink']:g} % or more of what is drawn there; it covers only: "
-            f"{shares}.",
-            "The colour should change where the turtle enters a quadrant.",
+            say(
+                "Some quarters mix colours. The main colour should cover {own_ink:g} % or more of "
+                "what is drawn there; it covers only: {shares}.",
+                own_ink=100 * tolerances["own_ink"],
+                shares=shares,
+            ),
+            say("The colour should change where the turtle enters a quadrant."),
         )
     own = {quadrant: quarter.color for quadrant, quarter in quarters.items()}
     groups = colours.groups(own, near)
@@ -46,7 +53,7 @@ def judge_picture(recording: Recording, tolerances: Tolerances) -> Finding:
         hardly_driven = not shape.shown(Path(recording), tolerances)
         return Finding(0, cause.text, mistakes.SPIRAL_FIRST if hardly_driven else cause.help)
     total = sum(quarter.pixels for quarter in quarters.values())
-    return Finding(1, f"Four quarters, four colours, {total} painted pixels.")
+    return Finding(1, say("Four quarters, four colours, {total} painted pixels.", total=total))
 
 
 def _mixed(quarters: dict[int, ink.Quarter], tolerances: Tolerances) -> list[int]:
@@ -69,8 +76,10 @@ def _pauses(recording: Recording, tolerances: Tolerances) -> list[tuple[int, int
 def _how_to_draw(recording: Recording, near: float) -> str:
     calls = TurtleTrace.of(recording.trace).of_kind(SetPen)
     if any(call.off for call in calls):
-        return "The pen is off: look at what your requests say of `off`; 0 is a pen that draws."
+        return say(
+            "The pen is off: look at what your requests say of `off`; 0 is a pen that draws."
+        )
     background = ink.background(recording)
     if any(colours.alike((call.r, call.g, call.b), background, near) for call in calls):
-        return "What is drawn in the colour of the background cannot be seen."
-    return "Draw on until the spiral fills the window."
+        return say("What is drawn in the colour of the background cannot be seen.")
+    return say("Draw on until the spiral fills the window.")

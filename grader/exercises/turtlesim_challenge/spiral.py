@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import why_no_wider, why_so_few_turns
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.language.phrase import say
+from grader.language.phrase import Phrase, joined, say
 
 
 def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
@@ -20,21 +22,7 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
     parts["growth"] = (rest, *_growth(path, tolerances))
     missed = [text for _, text, _ in parts.values() if text]
     if not missed:
-        turns, _ = shape.turns(path)
-        growth = shape.growth(path)
-        sizes = say(
-            "{growth_min:.2f} to {growth_max:.2f} m",
-            growth_min=growth.min(),
-            growth_max=growth.max(),
-        )
-        return Finding(
-            1,
-            say(
-                "{turns:.1f} turns from the centre, each wider by {sizes}.",
-                turns=turns,
-                sizes=sizes,
-            ),
-        )
+        return Finding(1, _all_right(path))
     cause = None
     if parts["growth"][1]:
         few = shape.turns(path)[0] < tolerances["turns"]
@@ -42,14 +30,9 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
     if cause is not None:
         missed.insert(0, cause.text)
     good = {name: share for name, (share, text, _) in parts.items() if not text}
-    earned = [
-        say("{share:.0f} % for the {name}", share=100 * share, name=name)
-        for name, share in good.items()
-    ]
-    told = " and ".join(earned) if earned else "nothing"
     return Finding(
         sum(good.values()),
-        say("{missed} Of the points it earned {told}.", missed=" ".join(missed), told=told),
+        joined([*missed, _earned(good)], " "),
         cause.help
         if cause is not None
         else say(
@@ -59,6 +42,33 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
     )
 
 
+def _all_right(path: Path) -> Phrase:
+    turns, _ = shape.turns(path)
+    growth = shape.growth(path)
+    sizes = say(
+        "{growth_min:.2f} to {growth_max:.2f} m", growth_min=growth.min(), growth_max=growth.max()
+    )
+    return say(
+        "{turns:.1f} turns from the centre, each wider by {sizes}.", turns=turns, sizes=sizes
+    )
+
+
+def _earned(good: Mapping[str, float]) -> Phrase:
+    """What the parts that are right have earned."""
+    if not good:
+        return say("Of the points it earned nothing.")
+    told = [
+        say("{share:.0f} % {part}", share=100 * share, part=_FOR[name])
+        for name, share in good.items()
+    ]
+    return say("Of the points it earned {parts}.", parts=joined(told, say(" and ")))
+
+
+_FOR = {
+    "start": say("for the start"),
+    "turns": say("for the turns"),
+    "growth": say("for the growth"),
+}
 #: What is wrong with a part, '' for nothing, and where to see it.
 Part = tuple[str, tuple[Evidence, ...]]
 
@@ -67,11 +77,11 @@ def _start(path: Path, tolerances: Tolerances) -> Part:
     start_m = float(path.distance[path.first])
     if start_m <= tolerances["start_m"]:
         return "", ()
-    evidence = path.at(int(path.ticks[path.first]), "the start")
+    evidence = path.at(int(path.ticks[path.first]), say("the start"))
     text = say(
-        "The path starts {start_m:.2f} m from the centre; {start_m2:g} m is fine.",
+        "The path starts {start_m:.2f} m from the centre; {limit_m:g} m is fine.",
         start_m=start_m,
-        start_m2=tolerances["start_m"],
+        limit_m=tolerances["start_m"],
     )
     return text, (evidence,)
 
@@ -98,11 +108,11 @@ def _turns(path: Path, tolerances: Tolerances) -> Part:
         return (
             say(
                 "The turtle turned {turns:.1f} times, but its path goes only "
-                "{rounds:.1f} times round any centre; at least {turns2:g} times are "
+                "{rounds:.1f} times round any centre; at least {wanted:g} times are "
                 "asked for.",
                 turns=turns,
                 rounds=rounds,
-                turns2=tolerances["turns"],
+                wanted=tolerances["turns"],
             )
         ), ()
     return "", ()

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from grader.exercises.turtlesim_challenge.commands import (
     why_so_few_turns,
 )
 from grader.exercises.turtlesim_challenge.path import Path
+from grader.language.phrase import Phrase, joined, say
 from grader.scenes.turtlesim.driving import REST_TICKS
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
@@ -27,10 +29,17 @@ from turtlesim_py.world.turtle import TICK_S
 #: What is left of the points of a stop near an edge that is not quite one: because no commands
 #: came any more, or while the turtle turns on and on.
 HALF = 0.5
-HALF_OF_IT = " That is half of the points."
+HALF_OF_IT = say("That is half of the points.")
 #: Who is told to stop so soon after a wall was touched has waited for that.
 AT_THE_WALL_TICKS = 32
 WALLS = ("left", "bottom", "right", "top")
+#: How sentences name them: "the {wall} wall". The keys tell translators which left is meant.
+WALL_NAMES = {
+    "left": Phrase("left", say("left (of a wall)").key),
+    "bottom": Phrase("bottom", say("bottom (of a wall)").key),
+    "right": Phrase("right", say("right (of a wall)").key),
+    "top": Phrase("top", say("top (of a wall)").key),
+}
 
 #: How a run ended. `late`: the time was up while a spiral still grew, and had not
 #: touched a wall; `far`: told to stop where no wall is near.
@@ -45,12 +54,19 @@ class Stop:
         finding: what it is worth for itself.
         wall: the wall that it stopped at or ran into; '' for none.
         path: the run's.
+        seen: the finding's rationale without what that is worth.
     """
 
     kind: Kind
     finding: Finding
     path: Path
     wall: str = ""
+    seen: str = ""
+
+    @property
+    def gap_m(self) -> float:
+        """How far from the nearest wall it drove no more [m]."""
+        return float(self.path.wall_distance[self.path.last])
 
 
 def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
@@ -74,7 +90,10 @@ def judge_stop(path: Path, tolerances: Tolerances) -> Stop:
         return _far(path, gap, tolerances)
     finding = _told_to_rest(path, gap)
     kind: Kind = "stopped" if finding.share >= 1 else "halfway" if finding.share else "other"
-    return Stop(kind, finding, path, nearest_wall(path, path.last))
+    seen = finding.rationale
+    if kind == "halfway":
+        finding = replace(finding, rationale=joined([seen, HALF_OF_IT], " "))
+    return Stop(kind, finding, path, nearest_wall(path, path.last), seen)
 
 
 def judge_start(path: Path) -> Finding | None:
@@ -84,11 +103,17 @@ def judge_start(path: Path) -> Finding | None:
         return None
     return Finding(
         0,
-        f"This run does not count: at {call.tick * TICK_S:.2f} s your node had the turtle moved "
-        f"away from where it was put, by {call.op}.",
-        "Begin wherever the turtle is, and read from the pose where that is; reset, teleports, "
-        "kill and spawn put it somewhere else.",
-        (path.at(call.tick, f"put here by {call.op}"),),
+        say(
+            "This run does not count: at {time_s:.2f} s your node had the turtle moved "
+            "away from where it was put, by {call}.",
+            time_s=call.tick * TICK_S,
+            call=call.op,
+        ),
+        say(
+            "Begin wherever the turtle is, and read from the pose where that is; reset, "
+            "teleports, kill and spawn put it somewhere else."
+        ),
+        (path.at(call.tick, say("put here by {call}", call=call.op)),),
     )
 
 
@@ -117,61 +142,88 @@ def _to_walls(path: Path) -> np.ndarray:
 
 
 def _touched(path: Path, wall: str, tolerances: Tolerances) -> Finding:
-    touched = path.at(int(path.ticks[path.wall or 0]), "it touches the wall here")
-    text = f"The turtle ran into the {wall} wall at {touched.time_s:.1f} s"
+    touched = path.at(int(path.ticks[path.wall or 0]), say("it touches the wall here"))
+    ran = {"wall": WALL_NAMES[wall], "time_s": touched.time_s}
     fast = too_fast(path, touched.tick)
     if fast is None and shape.turns(path)[0] < 1:
         fast = why_so_few_turns(path)
     if fast is not None:
-        return Finding(0, f"{fast.text} {text}.", fast.help, (touched,))
+        text = say("The turtle ran into the {wall} wall at {time_s:.1f} s.", **ran)
+        return Finding(0, joined([fast.text, text], " "), fast.help, (touched,))
     pair = drove_on(path, touched.tick, tolerances["edge_m"])
     if pair is None and not any(stands_still(call) for call in path.calls(CmdVel)):
-        text += ", and no Twist of zeros was ever sent"
-        return Finding(0, f"{text}.", _IS_IT_EVER_TRUE, (touched,))
+        text = say(
+            "The turtle ran into the {wall} wall at {time_s:.1f} s, and no Twist of zeros was "
+            "ever sent.",
+            **ran,
+        )
+        return Finding(0, text, _IS_IT_EVER_TRUE, (touched,))
     if pair is None:
-        return _too_late(path, text, touched)
+        return _too_late(path, ran, touched)
     stop, further = pair
-    told = path.at(stop.tick, "told to stop here")
-    return Finding(0, f"{text}: {_stop_and_go(stop, further)}.", _ONE_SAYS_STOP, (told, touched))
+    told = path.at(stop.tick, _TOLD_TO_STOP)
+    text = say(
+        "The turtle ran into the {wall} wall at {time_s:.1f} s: {what_came}.",
+        what_came=_stop_and_go(stop, further),
+        **ran,
+    )
+    return Finding(0, text, _ONE_SAYS_STOP, (told, touched))
 
 
-def _too_late(path: Path, text: str, touched: Evidence) -> Finding:
+def _too_late(path: Path, ran: Mapping[str, Any], touched: Evidence) -> Finding:
     """It was told to stop, at some time, but not before it was at the wall."""
     told = next(c for c in path.calls(CmdVel) if stands_still(c))
-    help_ = "Watch the pose, and stop before a wall is reached."
-    if 0 <= told.tick - touched.tick <= AT_THE_WALL_TICKS:
-        text = f"{text}, and was told to stop only then"
-        help_ = (
-            "The limits are too near the walls: x and y never go below 0 or above "
-            f"{path.size_m:.2f}. Stop where one of them comes below 1, say, or above 10."
-        )
-    return Finding(0, f"{text}.", help_, (touched,))
+    if not 0 <= told.tick - touched.tick <= AT_THE_WALL_TICKS:
+        text = say("The turtle ran into the {wall} wall at {time_s:.1f} s.", **ran)
+        help_ = say("Watch the pose, and stop before a wall is reached.")
+        return Finding(0, text, help_, (touched,))
+    return Finding(
+        0,
+        say(
+            "The turtle ran into the {wall} wall at {time_s:.1f} s, and was told to stop only "
+            "then.",
+            **ran,
+        ),
+        say(
+            "The limits are too near the walls: x and y never go below 0 or above {size}. Stop "
+            "where one of them comes below 1, say, or above 10.",
+            size=f"{path.size_m:.2f}",
+        ),
+        (touched,),
+    )
 
 
-_IS_IT_EVER_TRUE = (
+_TOLD_TO_STOP = say("told to stop here")
+_LAST_PLACE = say("the last place it moved to")
+_IS_IT_EVER_TRUE = say(
     "Watch the pose, and stop before a wall is reached. If your node does so: is the condition "
     "ever true? `and` or `or`? How far from the walls, at 0 and 11.09, are its limits?"
 )
-_ONE_SAYS_STOP = (
+_ONE_SAYS_STOP = say(
     "Who stops must also cease to drive: what else in your node publishes velocities, and how does "
     "it learn that the turtle is to stand?"
 )
 
 
-def _stop_and_go(stop: CmdVel, further: CmdVel) -> str:
-    return (
-        f"your node stopped it at {stop.tick * TICK_S:.2f} s and then sent another command, to "
-        f"drive on, at {further.tick * TICK_S:.2f} s"
+def _stop_and_go(stop: CmdVel, further: CmdVel) -> Phrase:
+    return say(
+        "your node stopped it at {stop_s:.2f} s and then sent another command, to drive on, at "
+        "{further_s:.2f} s",
+        stop_s=stop.tick * TICK_S,
+        further_s=further.tick * TICK_S,
     )
 
 
 def _lost(path: Path, tick: int) -> Finding:
-    lost = path.at(tick, "the last place it was at")
+    lost = path.at(tick, say("the last place it was at"))
     return Finding(
         0,
-        f"At {lost.time_s:.1f} s your node sent a velocity that is not a number, and the "
-        "turtle was nowhere from then on.",
-        "Which division or logarithm can give nan or inf?",
+        say(
+            "At {time_s:.1f} s your node sent a velocity that is not a number, and the "
+            "turtle was nowhere from then on.",
+            time_s=lost.time_s,
+        ),
+        say("Which division or logarithm can give nan or inf?"),
         (lost,),
     )
 
@@ -187,46 +239,68 @@ def _is_on_its_way(path: Path, tolerances: Tolerances) -> bool:
 
 
 def _late(path: Path) -> Finding:
-    seconds = f"{path.recording.run.simulated_s:.0f} s"
-    end = path.at(path.stop_tick, "here it was when the time was up")
+    seconds = path.recording.run.simulated_s
+    end = path.at(path.stop_tick, say("here it was when the time was up"))
     return Finding(
         0,
-        f"A run lasts {seconds}, and then the spiral was still growing, "
-        f"{float(path.wall_distance.min()):.2f} m away from the nearest wall: whether the turtle "
-        "would have stopped there was not to be seen.",
-        "Nothing is wrong with the way so far: let the spiral grow faster, so that it comes near "
-        f"a wall within {seconds}.",
+        say(
+            "A run lasts {seconds:.0f} s, and then the spiral was still growing, {away_m:.2f} m "
+            "away from the nearest wall: whether the turtle would have stopped there was not to "
+            "be seen.",
+            seconds=seconds,
+            away_m=path.wall_distance.min(),
+        ),
+        say(
+            "Nothing is wrong with the way so far: let the spiral grow faster, so that it comes "
+            "near a wall within {seconds:.0f} s.",
+            seconds=seconds,
+        ),
         (end,),
     )
 
 
 def _moving(path: Path, tolerances: Tolerances) -> Finding:
-    seconds = f"{path.recording.run.simulated_s:.0f} s"
-    end = path.at(path.stop_tick, "the last place it moved to")
-    text = f"The turtle was still moving after {seconds}"
-    if path.recording.run.outcome == "time_limit":
-        text = f"The turtle was still going when the time ({seconds}) was up"
+    end = path.at(path.stop_tick, _LAST_PLACE)
+    text = _was_still_moving(path)
     pair = drove_on(path, path.stop_tick, tolerances["edge_m"])
     if pair is not None:
         stop, further = pair
-        told = path.at(stop.tick, "told to stop here")
-        return Finding(0, f"{text}: {_stop_and_go(stop, further)}.", _ONE_SAYS_STOP, (told, end))
+        told = path.at(stop.tick, _TOLD_TO_STOP)
+        text = say("{moving}: {what_came}.", moving=text, what_came=_stop_and_go(stop, further))
+        return Finding(0, text, _ONE_SAYS_STOP, (told, end))
     nearest = float(path.wall_distance.min()) if len(path) else 0.0
-    if nearest > tolerances["edge_m"]:
-        text = f"{text}, and never came nearer to a wall than {nearest:.2f} m."
-        cause = why_no_wider(path)
+    if nearest <= tolerances["edge_m"]:
         return Finding(
             0,
-            text if cause is None else f"{cause.text} {text}",
-            "The spiral has to grow until it is near an edge." if cause is None else cause.help,
+            say(
+                "{moving}; it had come as near to a wall as {nearest_m:.2f} m.",
+                moving=text,
+                nearest_m=nearest,
+            ),
+            say(
+                "Compare x and y of the pose with the size of the window, and publish a zero Twist."
+            ),
             (end,),
         )
-    return Finding(
-        0,
-        f"{text}; it had come as near to a wall as {nearest:.2f} m.",
-        "Compare x and y of the pose with the size of the window, and publish a zero Twist.",
-        (end,),
+    text = say(
+        "{moving}, and never came nearer to a wall than {nearest_m:.2f} m.",
+        moving=text,
+        nearest_m=nearest,
     )
+    cause = why_no_wider(path)
+    if cause is None:
+        return Finding(0, text, say("The spiral has to grow until it is near an edge."), (end,))
+    return Finding(0, joined([cause.text, text], " "), cause.help, (end,))
+
+
+def _was_still_moving(path: Path) -> Phrase:
+    run = path.recording.run
+    if run.outcome == "time_limit":
+        return say(
+            "The turtle was still going when the time ({seconds:.0f} s) was up",
+            seconds=run.simulated_s,
+        )
+    return say("The turtle was still moving after {seconds:.0f} s", seconds=run.simulated_s)
 
 
 def _goes_on(path: Path) -> bool:
@@ -237,42 +311,48 @@ def _goes_on(path: Path) -> bool:
 
 def _far(path: Path, gap: float, tolerances: Tolerances) -> Stop:
     """It came to rest far from every wall: told so, or carried there by its last command."""
-    end = path.at(path.stop_tick, "the last place it moved to")
-    rested = (
-        f"{gap:.2f} m from the nearest wall; {tolerances['edge_m']:g} m or less is near."
-        f"{how_it_ended(path.recording)}"
-    )
+    end = path.at(path.stop_tick, _LAST_PLACE)
+    ending = how_it_ended(path.recording)
+    rested = {"gap_m": gap, "near_m": tolerances["edge_m"]}
     unstopped = _unstopped(path)
     if unstopped is None:
-        text = f"The turtle came to rest {rested}"
-        return Stop(
-            "far",
-            Finding(0, text, "What should make it stop is the pose, near an edge.", (end,)),
-            path,
+        text = say(
+            "The turtle came to rest {gap_m:.2f} m from the nearest wall; {near_m:g} m or less is "
+            "near.",
+            **rested,
         )
-    text, help_ = unstopped
-    return Stop("other", Finding(0, f"{text} It came to rest {rested}", help_, (end,)), path)
+        help_ = say("What should make it stop is the pose, near an edge.")
+        return Stop("far", Finding(0, joined([text, ending]), help_, (end,)), path)
+    why, help_ = unstopped
+    text = say(
+        "It came to rest {gap_m:.2f} m from the nearest wall; {near_m:g} m or less is near.",
+        **rested,
+    )
+    return Stop("other", Finding(0, joined([why, " ", text, ending]), help_, (end,)), path)
 
 
-def _unstopped(path: Path) -> tuple[str, str] | None:
+def _unstopped(path: Path) -> tuple[Phrase, Phrase] | None:
     """Why no command to stop was in force when it drove no more, with help; None: one was."""
     drove = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
     if drove and not drove[-1].linear[0]:
         return None
     stop = overruled_stop(drove)
     if stop is not None:
-        return (
-            f"The turtle was told to stop at {stop.tick * TICK_S:.2f} s, and in the same moment to "
-            "drive on: the last command counts."
-        ), "After the Twist of zeros the same callback publishes once more: is a `return` missing?"
-    return (
+        return say(
+            "The turtle was told to stop at {time_s:.2f} s, and in the same moment to "
+            "drive on: the last command counts.",
+            time_s=stop.tick * TICK_S,
+        ), say(
+            "After the Twist of zeros the same callback publishes once more: is a `return` missing?"
+        )
+    return say(
         "The turtle came to rest because no more commands came, not because it was told to stop."
-    ), "Publish a Twist of zeros to stop."
+    ), say("Publish a Twist of zeros to stop.")
 
 
 def _told_to_rest(path: Path, gap: float) -> Finding:
     """Whether it was a command that ended all motion, near an edge."""
-    end = path.at(path.stop_tick, "the last place it moved to")
+    end = path.at(path.stop_tick, _LAST_PLACE)
     run = path.recording.run
     ending = how_it_ended(path.recording)
     # What counts is the command that was in force when the turtle drove no more, and, where it
@@ -283,28 +363,25 @@ def _told_to_rest(path: Path, gap: float) -> Finding:
     unstopped = _unstopped(path)
     if unstopped is not None:
         by_error = run.outcome in ("crashed", "killed", "stalled")
-        text, help_ = unstopped
-        return Finding(
-            0 if by_error else HALF,
-            f"{text} It stood {gap:.2f} m from the wall.{ending}"
-            + ("" if by_error else HALF_OF_IT),
-            help_,
-            (end,),
-        )
+        why, help_ = unstopped
+        stood = say("It stood {gap_m:.2f} m from the wall.", gap_m=gap)
+        text = joined([why, " ", stood, ending])
+        return Finding(0 if by_error else HALF, text, help_, (end,))
     if path.rest >= len(path) - 2:
-        return Finding(
-            HALF,
-            f"The turtle drove no farther {gap:.2f} m from the wall, but it turned on the spot "
-            f"until the run was over.{HALF_OF_IT}",
-            "A Twist of zeros stops turning, too: what does angular.z say?",
-            (end,),
+        text = say(
+            "The turtle drove no farther {gap_m:.2f} m from the wall, but it turned on the spot "
+            "until the run was over.",
+            gap_m=gap,
         )
+        help_ = say("A Twist of zeros stops turning, too: what does angular.z say?")
+        return Finding(HALF, text, help_, (end,))
     if not stands_still(turned[-1]):
-        return Finding(
-            HALF,
-            f"The turtle was told to drive no farther {gap:.2f} m from the wall, and to turn on "
-            f"the spot; that ended only because no more commands came.{ending}{HALF_OF_IT}",
-            "Publish a Twist of zeros to stop, angular.z as well.",
-            (end,),
+        text = say(
+            "The turtle was told to drive no farther {gap_m:.2f} m from the wall, and to turn on "
+            "the spot; that ended only because no more commands came.",
+            gap_m=gap,
         )
-    return Finding(1, f"stopped by a command, {gap:.2f} m from the wall", evidence=(end,))
+        help_ = say("Publish a Twist of zeros to stop, angular.z as well.")
+        return Finding(HALF, joined([text, ending]), help_, (end,))
+    text = say("It stopped by a command, {gap_m:.2f} m from the wall.", gap_m=gap)
+    return Finding(1, text, evidence=(end,))

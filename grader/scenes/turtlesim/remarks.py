@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from grader.language.phrase import say, say_many
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros.interfaces import NEWER, OLDER
 from turtlesim_py.world.events import (
@@ -20,12 +21,12 @@ from turtlesim_py.world.turtle import TICK_S
 
 #: Calls that change the arena other than by driving, and what they do.
 _INTERVENTIONS: dict[type[Event], str] = {
-    TeleportAbsolute: "it moves a turtle without driving",
-    TeleportRelative: "it moves a turtle without driving",
-    Spawn: "it adds a turtle",
-    Kill: "it removes a turtle",
-    Reset: "it starts the arena anew",
-    Clear: "it wipes the drawing",
+    TeleportAbsolute: say("it moves a turtle without driving"),
+    TeleportRelative: say("it moves a turtle without driving"),
+    Spawn: say("it adds a turtle"),
+    Kill: say("it removes a turtle"),
+    Reset: say("it starts the arena anew"),
+    Clear: say("it wipes the drawing"),
 }
 _POSE = f"/{FIRST_TURTLE}/pose"
 
@@ -41,26 +42,43 @@ def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDE
         published: the topics that the submission published on.
         interfaces: the package whose messages it was given.
     """
-    found = []
+    found: list[str] = []
     if interfaces == NEWER:
         found.append(
-            f"The node was run with the messages of {NEWER}: ROS 2 has them from Kilted on, "
-            f"in Jazzy they are those of {OLDER}."
+            say(
+                "The node was run with the messages of {newer}: ROS 2 has them from Kilted on, "
+                "in Jazzy they are those of {older}.",
+                newer=NEWER,
+                older=OLDER,
+            )
         )
     for kind, effect in _INTERVENTIONS.items():
         calls = [event for event in trace.events if isinstance(event, kind)]
         if calls:
-            first_s = calls[0].tick * TICK_S
-            times = "once" if len(calls) == 1 else f"{len(calls)} times"
-            found.append(f"The node called {kind.op} {times}, first at {first_s:.2f} s: {effect}.")
+            found.append(
+                say_many(
+                    "The node called {call} once, first at {first_s:.2f} s: {effect}.",
+                    "The node called {call} {n} times, first at {first_s:.2f} s: {effect}.",
+                    len(calls),
+                    call=kind.op,
+                    first_s=calls[0].tick * TICK_S,
+                    effect=effect,
+                )
+            )
     thin = [event for event in trace.events if isinstance(event, SetPen) and _draws_with_0(event)]
     if thin:
         found.append(
-            f"The pen's width is 0, first at {thin[0].tick * TICK_S:.2f} s: that draws like width "
-            "1; what lifts the pen is off = 1."
+            say(
+                "The pen's width is 0, first at {first_s:.2f} s: that draws like width "
+                "1; what lifts the pen is off = 1.",
+                first_s=thin[0].tick * TICK_S,
+            )
         )
     if _POSE in published:
         found.append(
-            f"The node published on {_POSE} itself. Judged is where the turtle really was."
+            say(
+                "The node published on {topic} itself. Judged is where the turtle really was.",
+                topic=_POSE,
+            )
         )
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
+from grader.language.phrase import say
 from grader.scenes.channel import Channel
 from grader.scenes.scene import (
     Behaviour,
@@ -56,14 +57,14 @@ class Turtlesim:
         ),
     )
     thing: Final = "turtle"
-    finished: Final = "the turtle came to rest"
+    finished: Final = say("the turtle came to rest")
     plane: Final = view.PLANE
     window_is_plane: Final = True
     farthest_start_m: Final = starts.FARTHEST_M
 
     def wrong_setting(self, setting: str) -> str:
         """An arena is always the same."""
-        return "turtlesim takes none" if setting else ""
+        return say("turtlesim takes none") if setting else ""
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """Places round the centre of the window."""

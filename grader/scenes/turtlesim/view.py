@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from grader.language.phrase import say
 from grader.scenes.turtlesim import words
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from grader.scenes.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
@@ -69,10 +70,10 @@ def _curves(trace: TurtleTrace, name: str) -> tuple[Curve, ...]:
     distance = np.hypot(way.x - SIZE_M / 2, way.y - SIZE_M / 2)
     every_tick = np.arange(1, trace.ticks + 1, dtype=np.float64)
     return (
-        Curve("Distance from the centre of the window", "m", ticks, distance),
-        Curve("Speed", "m/s", ticks, way.linear),
-        Curve("Angular velocity", "rad/s", ticks, way.angular),
-        Curve("Rate of velocity commands", "Hz", every_tick, _rate(trace, name)),
+        Curve(say("Distance from the centre of the window"), "m", ticks, distance),
+        Curve(say("Speed"), "m/s", ticks, way.linear),
+        Curve(say("Angular velocity"), "rad/s", ticks, way.angular),
+        Curve(say("Rate of velocity commands"), "Hz", every_tick, _rate(trace, name)),
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grader import text
+from grader.language.phrase import joined, say, say_many
 from grader.scenes.turtlesim.trace import FIRST_TURTLE
 from turtlesim_py.world.events import (
     Event,
@@ -30,14 +31,24 @@ from turtlesim_py.world.turtle import SIZE_M
 Pixels = npt.NDArray[np.uint8]
 
 QUADRANTS = {
-    1: "top right (quadrant I)",
-    2: "top left (quadrant II)",
-    3: "bottom left (quadrant III)",
-    4: "bottom right (quadrant IV)",
+    1: say("top right (quadrant I)"),
+    2: say("top left (quadrant II)"),
+    3: say("bottom left (quadrant III)"),
+    4: say("bottom right (quadrant IV)"),
 }
 #: Up to which hue [degrees] a colour is called so.
-_HUES = ((15, "red"), (45, "orange"), (70, "yellow"), (165, "green"), (200, "cyan"))
-_MORE_HUES = ((260, "blue"), (290, "purple"), (320, "magenta"), (345, "pink"), (360, "red"))
+_HUES = (
+    (15, say("red")),
+    (45, say("orange")),
+    (70, say("yellow")),
+    (165, say("green")),
+    (200, say("cyan")),
+    (260, say("blue")),
+    (290, say("purple")),
+    (320, say("magenta")),
+    (345, say("pink")),
+    (360, say("red")),
+)
 #: A text that a submission has chosen is not shown beyond this.
 _NAME_LIMIT = 80
 
@@ -45,19 +56,19 @@ _NAME_LIMIT = 80
 @lru_cache(1024)
 def color(r: int, g: int, b: int) -> str:
     """A colour, each part 0-255: 'red (255, 0, 0)'."""
-    return f"{_named(r, g, b)} ({r}, {g}, {b})"
+    return say("{name} ({r}, {g}, {b})", name=_named(r, g, b), r=r, g=g, b=b)
 
 
 def _named(r: int, g: int, b: int) -> str:
     hue, saturation, value = colorsys.rgb_to_hsv(r / 255, g / 255, b / 255)
     if value < 0.2:
-        return "black"
+        return say("black")
     if saturation < 0.12:
-        return "white" if value > 0.9 else "grey"
-    name = next(name for most, name in (*_HUES, *_MORE_HUES) if 360 * hue <= most)
+        return say("white") if value > 0.9 else say("grey")
+    name = next(name for most, name in _HUES if 360 * hue <= most)
     if value < 0.6:
-        return f"dark {name}"
-    return f"light {name}" if saturation < 0.5 else name
+        return say("dark {color}", color=name)
+    return say("light {color}", color=name) if saturation < 0.5 else name
 
 
 def quarter(x: float, y: float) -> str:
@@ -72,21 +83,24 @@ def asked_for(event: Event) -> str:
     """What an input asked for; '' where its name says all."""
     turtle = getattr(event, "turtle", FIRST_TURTLE)
     said = _asked_for(event)
-    return said if turtle == FIRST_TURTLE else f"{_own(turtle)}: {said}"
+    return said if turtle == FIRST_TURTLE else joined([_own(turtle), ": ", said])
 
 
 def _asked_for(event: Event) -> str:
     match event:
         case SetPen():
-            return "the pen off" if event.off else _pen(event)
+            return say("the pen off") if event.off else _pen(event)
         case TeleportAbsolute():
-            return f"to {text.place(event.x, event.y)}, heading {_degrees(event.theta)}"
+            place, heading = text.place(event.x, event.y), _degrees(event.theta)
+            return say("to {place}, heading {heading}", place=place, heading=heading)
         case TeleportRelative():
-            return f"a turn by {_degrees(event.angular)}, then {event.linear:g} m ahead"
+            turn = _degrees(event.angular)
+            return say("a turn by {turn}, then {way:g} m ahead", turn=turn, way=event.linear)
         case RotateAbsolute():
-            return f"to heading {_degrees(event.theta)}"
+            return say("to heading {heading}", heading=_degrees(event.theta))
         case Spawn():
-            return f"{_own(event.name) or 'a name of its choice'}, {text.place(event.x, event.y)}"
+            name = _own(event.name) or say("a name of its choice")
+            return joined([name, text.place(event.x, event.y)], ", ")
         case Kill():
             return _own(event.name)
         case SetParameter():
@@ -95,7 +109,7 @@ def _asked_for(event: Event) -> str:
 
 
 def _pen(event: SetPen) -> str:
-    return f"{color(event.r, event.g, event.b)}, {event.width} px"
+    return joined([color(event.r, event.g, event.b), f"{event.width} px"], ", ")
 
 
 def _degrees(theta: float) -> str:
@@ -116,7 +130,11 @@ def drawn(canvas: Pixels, background: str) -> tuple[str, ...]:
     top, bottom, left, right = slice(height), slice(height, None), slice(width), slice(width, None)
     parts = {1: (top, right), 2: (top, left), 3: (bottom, left), 4: (bottom, right)}
     return tuple(
-        f"{QUADRANTS[quadrant]}: {_ink(canvas[rows, columns], background)}"
+        say(
+            "{quarter}: {ink}",
+            quarter=QUADRANTS[quadrant],
+            ink=_ink(canvas[rows, columns], background),
+        )
         for quadrant, (rows, columns) in parts.items()
     )
 
@@ -126,13 +144,18 @@ def _ink(part: Pixels, background: str) -> str:
     packed = ink.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)
     packed = packed[packed != int(background[1:], 16)]
     if not len(packed):
-        return "nothing drawn"
+        return say("nothing drawn")
     colors, counts = np.unique(packed, return_counts=True)
     most = int(np.argmax(counts))
     name = color(*int(colors[most]).to_bytes(3, "big"))
-    said = f"{name}, {text.count(len(packed), 'pixel')}"
+    pixels = say_many("{n:,} pixel", "{n:,} pixels", len(packed))
     if len(colors) == 1:
-        return f"all {said}"
+        return say("all {color}, {pixels}", color=name, pixels=pixels)
     if 2 * counts[most] > len(packed):
-        return f"mostly {said}"
-    return f"{text.count(len(packed), 'pixel')} of {len(colors):,} colours, most often {name}"
+        return say("mostly {color}, {pixels}", color=name, pixels=pixels)
+    return say(
+        "{pixels} of {colors:,} colours, most often {color}",
+        pixels=pixels,
+        colors=len(colors),
+        color=name,
+    )
