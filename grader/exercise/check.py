@@ -16,7 +16,7 @@ from typing import Any
 from grader.errors import CheckFailed
 from grader.exercise.asking import Asked, NoFinding
 from grader.exercise.verdict import Finding, Verdict
-from grader.language.phrase import authored, joined, say
+from grader.language.phrase import authored, chained, say
 from grader.limited import LimitHit
 from grader.recording.recording import Recordings
 
@@ -194,7 +194,7 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
         return not_judged(
             say(
                 "Not judged, because {titles} did not pass.",
-                titles=joined(titles, say(" and ")),
+                titles=chained(titles),
             ),
             say("Look at {title} first.", title=titles[0]),
         )

@@ -18,12 +18,13 @@ from typing import Any, TypedDict
 
 from grader import content
 from grader.errors import ExerciseError
-from grader.exercise import DEFAULT, handing_in, places
+from grader.exercise import DEFAULT, handing_in, places, translated
 from grader.exercise.check import Checks
 from grader.exercise.late import LatePolicy
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.verdict import Visible
 from grader.exercise.yaml_file import Mistake, YamlFile, did_you_mean, is_amount, read_yaml
+from grader.language.phrase import authored
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Limits, Scene, Start
@@ -31,7 +32,7 @@ from grader.scenes.scene import Limits, Scene, Start
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", "looks_at_package"),
-    *("points", "visible", "late", "tolerances", "starter", "program"),
+    *("points", "visible", "late", "tolerances", "starter", "program", translated.PART),
 )
 #: Where nothing is started, no time passes that could be limited.
 NO_LIMITS = Limits(0.0, 0.0, 0.0)
@@ -41,7 +42,7 @@ MOST_RUNS = 100
 #: Whether setup.py and launch files are evaluated beside the run.
 LOOKS = "looks_at_package"
 #: What of them is for people and judges nothing.
-WORDS = ("title", "task", "starter")
+WORDS = ("title", "task", "starter", translated.PART)
 SETTING = "setting"
 VARIED = {"count": 0, "seed": 0, "nearest_m": 0.0, "farthest_m": 0.0}
 PER_STUDENT = "per_student"
@@ -78,7 +79,7 @@ class Exercise:
 
     Attributes:
         name: as `--exercise` takes it, and as a result names it.
-        title: what a student reads.
+        title: what a student reads; as the task a phrase, which may have words of other languages.
         task: what is to be done, in Markdown; '' where the title says it all.
         limits: when a run ends; `NO_LIMITS` where nothing is started.
         varied: further runs that start elsewhere.
@@ -87,6 +88,7 @@ class Exercise:
         checks: the exercise's check functions.
         visible: check name -> what students see of it; all of those that are not named.
         late: what it costs to hand in late; None where nothing is said of that.
+        explained: tolerance -> language -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
         setting: the text of the file that it is set up with; '' for none.
         looks_at_package: whether the package around what is started is looked at as well.
@@ -114,6 +116,7 @@ class Exercise:
     task: str = ""
     visible: Mapping[str, Visible] = field(default_factory=dict)
     late: LatePolicy | None = None
+    explained: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def is_started(self) -> bool:
@@ -300,6 +303,9 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
             if not _alike(value, known[key]):
                 raise Mistake((part, key), f"expected e.g. {known[key]!r}, found {value!r}")
         merged[part] = {**known, **given}
+    if translated.PART in original and translated.PART not in edited:
+        anew = [key for key in ("title", "task") if merged.get(key) != original.get(key)]
+        merged[translated.PART] = translated.without(original[translated.PART], anew)
     return merged
 
 
@@ -327,9 +333,11 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
     if wrong is not None:
         raise Mistake(("tolerances", wrong[0]), wrong[1])
     points = _points(data["points"], checks)
+    words = translated.translated(data.get(translated.PART), checks, tolerances)
+    checks = checks.said(words.titles, words.rubrics)
     exercise = Exercise(
         name=data["exercise"],
-        title=str(data["title"]),
+        title=authored(str(data["title"]), words.title),
         limits=limits,
         varied=varied,
         points=points,
@@ -342,8 +350,9 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, setting, place.folder),
-        task=_task(data.get("task", "")),
+        task=authored(_task(data.get("task", "")), words.task),
         visible=handing_in.visible(data.get("visible"), checks, points),
+        explained=words.tolerances,
     )
     return replace(exercise, late=handing_in.late(data.get("late"), exercise.max_score))
 

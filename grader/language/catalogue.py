@@ -6,6 +6,7 @@ sentences in the code and compiles what has been translated; `locale/README.md` 
 
 from __future__ import annotations
 
+import copy
 import gettext
 import os
 from collections.abc import Mapping
@@ -62,8 +63,23 @@ def catalogue(language: str) -> gettext.NullTranslations:
 
 
 def knows(language: str, key: str, many: str = "") -> bool:
-    """Whether a catalogue has a sentence."""
-    found = catalogue(language)
-    if many:
-        return found.ngettext(key, many, 1) != key or found.ngettext(key, many, 2) != many
-    return bool(key) and found.gettext(key) != key
+    """Whether a catalogue has a sentence; one that reads as in English counts, too."""
+    found = _with_holes(language)
+    return bool(key) and bool(found.ngettext(key, many, 1) if many else found.gettext(key))
+
+
+class _Holes(gettext.NullTranslations):
+    """Answers for what a catalogue does not have."""
+
+    def gettext(self, message: str) -> str:
+        return ""
+
+    def ngettext(self, msgid1: str, msgid2: str, n: int) -> str:
+        return ""
+
+
+@cache
+def _with_holes(language: str) -> gettext.NullTranslations:
+    found = copy.copy(catalogue(language))
+    found.add_fallback(_Holes())
+    return found

@@ -113,6 +113,11 @@ def listed(items: Sequence[str]) -> str:
     return say("{those} and {last}", those=joined(items[:-1], ", "), last=items[-1])
 
 
+def chained(items: Sequence[str]) -> Phrase:
+    """Some things with a word between each two: 'a and b and c'."""
+    return joined(items, say(" and "))
+
+
 def fill(key: str, values: Mapping[str, Any], write: Callable[[Any, str], str] = format) -> str:
     """A key with its values in their places.
 

@@ -24,7 +24,7 @@ def judge_sides(way: Way, tolerances: Tolerances) -> Finding:
         "{n} straight side, {lengths} m long",
         "{n} straight sides, {lengths} m long",
         len(found),
-        lengths=some([say("{length:.2f}", length=side.length_m) for side in found]),
+        lengths=some([f"{side.length_m:.2f}" for side in found]),
     )
     near = {"seen": seen, "error_m": error, "wanted_m": wanted}
     if all(good) and len(found) == SIDES:

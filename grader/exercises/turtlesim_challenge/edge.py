@@ -14,7 +14,7 @@ from grader.exercises.turtlesim_challenge.stops import (
     judge_stop,
     passed_by_m,
 )
-from grader.language.phrase import Phrase, joined, say, say_many
+from grader.language.phrase import Phrase, chained, joined, say, say_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.turtle import TICK_S
 
@@ -193,7 +193,7 @@ def _one_wall_only(stops: list[Stop]) -> Finding | None:
             "It stopped at the {walls} wall, but not at the {wall} one. In {which}: {seen}",
             "It stopped at the {walls} walls, but not at the {wall} one. In {which}: {seen}",
             len(at),
-            walls=joined([WALL_NAMES[name] for name in at], say(" and ")),
+            walls=chained([WALL_NAMES[name] for name in at]),
             wall=wall,
             which=_which_run(worst.path.number),
             seen=worst.finding.rationale,

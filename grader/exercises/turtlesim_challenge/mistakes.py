@@ -13,7 +13,7 @@ from grader.exercises.turtlesim_challenge import colours
 from grader.exercises.turtlesim_challenge.cause import Cause
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, QUADRANTS, ROMAN, Path
 from grader.exercises.turtlesim_challenge.pens import Coloring, came_after
-from grader.language.phrase import Phrase, joined, listed, say
+from grader.language.phrase import Phrase, chained, joined, listed, say
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S
@@ -191,7 +191,7 @@ def _other_line(path: Path) -> Cause | None:
     return Cause(
         say(
             "The colour changes at {lines}; the middle of the window is at {middle}.",
-            lines=joined(lines, say(" and ")),
+            lines=chained(lines),
             middle=MIDDLE,
         ),
         say("Which limits does your node compare x and y of the pose with?"),

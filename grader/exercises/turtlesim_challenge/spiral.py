@@ -9,7 +9,7 @@ from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import why_no_wider, why_so_few_turns
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.language.phrase import Phrase, joined, say
+from grader.language.phrase import Phrase, chained, joined, say
 
 
 def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
@@ -61,7 +61,7 @@ def _earned(good: Mapping[str, float]) -> Phrase:
         say("{share:.0f} % {part}", share=100 * share, part=_FOR[name])
         for name, share in good.items()
     ]
-    return say("Of the points it earned {parts}.", parts=joined(told, say(" and ")))
+    return say("Of the points it earned {parts}.", parts=chained(told))
 
 
 _FOR = {

@@ -1,0 +1,120 @@
+"""What exercise.yaml says of an exercise in other languages: title, task, checks, tolerances.
+
+languages:
+fr:
+title: Dans le coin
+checks:
+moves: Le nœud conduit la tortue
+arrives: {title: Elle s'arrête dans un coin, rubric: Dans chaque essai ...}
+tolerances:
+corner_m: distance du coin
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from grader.exercise.check import Checks
+from grader.exercise.yaml_file import Mistake, did_you_mean
+from grader.language.catalogue import ENGLISH, LANGUAGES
+from grader.language.phrase import say
+
+PART = "languages"
+#: Those that are not that of the file itself.
+OTHERS = tuple(language for language in LANGUAGES if language != ENGLISH)
+KEYS = ("title", "task", "checks", "tolerances")
+OF_A_CHECK = ("title", "rubric")
+ByLanguage = dict[str, str]
+
+
+@dataclass(frozen=True)
+class Translated:
+    """Each text by its language; what is left out is told in the language of the file.
+
+    Attributes:
+        title, task: of the exercise.
+        titles, rubrics: of its checks, by their names.
+        tolerances: what stands beside them in the sheet, by their names.
+    """
+
+    title: ByLanguage = field(default_factory=dict)
+    task: ByLanguage = field(default_factory=dict)
+    titles: dict[str, ByLanguage] = field(default_factory=dict)
+    rubrics: dict[str, ByLanguage] = field(default_factory=dict)
+    tolerances: dict[str, ByLanguage] = field(default_factory=dict)
+
+
+def translated(given: object, checks: Checks, tolerances: Collection[str]) -> Translated:
+    """Read the part of the file.
+
+    Raises:
+        Mistake: a language, a key, a check or a tolerance that nobody knows, or what is no text.
+    """
+    found = Translated()
+    names = [check.name for check in checks]
+    for language, words in _named(given, (PART,), OTHERS).items():
+        at = (PART, language)
+        for key, value in _named(words, at, KEYS).items():
+            here = (*at, key)
+            if key == "title":
+                found.title[language] = _text(value, here)
+            elif key == "task":
+                found.task[language] = _text(value, here)
+            elif key == "checks":
+                _checks(value, here, names, found)
+            else:
+                for name, text in _named(value, here, tolerances).items():
+                    by_language = found.tolerances.setdefault(name, {})
+                    by_language[language] = _text(text, (*here, name))
+    return found
+
+
+def without(given: object, keys: Collection[str]) -> Any:
+    """The part without what an edited copy says anew, in the language of the file alone."""
+    if not isinstance(given, dict) or not all(isinstance(words, dict) for words in given.values()):
+        return given  # somebody else finds out
+    return {
+        language: {key: text for key, text in words.items() if key not in keys}
+        for language, words in given.items()
+    }
+
+
+def _checks(given: object, at: tuple[str, ...], names: Collection[str], found: Translated) -> None:
+    language = at[1]
+    for name, value in _named(given, at, names).items():
+        here = (*at, name)
+        texts = value if isinstance(value, dict) else {"title": value}
+        for key, text in _named(texts, here, OF_A_CHECK).items():
+            each = found.titles if key == "title" else found.rubrics
+            each.setdefault(name, {})[language] = _text(
+                text, (*here, key) if isinstance(value, dict) else here
+            )
+
+
+def _named(given: object, at: tuple[str, ...], known: Collection[str]) -> Mapping[str, Any]:
+    """What stands at some keys by names, each of which is known."""
+    if given is None:
+        return {}
+    if not isinstance(given, dict):
+        expected = ", ".join(known)
+        raise Mistake(
+            at,
+            say(
+                "expected some of {names}, each with its text; found {found}",
+                names=expected,
+                found=repr(given),
+            ),
+        )
+    for name in given:
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise Mistake(at, say("unknown {name!r}; {hint}", name=str(name), hint=hint))
+    return given
+
+
+def _text(given: object, at: tuple[str, ...]) -> str:
+    if not isinstance(given, str) or not given.strip():
+        raise Mistake(at, say("expected a text, found {found}", found=repr(given)))
+    return given
