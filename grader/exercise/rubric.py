@@ -11,6 +11,9 @@ from typing import Any
 
 from grader.exercise.check import Check
 from grader.exercise.loading import Exercise
+from grader.language import telling
+from grader.language.phrase import joined, say
+from grader.language.telling import tell
 
 _PLACE = re.compile(r"\{(?P<name>\w+)(?P<percent>%?)\}")
 
@@ -18,9 +21,11 @@ _PLACE = re.compile(r"\{(?P<name>\w+)(?P<percent>%?)\}")
 def told(check: Check, tolerances: Mapping[str, Any]) -> str:
     """What a check measures and how its points are computed: paragraphs, and lists with '- '.
 
+    It is in the language of this process's user, where the exercise has that.
+
     Empty where the author has written no more than a title.
     """
-    return in_force(check.rubric, tolerances)
+    return in_force(telling.told(check.rubric), tolerances)
 
 
 def in_force(text: str, tolerances: Mapping[str, Any]) -> str:
@@ -44,9 +49,11 @@ def rubric(exercise: Exercise) -> str:
     for name, points in exercise.points.items():
         check = known[name]
         waits = [known[other].title for other in check.depends_on if other in exercise.points]
-        parts.append(f"### {check.title}: {points:g} points\n\n`{name}`")
+        heading = tell("{title}: {points} points", title=check.title, points=f"{points:g}")
+        parts.append(f"### {heading}\n\n`{name}`")
         if waits:
-            parts[-1] += " · judged when passed: " + ", ".join(f"“{title}”" for title in waits)
+            first = joined([say("“{title}”", title=title) for title in waits], ", ")
+            parts[-1] += " · " + tell("judged when passed: {titles}", titles=first)
         text = told(check, exercise.tolerances)
         if text:
             parts.append(text)

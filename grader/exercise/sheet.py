@@ -1,8 +1,8 @@
 """The exercise sheet: all that a student needs to know, made from the exercise that will judge.
 
-It is Markdown. What an author has written of the exercise in exercise.yaml (`title`, `task`, the
-comments beside its tolerances) and checks.py (the docstrings of the checks) is shown, with the
-numbers that are in force.
+It is Markdown, in the language of this process's user. What an author has written of the exercise
+in exercise.yaml (`title`, `task`, the comments beside its tolerances, `languages`)
+and checks.py (the docstrings of the checks) is shown, with the numbers that are in force.
 """
 
 from __future__ import annotations
@@ -20,14 +20,12 @@ from grader.exercise.check import Check
 from grader.exercise.late import LatePolicy
 from grader.exercise.loading import Exercise
 from grader.exercise.places import DESCRIPTION
+from grader.language.catalogue import spoken
+from grader.language.phrase import chained, joined, say
+from grader.language.telling import tell, tell_many, told
 from grader.scenes.scene import Scene
 from grader.text import points
 
-#: How a check is told that students do not see at once, or not all of.
-_SEEN = {
-    "after_due": "Shown when the exercise is over, and until then in no report and no total",
-    "points_only": "A report shows the points of these, and not what was found",
-}
 #: A line of exercise.yaml in a part: blanks, key, value, perhaps a comment.
 _VALUE = re.compile(r"^(\s+)([\w-]+)(:\s*)([^#\n]*?)(\s+#.*)?$")
 
@@ -50,10 +48,10 @@ class Start:
 def sheet(exercise: Exercise, scene: Scene, start: Start) -> str:
     """The sheet."""
     parts = (
-        [f"# {exercise.title}", rubric.in_force(exercise.task, exercise.tolerances)],
+        [f"# {told(exercise.title)}", rubric.in_force(told(exercise.task), exercise.tolerances)],
         _judged(exercise, scene),
         _tolerances(exercise),
-        ["## How to try it", scene.how_to_try(start.program, start.package)],
+        [_heading(tell("How to try it")), scene.how_to_try(start.program, start.package)],
         _handed_in(start, exercise),
     )
     texts = (text.strip("\n") for part in parts for text in part)
@@ -69,28 +67,27 @@ def _judged(exercise: Exercise, scene: Scene) -> Iterator[str]:
         for name, worth in worthy.items()
         if exercise.visible.get(name) != "never"
     ]
-    yield f"## What it is worth: {points(exercise.max_score)} points"
+    yield _heading(tell("What it is worth: {points} points", points=points(exercise.max_score)))
     yield "\n".join(
-        ["| points | what is looked at | check |", "|---:|---|---|"]
-        + [f"| {points(worth)} | {check.title} | `{check.name}` |" for check, worth in listed]
+        [_row(tell("points"), tell("what is looked at"), tell("check")), "|---:|---|---|"]
+        + [_row(points(worth), told(check.title), f"`{check.name}`") for check, worth in listed]
         + ([f"| {points(sum(hidden))} | {_not_shown(len(hidden))} | |"] if hidden else [])
     )
     yield "\n".join(_seen_of(exercise, [check for check, _ in listed]))
     yield "\n".join(_waits([check for check, _ in listed]))
     for check, worth in listed:
         if text := rubric.told(check, exercise.tolerances):
-            yield f"### {check.title}: {points(worth)} points"
+            heading = tell("{title}: {points} points", title=check.title, points=points(worth))
+            yield f"### {heading}"
             yield text
-    yield "## How it is judged"
+    yield _heading(tell("How it is judged"))
     yield _runs(exercise, scene)
     if exercise.late is not None:
         yield from _late(exercise.late)
 
 
 def _not_shown(checks: int) -> str:
-    return (
-        "a check that no report shows" if checks == 1 else f"{checks} checks that no report shows"
-    )
+    return tell_many("a check that no report shows", "{n} checks that no report shows", checks)
 
 
 def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
@@ -100,20 +97,45 @@ def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
         named.get(exercise.visible.get(check.name, ""), []).append(f"`{check.name}`")
     for visible, names in named.items():
         if names:
-            yield _wrapped(f"- {_SEEN[visible]}: {', '.join(names)}.", indent="  ")
+            yield _wrapped(f"- {_seen(visible, ', '.join(names))}", indent="  ")
+
+
+def _seen(visible: str, checks: str) -> str:
+    """How checks are told that students do not see at once, or not all of."""
+    if visible == "after_due":
+        return tell(
+            "Shown when the exercise is over, and until then in no report and no total: {checks}.",
+            checks=checks,
+        )
+    return tell(
+        "A report shows the points of these, and not what was found: {checks}.", checks=checks
+    )
 
 
 def _late(policy: LatePolicy) -> Iterator[str]:
-    yield "## When it is due"
-    grace = f" Another {policy.grace_min:g} minutes cost nothing." if policy.grace_min else ""
-    told = f"It is due on {policy.due:%Y-%m-%d at %H:%M:%S} (UTC{_zone(policy.due)}).{grace}"
-    if not (policy.per_day and policy.most):
-        yield _wrapped(f"{told} To hand it in later costs no points.")
-        return
-    yield _wrapped(
-        f"{told} From then on each started day costs {points(policy.per_day)} points, "
-        f"{points(policy.most)} at most; nobody has fewer than 0 points."
-    )
+    yield _heading(tell("When it is due"))
+    said = [
+        say(
+            "It is due on {date} at {time} (UTC{zone}).",
+            date=f"{policy.due:%Y-%m-%d}",
+            time=f"{policy.due:%H:%M:%S}",
+            zone=_zone(policy.due),
+        )
+    ]
+    if policy.grace_min:
+        said.append(say("Another {grace:g} minutes cost nothing.", grace=policy.grace_min))
+    if policy.per_day and policy.most:
+        said.append(
+            say(
+                "From then on each started day costs {per_day} points, {most} at most; nobody has "
+                "fewer than 0 points.",
+                per_day=points(policy.per_day),
+                most=points(policy.most),
+            )
+        )
+    else:
+        said.append(say("To hand it in later costs no points."))
+    yield _wrapped(told(joined(said, " ")))
 
 
 def _zone(due: datetime) -> str:
@@ -128,42 +150,75 @@ def _waits(checks: Iterable[Check]) -> Iterator[str]:
         if check.depends_on:
             waiting.setdefault(check.depends_on, []).append(f"`{check.name}`")
     for first, names in waiting.items():
-        passed = " and ".join(f"`{name}`" for name in first)
-        yield _wrapped(f"- Judged only where {passed} passed: {', '.join(names)}.", indent="  ")
+        waits = tell(
+            "Judged only where {passed} passed: {checks}.",
+            passed=chained([f"`{name}`" for name in first]),
+            checks=", ".join(names),
+        )
+        yield _wrapped(f"- {waits}", indent="  ")
 
 
 def _runs(exercise: Exercise, scene: Scene) -> str:
+    thing = told(scene.thing)
     if not exercise.is_started:
         return _wrapped(
-            f"Nothing of your {scene.thing} is started, and no time passes: what it installs and "
-            "what it would start is found out by evaluating its set-up and its launch files, in a "
-            f"process that reaches nothing else. The same {scene.thing} gets the same verdict "
-            "every time, on any machine, with ROS and without."
+            tell(
+                "Nothing of your {thing} is started, and no time passes: what it installs and "
+                "what it would start is found out by evaluating its set-up and its launch files, "
+                "in a process that reaches nothing else. The same {thing} gets the same verdict "
+                "every time, on any machine, with ROS and without.",
+                thing=thing,
+            )
         )
     limits, varied = exercise.limits, exercise.varied
-    rest = f"when the {scene.thing} has moved and then rested for {limits.rest_s:g} s, "
-    rested = rest if limits.rest_s else ""
-    told = [
-        "Your node is run beside a simulator that shows no window, for "
-        f"{limits.total_s:g} simulated seconds at most. The run ends before that "
-        f"{rested}when nothing has moved "
-        f"in the first {limits.first_motion_s:g} s, or when your node ends. Time is simulated: the "
-        "same program gets the same verdict every time, on any machine.",
-    ]
-    if varied.count:
-        runs = "One more run starts" if varied.count == 1 else f"{varied.count} more runs start"
-        told.append(
-            f"{runs} elsewhere, {varied.nearest_m:g} to {varied.farthest_m:g} m from the usual "
-            "place: a program that reads the pose works there too, one that counts its steps does "
-            "not."
+    times = {"total_s": limits.total_s, "first_s": limits.first_motion_s}
+    if limits.rest_s:
+        told_of = tell(
+            "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
+            "seconds at most. The run ends before that when the {thing} has moved and then rested "
+            "for {rest_s:g} s, when nothing has moved in the first {first_s:g} s, or when your "
+            "node ends. Time is simulated: the same program gets the same verdict every time, on "
+            "any machine.",
+            thing=thing,
+            rest_s=limits.rest_s,
+            **times,
         )
-    return "\n\n".join(map(_wrapped, told))
+    else:
+        told_of = tell(
+            "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
+            "seconds at most. The run ends before that when nothing has moved in the first "
+            "{first_s:g} s, or when your node ends. Time is simulated: the same program gets the "
+            "same verdict every time, on any machine.",
+            **times,
+        )
+    elsewhere = tell_many(
+        "One more run starts elsewhere, {nearest_m:g} to {farthest_m:g} m from the usual place: a "
+        "program that reads the pose works there too, one that counts its steps does not.",
+        "{n} more runs start elsewhere, {nearest_m:g} to {farthest_m:g} m from the usual place: a "
+        "program that reads the pose works there too, one that counts its steps does not.",
+        varied.count,
+        nearest_m=varied.nearest_m,
+        farthest_m=varied.farthest_m,
+    )
+    return "\n\n".join(map(_wrapped, [told_of, *([elsewhere] if varied.count else [])]))
 
 
 def _tolerances(exercise: Exercise) -> Iterator[str]:
     if exercise.tolerances:
-        yield "The numbers that the checks go by (`_m` metres, `_s` seconds, `_deg` degrees):"
-        yield f"```yaml\n{_in_force(exercise)}\n```"
+        yield tell("The numbers that the checks go by (`_m` metres, `_s` seconds, `_deg` degrees):")
+        yield f"```yaml\n{_explained(exercise) or _in_force(exercise)}\n```"
+
+
+def _explained(exercise: Exercise) -> str:
+    """The tolerances with what the exercise says of them in the user's language; '': nothing."""
+    language = spoken()
+    if not any(language in texts for texts in exercise.explained.values()):
+        return ""
+    lines = []
+    for name, value in exercise.tolerances.items():
+        text = exercise.explained.get(name, {}).get(language, "")
+        lines.append(f"{name}: {_in_yaml(value)}" + (f"  # {text}" if text else ""))
+    return "\n".join(lines)
 
 
 def _in_force(exercise: Exercise) -> str:
@@ -190,20 +245,36 @@ def _in_yaml(value: object) -> str:
 
 
 def _handed_in(start: Start, exercise: Exercise) -> Iterator[str]:
-    yield "## How to hand it in"
-    yield "Grade it yourself first, as often as you like, from the folder above this one:"
+    yield _heading(tell("How to hand it in"))
+    yield tell("Grade it yourself first, as often as you like, from the folder above this one:")
     yield f"    {start.grade}"
     yield _wrapped(
-        "The first line says what to mend first: the cause. `Where` below it is the place in your "
-        "file, as far as it is known, `What to do` the way out. `report.html`, whose place stands "
-        "in the last line, shows it in a picture. With `--watch` it is graded again whenever "
-        "you save."
+        tell(
+            "The first line says what to mend first: the cause. `Where` below it is the place in "
+            "your file, as far as it is known, `What to do` the way out. `report.html`, whose "
+            "place stands in the last line, shows it in a picture. With `--watch` it is graded "
+            "again whenever you save."
+        )
     )
-    what = "the .py file, the folder" if exercise.is_started else "the folder"
-    yield _wrapped(
-        f"Hand in {what} of the package, or a .zip of it, as your course asks. "
-        "Leave out what is made: `graded`, `build`, `install`, `log`, `__pycache__`."
+    if exercise.is_started:
+        what = say(
+            "Hand in the .py file, the folder of the package, or a .zip of it, as your course asks."
+        )
+    else:
+        what = say("Hand in the folder of the package, or a .zip of it, as your course asks.")
+    made = say(
+        "Leave out what is made: {folders}.",
+        folders="`graded`, `build`, `install`, `log`, `__pycache__`",
     )
+    yield _wrapped(told(joined([what, made], " ")))
+
+
+def _heading(text: str) -> str:
+    return f"## {text}"
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"
 
 
 def _wrapped(text: str, indent: str = "") -> str:

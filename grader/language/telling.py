@@ -13,6 +13,7 @@ from grader.language.phrase import Phrase, fill, say, say_many
 
 _POINT = re.compile(r"(?<=\d)\.(?=\d)")
 _COMMA = re.compile(r"(?<=\d),(?=\d{3})")
+_BEHIND_FULL_WIDTH = re.compile(r"(?<=[。,;:?!)]) ")
 #: Between thousands: a narrow blank where no line is broken.
 _THOUSANDS = "\N{NARROW NO-BREAK SPACE}"
 
@@ -40,7 +41,7 @@ def told(text: str, language: str = "") -> str:
     if language in text.words:
         return text.words[language]
     if text.parts:
-        return "".join(told(part, language) for part in text.parts)
+        return _close_up("".join(told(part, language) for part in text.parts))
     if not knows(language, text.key, text.many):
         return str(text)
     found = catalogue(language)
@@ -71,6 +72,11 @@ def number(text: str, language: str = "") -> str:
     if (language or spoken()) != "fr":
         return text
     return _POINT.sub(",", _COMMA.sub(_THOUSANDS, text))
+
+
+def _close_up(text: str) -> str:
+    """Without blanks behind full-width punctuation: where English parts sentences, nothing is."""
+    return _BEHIND_FULL_WIDTH.sub("", text)
 
 
 def _written(value: Any, form: str, language: str) -> str:

@@ -56,7 +56,7 @@ class Turtlesim:
             *(f"{_TURTLE}/teleport_absolute", f"{_TURTLE}/teleport_relative"),
         ),
     )
-    thing: Final = "turtle"
+    thing: Final = say("turtle")
     finished: Final = say("the turtle came to rest")
     plane: Final = view.PLANE
     window_is_plane: Final = True
