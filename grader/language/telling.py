@@ -13,7 +13,7 @@ from grader.language.phrase import Phrase, fill, say, say_many
 
 _POINT = re.compile(r"(?<=\d)\.(?=\d)")
 _COMMA = re.compile(r"(?<=\d),(?=\d{3})")
-_BEHIND_FULL_WIDTH = re.compile(r"(?<=[。,;:?!)]) ")
+_BEHIND_FULL_WIDTH = re.compile("(?<=[\u3002\uff0c\uff1b\uff1a\uff1f\uff01\uff09]) ")
 #: Between thousands: a narrow blank where no line is broken.
 _THOUSANDS = "\N{NARROW NO-BREAK SPACE}"
 
