@@ -16,6 +16,7 @@ from grader.recording.recording import Recording, Recordings, Run
 from grader.scenes.scene import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import drive
+from tests.grader.language.known import unknown
 from turtlesim_py.world import events
 from turtlesim_py.world.trajectory import Trajectory
 
@@ -98,6 +99,7 @@ def test_whatever_was_recorded_is_judged(name, nominal, varied):
         found = judge(asked, exercise.checks, exercise.points, exercise.tolerances)
     assert {verdict.status for verdict in found} <= {"passed", "failed", "not_judged"}
     assert not any("fault of the exercise" in verdict.rationale for verdict in found)
+    assert unknown(found) == []  # to translators
 
 
 def test_a_hundred_thousand_inputs_are_judged():

@@ -15,6 +15,7 @@ from grader.exercises.square import way
 from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import drive, twist
+from tests.grader.language.known import unknown
 from turtlesim_py.world.turtle import TICK_S
 
 FULL = {
@@ -122,6 +123,7 @@ def judged(controller, seed=None):
     exercise = load_exercise("square")
     recordings = recorded(controller, seed)
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
+    assert unknown(verdicts) == []  # to translators
     return {verdict.check: verdict for verdict in verdicts}
 
 

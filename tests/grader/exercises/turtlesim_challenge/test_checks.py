@@ -11,6 +11,7 @@ from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings
 from grader.testing import drive, pen, twist
 from tests.grader.driving import CENTRE, RED, WHITE, Spiral
+from tests.grader.language.known import unknown
 
 FULL = {
     "moves": 5,
@@ -26,6 +27,7 @@ FULL = {
 def scores(recording: Recording) -> dict[str, float]:
     exercise = load_exercise("turtlesim_challenge")
     verdicts = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)
+    assert unknown(verdicts) == []  # to translators
     return {verdict.check: verdict.score for verdict in verdicts}
 
 
