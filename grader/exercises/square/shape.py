@@ -207,7 +207,7 @@ def judge_square(way: Way, tolerances: Tolerances) -> tuple[float, str, list[Evi
         findings.append(judge_straight(way, tolerances))
     wrong = [finding for finding in findings if finding.share < 1]
     share = sum(finding.share for finding in findings) / (len(parts) + 1)
-    text = joined([finding.rationale for finding in wrong], "; ")
+    text = joined([finding.rationale for finding in wrong], say("; "))
     return share, text, [item for finding in wrong for item in finding.evidence[:1]]
 
 

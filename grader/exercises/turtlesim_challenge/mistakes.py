@@ -83,15 +83,16 @@ def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Caus
             middle=MIDDLE,
         )
     else:
-        where = [
+        each = [
             say("{quadrant} is {condition}", quadrant=ROMAN[q], condition=WHERE[q])
             for group in same
             for q in group
         ]
+        conditions = joined(each, say("; "))
         help_ = say(
             "Give each quadrant a colour of its own. If your node has four colours, look at its "
             "conditions: {where}; the middle of the window is at {middle}.",
-            where=joined(where, "; "),
+            where=conditions,
             middle=MIDDLE,
         )
     return Cause(told, help_)
