@@ -10,6 +10,7 @@ from grader.exercise.check import Checks
 from grader.exercise.late import LatePolicy
 from grader.exercise.verdict import Visible
 from grader.exercise.yaml_file import Mistake, did_you_mean, is_amount
+from grader.language.phrase import say
 
 VISIBLE = get_args(Visible)
 LATE = ("due", "grace_min", "per_day", "most")
@@ -27,15 +28,27 @@ def visible(given: object, checks: Checks, points: Mapping[str, float]) -> dict[
     if given is None:
         return {}
     if not isinstance(given, dict):
-        text = f"expected check names, each with one of {', '.join(VISIBLE)}; found {given!r}"
+        text = say(
+            "expected check names, each with one of {visible}; found {given}",
+            visible=", ".join(VISIBLE),
+            given=repr(given),
+        )
         raise Mistake(("visible",), text)
     known = [check.name for check in checks]
     for name, value in given.items():
         if name not in known:
-            text = f"no check is named {name!r}; {did_you_mean(name, known)}"
+            text = say(
+                "no check is named {name}; {hint}",
+                name=repr(name),
+                hint=did_you_mean(name, known),
+            )
             raise Mistake(("visible",), text)
         if value not in VISIBLE:
-            text = f"expected one of {', '.join(VISIBLE)}; found {value!r}"
+            text = say(
+                "expected one of {visible}; found {value}",
+                visible=", ".join(VISIBLE),
+                value=repr(value),
+            )
             raise Mistake(("visible", str(name)), text)
     _check_order(given, checks, points)
     return dict(given)
@@ -51,8 +64,14 @@ def _check_order(given: Mapping[str, Visible], checks: Checks, points: Mapping[s
             if _SHOWN[seen] < _SHOWN[hidden]:
                 raise Mistake(
                     ("visible", other),
-                    f"{hidden}, but {check.name!r}, which is judged only where {other!r} passed, "
-                    f"is {seen} and would tell of it; make {check.name!r} {hidden} as well",
+                    say(
+                        "{hidden}, but {name}, which is judged only where {other} passed, "
+                        "is {seen} and would tell of it; make {name} {hidden} as well",
+                        hidden=hidden,
+                        name=repr(check.name),
+                        other=repr(other),
+                        seen=seen,
+                    ),
                 )
 
 
@@ -66,13 +85,22 @@ def late(given: object, max_score: float) -> LatePolicy | None:
         return None
     if not isinstance(given, dict) or "due" not in given:
         example = f"due: {_EXAMPLE}, per_day: 10"
-        raise Mistake(("late",), f"expected at least when it is due, e.g. {{{example}}}")
+        raise Mistake(
+            ("late",), say("expected at least when it is due, e.g. {{{example}}}", example=example)
+        )
     for key, value in given.items():
         if key not in LATE:
-            raise Mistake(("late",), f"unknown {key!r}; {did_you_mean(key, LATE)}")
+            raise Mistake(
+                ("late",),
+                say("unknown {key}; {hint}", key=repr(key), hint=did_you_mean(key, LATE)),
+            )
         if key != "due" and not is_amount(value):
-            what = "minutes" if key == "grace_min" else "points"
-            text = f"expected a number of {what} from 0, e.g. 10; found {value!r}"
+            what = say("minutes") if key == "grace_min" else say("points")
+            text = say(
+                "expected a number of {what} from 0, e.g. 10; found {value}",
+                what=what,
+                value=repr(value),
+            )
             raise Mistake(("late", key), text)
     amounts: dict[str, Any] = {"grace_min": 0, "per_day": 0, "most": max_score, **given}
     amounts = {key: float(value) for key, value in amounts.items() if key != "due"}
@@ -90,6 +118,10 @@ def _due(given: object) -> datetime:
         shown = given if isinstance(given, str) else str(given)
         raise Mistake(
             ("late", "due"),
-            f"expected a date, a time and its zone, e.g. {_EXAMPLE}; found {shown}",
+            say(
+                "expected a date, a time and its zone, e.g. {example}; found {shown}",
+                example=_EXAMPLE,
+                shown=shown,
+            ),
         )
     return found

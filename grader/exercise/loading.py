@@ -24,7 +24,7 @@ from grader.exercise.late import LatePolicy
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.verdict import Visible
 from grader.exercise.yaml_file import Mistake, YamlFile, did_you_mean, is_amount, read_yaml
-from grader.language.phrase import authored
+from grader.language.phrase import authored, say
 from grader.scenes import NAMES as SCENES
 from grader.scenes import load_scene
 from grader.scenes.scene import Limits, Scene, Start
@@ -184,7 +184,12 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
         return _load(name_or_path)
     except PermissionError as error:
         raise ExerciseError(
-            f"cannot read the exercise {str(name_or_path)!r}: {error.strerror}: {error.filename}"
+            say(
+                "cannot read the exercise {name_or_path}: {strerror}: {filename}",
+                name_or_path=repr(str(name_or_path)),
+                strerror=error.strerror,
+                filename=error.filename,
+            )
         ) from None
 
 
@@ -197,9 +202,15 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
     if path.is_dir():
         return _from_place(places.in_folder(path))
     raise ExerciseError(
-        f"there is no exercise {str(name_or_path)!r}; there are: {', '.join(names())}. "
-        f"Another one is given as the path of its folder, with {DESCRIPTION} and {CHECKS}; an "
-        f"edited copy as the path of its {DESCRIPTION}."
+        say(
+            "there is no exercise {name_or_path}; there are: {names}. Another one"
+            " is given as the path of its folder, with {description} and {checks}; "
+            "an edited copy as the path of its {description}.",
+            name_or_path=repr(str(name_or_path)),
+            names=", ".join(names()),
+            description=DESCRIPTION,
+            checks=CHECKS,
+        )
     )
 
 
@@ -211,9 +222,21 @@ def _from_place(place: Place) -> Exercise:
         except Mistake as mistake:
             raise ExerciseError(file.told(mistake)) from mistake
     except OSError as error:
-        raise ExerciseError(f"cannot read {place.description}: {error.strerror}") from None
+        raise ExerciseError(
+            say(
+                "cannot read {description}: {strerror}",
+                description=str(place.description),
+                strerror=error.strerror,
+            )
+        ) from None
     except (ExerciseError, ValueError) as error:
-        raise ExerciseError(f"{place.folder} is not an exercise: {error}") from error
+        raise ExerciseError(
+            say("{path} is not an exercise: {why}", path=str(place.folder), why=_why(error))
+        ) from error
+
+
+def _why(error: Exception) -> str:
+    return error.message if isinstance(error, ExerciseError) else str(error)
 
 
 def _from_file(path: Path) -> Exercise:
@@ -228,9 +251,17 @@ def _from_file(path: Path) -> Exercise:
         except Mistake as mistake:
             raise ExerciseError(edited.told(mistake)) from mistake
     except OSError as error:
-        raise ExerciseError(f"cannot read the exercise {path}: {error.strerror}") from None
+        raise ExerciseError(
+            say(
+                "cannot read the exercise {path}: {strerror}",
+                path=str(path),
+                strerror=error.strerror,
+            )
+        ) from None
     except (ExerciseError, ValueError) as error:
-        raise ExerciseError(f"{path} is not an exercise: {error}") from error
+        raise ExerciseError(
+            say("{path} is not an exercise: {why}", path=str(path), why=_why(error))
+        ) from error
 
 
 def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
@@ -247,8 +278,12 @@ def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
     if not isinstance(name, str) or name not in names():
         raise Mistake(
             ("exercise",),
-            f"expected one of {', '.join(names())}, found {name!r}. An edited copy of an exercise "
-            f"that is not installed must lie in that exercise's own folder",
+            say(
+                "expected one of {names}, found {name}. An edited copy of an exercise"
+                " that is not installed must lie in that exercise's own folder",
+                names=", ".join(names()),
+                name=repr(name),
+            ),
         )
     place = places.installed(name)
     return place, _described(_read(place.description), place)
@@ -259,18 +294,26 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
     data: dict[str, Any] = file.data
     for key in ("exercise", "title", "points"):
         if key not in data:
-            raise Mistake((), f"it has no {key!r}")
+            raise Mistake((), say("it has no {key}", key=repr(key)))
     _check_keys(data)
     name = data["exercise"]
     if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise Mistake(("exercise",), f"expected a name such as my_exercise, found {name!r}")
+        raise Mistake(
+            ("exercise",), say("expected a name such as my_exercise, found {name}", name=repr(name))
+        )
     if place.name and name != place.name:
         raise Mistake(
-            ("exercise",), f"it is installed as {place.name!r}, and calls itself {name!r}"
+            ("exercise",),
+            say(
+                "it is installed as {name}, and calls itself {own_name}",
+                name=repr(place.name),
+                own_name=repr(name),
+            ),
         )
     if not place.name and name in names():
         raise Mistake(
-            ("exercise",), f"{name!r} is the name of an installed exercise; give yours another"
+            ("exercise",),
+            say("{name} is the name of an installed exercise; give yours another", name=repr(name)),
         )
     return data
 
@@ -278,13 +321,15 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
 def _check_keys(data: Mapping[Any, Any]) -> None:
     for key in data:
         if key not in KEYS:
-            raise Mistake((str(key),), f"unknown; {did_you_mean(key, KEYS)}")
+            raise Mistake((str(key),), say("unknown; {hint}", hint=did_you_mean(key, KEYS)))
 
 
 def _read(path: Path) -> YamlFile:
     file = read_yaml(path)
     if not isinstance(file.data, dict):
-        raise ExerciseError(f"{file.name}: expected keys such as exercise, limits, points")
+        raise ExerciseError(
+            say("{name}: expected keys such as exercise, limits, points", name=file.name)
+        )
     return file
 
 
@@ -294,14 +339,30 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
     for part in ("limits", "tolerances", "varied_runs"):
         known, given = original.get(part) or {}, edited.get(part, {})
         if not isinstance(given, dict):
-            raise Mistake((part,), f"expected names with numbers, found {given!r}")
+            raise Mistake(
+                (part,), say("expected names with numbers, found {given}", given=repr(given))
+            )
         for key, value in given.items():
             if part == "varied_runs" and key == PER_STUDENT:
                 continue  # a switch, which no original has to have
             if key not in known:
-                raise Mistake((part,), f"unknown {key!r}; {did_you_mean(key, known)}")
+                raise Mistake(
+                    (part,),
+                    say(
+                        "unknown {key}; {hint}",
+                        key=repr(key),
+                        hint=did_you_mean(key, known),
+                    ),
+                )
             if not _alike(value, known[key]):
-                raise Mistake((part, key), f"expected e.g. {known[key]!r}, found {value!r}")
+                raise Mistake(
+                    (part, key),
+                    say(
+                        "expected e.g. {known}, found {value}",
+                        known=repr(known[key]),
+                        value=repr(value),
+                    ),
+                )
         merged[part] = {**known, **given}
     if translated.PART in original and translated.PART not in edited:
         anew = [key for key in ("title", "task") if merged.get(key) != original.get(key)]
@@ -320,14 +381,24 @@ def _alike(value: object, example: object) -> bool:
 def _build(data: dict[str, Any], place: Place) -> Exercise:
     scene = data.get("scene", "turtlesim")
     if scene not in SCENES:
-        raise Mistake(("scene",), f"expected one of {', '.join(SCENES)}, found {scene!r}")
+        raise Mistake(
+            ("scene",),
+            say(
+                "expected one of {scenes}, found {scene}",
+                scenes=", ".join(SCENES),
+                scene=repr(scene),
+            ),
+        )
     setting = _setting(data.get("setting"), load_scene(scene), place)
     limits = _limits(data) if not load_scene(scene).examiner else _without_clock(data, scene)
     varied = _varied(data)
     _check_varied(varied, load_scene(scene).farthest_start_m)
     tolerances = data.get("tolerances") or {}
     if not isinstance(tolerances, dict):
-        raise Mistake(("tolerances",), f"expected names with values, found {tolerances!r}")
+        raise Mistake(
+            ("tolerances",),
+            say("expected names with values, found {tolerances}", tolerances=repr(tolerances)),
+        )
     checks = places.import_checks(place)
     wrong = checks.wrong_tolerance(tolerances)
     if wrong is not None:
@@ -359,21 +430,31 @@ def _build(data: dict[str, Any], place: Place) -> Exercise:
 
 def _limits(data: Mapping[str, Any]) -> Limits:
     if "limits" not in data:
-        raise Mistake((), "it has no 'limits'")
+        raise Mistake((), say("it has no 'limits'"))
     limits = _numbers(data, "limits", dict.fromkeys(LIMITS, 1.0))
     missing = [key for key in LIMITS if key not in limits]
     if missing:
-        raise Mistake(("limits",), f"{missing[0]} is missing; there must be {', '.join(LIMITS)}")
+        raise Mistake(
+            ("limits",),
+            say(
+                "{missing} is missing; there must be {limits}",
+                missing=missing[0],
+                limits=", ".join(LIMITS),
+            ),
+        )
     for key in ("first_motion_s", "total_s"):
         if not limits[key]:
-            raise Mistake(("limits", key), "expected a number above 0, found 0")
+            raise Mistake(("limits", key), say("expected a number above 0, found 0"))
     return Limits(**{key: float(value) for key, value in limits.items()})
 
 
 def _without_clock(data: Mapping[str, Any], scene: str) -> Limits:
     for part in ("limits", "varied_runs"):
         if data.get(part):
-            raise Mistake((part,), f"nothing is started in the scene {scene!r}: leave it out")
+            raise Mistake(
+                (part,),
+                say("nothing is started in the scene {scene}: leave it out", scene=repr(scene)),
+            )
     return NO_LIMITS
 
 
@@ -392,13 +473,22 @@ def _sha256(data: Mapping[str, Any], setting: str, folder: Path) -> str:
 def _setting(where: object, scene: Scene, place: Place) -> str:
     """The text of the file that a scene is set up with."""
     if where is not None and not isinstance(where, str):
-        raise Mistake((SETTING,), f"expected a file beside {DESCRIPTION}, found {where!r}")
+        raise Mistake(
+            (SETTING,),
+            say(
+                "expected a file beside {description}, found {where}",
+                description=DESCRIPTION,
+                where=repr(where),
+            ),
+        )
     setting = ""
     if where is not None:
         try:
             setting = (place.folder / where).read_text(encoding="utf-8")
         except (OSError, ValueError) as error:
-            raise Mistake((SETTING,), f"cannot read {where}: {error}") from None
+            raise Mistake(
+                (SETTING,), say("cannot read {where}: {error}", where=where, error=str(error))
+            ) from None
     if why := scene.wrong_setting(setting):
         raise Mistake((SETTING,), why)
     return setting
@@ -406,21 +496,26 @@ def _setting(where: object, scene: Scene, place: Place) -> str:
 
 def _program(given: object) -> str:
     if not isinstance(given, str) or (given and not _NAME.fullmatch(given)):
-        raise Mistake(("program",), f"expected the name of a console script, found {given!r}")
+        raise Mistake(
+            ("program",),
+            say("expected the name of a console script, found {given}", given=repr(given)),
+        )
     return given
 
 
 def _looks(given: object, scene: str) -> bool:
     if not isinstance(given, bool):
-        raise Mistake((LOOKS,), f"expected true or false, found {given!r}")
+        raise Mistake((LOOKS,), say("expected true or false, found {given}", given=repr(given)))
     if given and load_scene(scene).examiner:
-        raise Mistake((LOOKS,), f"the scene {scene!r} does nothing else: leave it out")
+        raise Mistake(
+            (LOOKS,), say("the scene {scene} does nothing else: leave it out", scene=repr(scene))
+        )
     return given
 
 
 def _task(task: object) -> str:
     if not isinstance(task, str):
-        raise Mistake(("task",), f"expected a text, found {task!r}")
+        raise Mistake(("task",), say("expected a text, found {task}", task=repr(task)))
     return task
 
 
@@ -431,7 +526,7 @@ def _varied(data: Mapping[str, Any]) -> VariedRuns:
         return VariedRuns(**_numbers(data, part, VARIED))
     numbers = {key: value for key, value in given.items() if key != PER_STUDENT}
     if not isinstance(given[PER_STUDENT], bool):
-        text = f"expected true or false, found {given[PER_STUDENT]!r}"
+        text = say("expected true or false, found {given}", given=repr(given[PER_STUDENT]))
         raise Mistake((part, PER_STUDENT), text)
     varied = VariedRuns(**_numbers({part: numbers}, part, VARIED))
     return replace(varied, per_student=given[PER_STUDENT])
@@ -445,12 +540,27 @@ def _check_varied(varied: VariedRuns, farthest_m: float) -> None:
     """
     part = "varied_runs"
     if varied.count > MOST_RUNS:
-        raise Mistake((part, "count"), f"expected at most {MOST_RUNS}, found {varied.count}")
+        raise Mistake(
+            (part, "count"),
+            say(
+                "expected at most {most}, found {count}",
+                most=MOST_RUNS,
+                count=varied.count,
+            ),
+        )
     if varied.farthest_m > farthest_m:
-        text = f"expected at most {farthest_m:g}: there are walls; found {varied.farthest_m:g}"
+        text = say(
+            "expected at most {farthest_m:g}: there are walls; found {found_m:g}",
+            farthest_m=farthest_m,
+            found_m=varied.farthest_m,
+        )
         raise Mistake((part, "farthest_m"), text)
     if varied.nearest_m > varied.farthest_m:
-        text = f"expected at most farthest_m, {varied.farthest_m:g}; found {varied.nearest_m:g}"
+        text = say(
+            "expected at most farthest_m, {farthest_m:g}; found {nearest_m:g}",
+            farthest_m=varied.farthest_m,
+            nearest_m=varied.nearest_m,
+        )
         raise Mistake((part, "nearest_m"), text)
 
 
@@ -458,13 +568,24 @@ def _numbers(data: Mapping[str, Any], part: str, examples: Mapping[str, float]) 
     """A part of an exercise.yaml that holds numbers; whole ones where the example is whole."""
     given = data.get(part) or {}
     if not isinstance(given, dict):
-        raise Mistake((part,), f"expected names with numbers, found {given!r}")
+        raise Mistake((part,), say("expected names with numbers, found {given}", given=repr(given)))
     for key, value in given.items():
         if key not in examples:
-            raise Mistake((part,), f"unknown {key!r}; {did_you_mean(key, examples)}")
+            raise Mistake(
+                (part,),
+                say(
+                    "unknown {key}; {hint}",
+                    key=repr(key),
+                    hint=did_you_mean(key, examples),
+                ),
+            )
         if not is_amount(value) or (isinstance(examples[key], int) and value != int(value)):
-            what = "a whole number" if isinstance(examples[key], int) else "a number"
-            raise Mistake((part, key), f"expected {what} from 0, found {value!r}")
+            is_whole = isinstance(examples[key], int)
+            what = say("a whole number") if is_whole else say("a number")
+            raise Mistake(
+                (part, key),
+                say("expected {what} from 0, found {value}", what=what, value=repr(value)),
+            )
     return {k: int(v) if isinstance(examples[k], int) else v for k, v in given.items()}
 
 
@@ -476,7 +597,7 @@ def _starter(where: object, place: Place) -> Path | None:
     except ExerciseError as error:
         raise Mistake(("starter",), error.message) from None
     if not folder.is_dir():
-        raise Mistake(("starter",), f"expected a folder, found {folder}")
+        raise Mistake(("starter",), say("expected a folder, found {folder}", folder=str(folder)))
     real = folder.resolve()
     package = str(where).partition("/")[0]
     roots = [place.folder]
@@ -485,22 +606,34 @@ def _starter(where: object, place: Place) -> Path | None:
     if not any(root.resolve() in (real, *real.parents) for root in roots) or real == roots[0]:
         raise Mistake(
             ("starter",),
-            f"expected a folder inside {place.folder}, or PACKAGE/FOLDER inside an "
-            f"installed package, found {where!r}, which is {real}",
+            say(
+                "expected a folder inside {folder}, or PACKAGE/FOLDER inside an "
+                "installed package, found {where}, which is {real}",
+                folder=str(place.folder),
+                where=repr(where),
+                real=str(real),
+            ),
         )
     return folder
 
 
 def _points(points: object, checks: Checks) -> dict[str, float]:
     if not isinstance(points, dict) or not points:
-        raise Mistake(("points",), "expected check names with points")
+        raise Mistake(("points",), say("expected check names with points"))
     known = [check.name for check in checks]
     for check, value in points.items():
         if check not in known:
-            text = f"no check is named {check!r}; {did_you_mean(check, known)}"
+            text = say(
+                "no check is named {check}; {hint}",
+                check=repr(check),
+                hint=did_you_mean(check, known),
+            )
             raise Mistake(("points",), text)
         if not is_amount(value):
-            raise Mistake(("points", str(check)), f"expected a number from 0, found {value!r}")
+            raise Mistake(
+                ("points", str(check)),
+                say("expected a number from 0, found {value}", value=repr(value)),
+            )
     if not any(points.values()):
         raise Mistake(("points",), "all are 0")
     return {check: float(value) for check, value in points.items()}

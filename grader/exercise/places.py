@@ -29,6 +29,7 @@ from grader import limited, system
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
 from grader.exercise.foreign import contained
+from grader.language.phrase import joined, say
 
 GROUP = "grader.exercises"
 DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
@@ -76,17 +77,30 @@ def installed(name: str) -> Place:
         ExerciseError: there is none, or there are two.
     """
     ours, others = _ours(), _entry_points().get(name, [])
-    found = [*([f"{GROUP}.{name} of this package"] if name in ours else []), *map(_told, others)]
+    found = [
+        *([say("{group}.{name} of this package", group=GROUP, name=name)] if name in ours else []),
+        *map(_told, others),
+    ]
     if len(found) > 1:
         raise ExerciseError(
-            f"several exercises are installed as {name!r}: {', '.join(found)}. "
-            "Remove one, or give the path of its folder."
+            say(
+                "several exercises are installed as {name}: {found}. Remove one, or "
+                "give the path of its folder.",
+                name=repr(name),
+                found=joined(found, ", "),
+            )
         )
     if name in ours:
         return Place(ours[name], f"{GROUP}.{name}", name)
     if others:
         return _of_entry_point(others[0])
-    raise ExerciseError(f"there is no exercise {name!r}; there are: {', '.join(names())}")
+    raise ExerciseError(
+        say(
+            "there is no exercise {name}; there are: {names}",
+            name=repr(name),
+            names=", ".join(names()),
+        )
+    )
 
 
 def in_folder(folder: Path) -> Place:
@@ -97,7 +111,13 @@ def in_folder(folder: Path) -> Place:
     """
     for name in (DESCRIPTION, CHECKS):
         if not (folder / name).is_file():
-            raise ExerciseError(f"{folder} is not an exercise: {_instead_of(folder / name)}")
+            raise ExerciseError(
+                say(
+                    "{path} is not an exercise: {why}",
+                    path=str(folder),
+                    why=_instead_of(folder / name),
+                )
+            )
     folder = folder.resolve()
     for name, ours in _ours().items():
         if ours.resolve() == folder:
@@ -108,12 +128,16 @@ def in_folder(folder: Path) -> Place:
 def _instead_of(file: Path) -> str:
     """What lies where a file should be."""
     if file.is_symlink() and not file.exists():
-        return f"{file.name} is a link to {file.readlink()}, which is not there"
+        return say(
+            "{name} is a link to {target}, which is not there",
+            name=file.name,
+            target=str(file.readlink()),
+        )
     if file.is_dir():
-        return f"{file.name} is a folder, not a file"
+        return say("{name} is a folder, not a file", name=file.name)
     if file.exists():
-        return f"{file.name} is not a regular file"
-    return f"it has no {file.name}"
+        return say("{name} is not a regular file", name=file.name)
+    return say("it has no {name}", name=file.name)
 
 
 def import_checks(place: Place) -> Checks:
@@ -141,9 +165,14 @@ def import_checks(place: Place) -> Checks:
             module = _imported_folder(package, place)
     checks = getattr(module, "checks", None)
     if not isinstance(checks, Checks):
-        found = "nothing of that name" if checks is None else f"a {type(checks).__name__}"
+        found = say("nothing of that name") if checks is None else f"a {type(checks).__name__}"
         raise ExerciseError(
-            f"{CHECKS}: expected `checks = Checks()`, of `from grader import Checks`; found {found}"
+            say(
+                "{checks}: expected `checks = Checks()`, of `from grader import "
+                "Checks`; found {found}",
+                checks=CHECKS,
+                found=found,
+            )
         )
     return checks
 
@@ -181,7 +210,9 @@ def _try(import_it: Callable[[], ModuleType]) -> None:
     try:
         limited.call(trial, limited.Limits())
     except limited.LimitHit as hit:
-        raise ExerciseError(f"{CHECKS} cannot be imported: it {hit}") from None
+        raise ExerciseError(
+            say("{checks} cannot be imported: it {what}", checks=CHECKS, what=hit.args[0])
+        ) from None
 
 
 def locate(folder: Path, where: str) -> Path:
@@ -197,7 +228,13 @@ def locate(folder: Path, where: str) -> Path:
         path = Path(str(files(package))) / rest
         if path.exists():
             return path
-    raise ExerciseError(f"there is no {where!r}, neither in {folder} nor in an installed package")
+    raise ExerciseError(
+        say(
+            "there is no {where}, neither in {folder} nor in an installed package",
+            where=repr(where),
+            folder=str(folder),
+        )
+    )
 
 
 # Installed ones -------------------------------------------------------------------------------
@@ -217,23 +254,36 @@ def _entry_points() -> Mapping[str, list[EntryPoint]]:
 
 
 def _told(point: EntryPoint) -> str:
-    return f"{point.value} of {point.dist.name if point.dist else 'an unknown package'}"
+    return say(
+        "{module} of {package}",
+        module=point.value,
+        package=point.dist.name if point.dist else say("an unknown package"),
+    )
 
 
 def _of_entry_point(point: EntryPoint) -> Place:
     try:
         spec = importlib.util.find_spec(point.value)
     except Exception as error:  # importing what is above it can do anything
-        raise ExerciseError(f"{_told(point)} cannot be imported: {error}") from None
+        raise ExerciseError(
+            say("{told} cannot be imported: {error}", told=_told(point), error=str(error))
+        ) from None
     if spec is None:
-        raise ExerciseError(f"{_told(point)} is not there, though its package is installed")
+        raise ExerciseError(
+            say("{told} is not there, though its package is installed", told=_told(point))
+        )
     folders = list(spec.submodule_search_locations or [])
     folder = Path(folders[0]) if folders else Path(spec.origin or "").parent
     package = spec.parent or ""
     for name in (DESCRIPTION, CHECKS):
         if not (folder / name).is_file():
             raise ExerciseError(
-                f"{_told(point)} is not an exercise: {folder}: {_instead_of(folder / name)}"
+                say(
+                    "{told} is not an exercise: {folder}: {why}",
+                    told=_told(point),
+                    path=str(folder),
+                    why=_instead_of(folder / name),
+                )
             )
     return Place(folder, package, point.name)
 
@@ -301,18 +351,35 @@ def describe(error: BaseException, folder: Path, file: str = "") -> str:
     """
     name = type(error).__name__
     if isinstance(error, SyntaxError) and error.filename:
-        return f"{_shown(error.filename, folder)}, line {error.lineno}: {name}: {error.msg}"
+        return say(
+            "{file}, line {line}: {name}: {what}",
+            file=_shown(error.filename, folder),
+            line=str(error.lineno),
+            name=name,
+            what=error.msg,
+        )
     text = f"{name}: {error}" if str(error) else name
     if isinstance(error, ImportError) and (absent := _absent(error, folder)):
-        text = f"{name}: there is no {absent} beside {CHECKS}"
+        text = say(
+            "{name}: there is no {absent} beside {checks}", name=name, absent=absent, checks=CHECKS
+        )
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
     missing = getattr(error, "name", None) if isinstance(error, ModuleNotFoundError) else None
     if missing and (folder / f"{missing}.py").is_file():
-        text += f". A file beside {CHECKS} is imported by `from . import {missing}`"
+        text += ". " + say(
+            "A file beside {checks} is imported by `from . import {missing}`",
+            checks=CHECKS,
+            missing=missing,
+        )
     if not own:
         return f"{file}: {text}" if file else text
-    return f"{_shown(own[-1].filename, folder)}, line {own[-1].lineno}: {text}"
+    return say(
+        "{file}, line {line}: {what}",
+        file=_shown(own[-1].filename, folder),
+        line=str(own[-1].lineno),
+        what=text,
+    )
 
 
 def _absent(error: ImportError, folder: Path) -> str:

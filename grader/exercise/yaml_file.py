@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from grader.errors import ExerciseError
+from grader.language.phrase import Phrase, joined, say
 
 #: Where a value stands in a file: the keys that lead to it.
 Keys = tuple[str, ...]
@@ -21,7 +22,7 @@ class Mistake(ExerciseError):
     """Something wrong with the value at some keys: 'limits: rest_s: expected ...'."""
 
     def __init__(self, keys: Keys, text: str) -> None:
-        super().__init__(": ".join((*keys, text)))
+        super().__init__(joined((*map(Phrase, keys), text), ": "))  # keys are no words
         self.keys = keys
 
 
@@ -44,8 +45,14 @@ class YamlFile:
         keys = mistake.keys
         while keys and keys not in self.lines:
             keys = keys[:-1]
-        line = f", line {self.lines[keys]}" if keys else ""
-        return f"{self.name}{line}: {mistake.message}"
+        if not keys:
+            return joined([self.name, mistake.message], ": ")
+        return say(
+            "{file}, line {line}: {what}",
+            file=self.name,
+            line=str(self.lines[keys]),
+            what=mistake.message,
+        )
 
 
 def read_yaml(path: Path) -> YamlFile:
@@ -64,20 +71,26 @@ def read_yaml(path: Path) -> YamlFile:
         data = loader.construct_document(root) if root is not None else None
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise ExerciseError(f"{path.name}, line {line}: it is not UTF-8") from None
+        raise ExerciseError(
+            say("{name}, line {line}: it is not UTF-8", name=path.name, line=line)
+        ) from None
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise ExerciseError(f"{path.name}, line {line}: {error.problem}") from None
+        raise ExerciseError(
+            say("{file}, line {line}: {what}", file=path.name, line=str(line), what=error.problem)
+        ) from None
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
-        what = f"the character {error.character!r}"
-        raise ExerciseError(f"{path.name}, line {line}: {what} is not allowed") from None
+        what = say("the character {character}", character=repr(error.character))
+        raise ExerciseError(
+            say("{name}, line {line}: {what} is not allowed", name=path.name, line=line, what=what)
+        ) from None
     except RecursionError:
-        raise ExerciseError(f"{path.name}: it is nested too deeply") from None
+        raise ExerciseError(say("{name}: it is nested too deeply", name=path.name)) from None
     except (yaml.YAMLError, ValueError) as error:
-        raise ExerciseError(f"{path.name}: {str(error).splitlines()[0]}") from None
+        raise ExerciseError(joined([path.name, str(error).splitlines()[0]], ": ")) from None
     except ExerciseError as error:
-        raise ExerciseError(f"{path.name}, {error.message}") from None
+        raise ExerciseError(joined([path.name, error.message], ", ")) from None
     return YamlFile(path.name, data, lines)
 
 
@@ -100,7 +113,13 @@ def _lines(node: yaml.Node, above: Keys) -> Iterator[tuple[Keys, int]]:
             if not isinstance(key, yaml.ScalarNode):
                 continue
             if key.value in keys and not key.tag.endswith(":merge"):
-                raise ExerciseError(f"line {line}: the key {key.value!r} stands here twice")
+                raise ExerciseError(
+                    say(
+                        "line {line}: the key {value} stands here twice",
+                        line=line,
+                        value=repr(key.value),
+                    )
+                )
             keys.add(key.value)
             yield (*above, key.value), line
             todo.append((value, (*above, key.value)))
@@ -110,8 +129,10 @@ def did_you_mean(key: object, known: Iterable[object]) -> str:
     """What there is instead of a key that nobody knows."""
     names = [str(name) for name in known]
     near = get_close_matches(str(key), names, n=1)
-    there_are = f"here are {', '.join(names)}"
-    return f"did you mean {near[0]!r}? T{there_are}" if near else f"t{there_are}"
+    listed = ", ".join(names)
+    if not near:
+        return say("there are {names}", names=listed)
+    return say("did you mean {near}? There are {names}", near=repr(near[0]), names=listed)
 
 
 def is_amount(value: object) -> bool:
