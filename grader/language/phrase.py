@@ -121,6 +121,9 @@ def chained(items: Sequence[str]) -> Phrase:
 def fill(key: str, values: Mapping[str, Any], write: Callable[[Any, str], str] = format) -> str:
     """A key with its values in their places.
 
+    `{clause!u}` is a clause with which a sentence begins: with a capital, where it is no file's
+    name.
+
     Args:
         write: makes a text of a value and its format.
 
@@ -135,8 +138,13 @@ def fill(key: str, values: Mapping[str, Any], write: Callable[[Any, str], str] =
         if name not in values or not _NAME.fullmatch(name) or not _FORMAT.fullmatch(form or ""):
             raise ValueError(f"no value for {{{name}:{form}}} in {key!r}")
         value = values[name]
-        made.append(repr(value) if conversion == "r" else write(value, form or ""))
+        text = repr(value) if conversion == "r" else write(value, form or "")
+        made.append(_as_beginning(text) if conversion == "u" else text)
     return "".join(made)
+
+
+def _as_beginning(clause: str) -> str:
+    return clause if "." in clause.partition(" ")[0] else clause[:1].upper() + clause[1:]
 
 
 def _kept(phrase: Phrase, text: str) -> str:

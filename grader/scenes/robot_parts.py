@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grader import text
+from grader.language.phrase import say
 from grader.scenes.view import Placing, Shape
 from robot_py.drawing.body import colour_of
 from robot_py.kinematics import matrix, quaternion, translation
@@ -80,15 +81,17 @@ def name_of(name: str) -> str:
 
 def named(names: Sequence[str], most: int = 6) -> str:
     """Some names in a row."""
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(map(name_of, names[:most])) + more
+    few = ", ".join(map(name_of, names[:most]))
+    if len(names) <= most:
+        return few
+    return say("{names} and {count} more", names=few, count=len(names) - most)
 
 
 def place_less(names: Sequence[str]) -> tuple[str, ...]:
     """What a picture says of links that have no place; nothing where all have one."""
     if not names:
         return ()
-    return (f"white, at the origin - no transform: {named(names)}",)
+    return (say("white, at the origin - no transform: {names}", names=named(names)),)
 
 
 _KINDS = {"Box": "box", "Cylinder": "cylinder", "Sphere": "sphere"}

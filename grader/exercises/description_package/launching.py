@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, how_it_ends, not_judged, shown
+from grader.language.phrase import joined, say
 from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
 from grader.scenes.package.launch_errors import advice
 from grader.scenes.package.trace import Launch, Node
@@ -35,9 +36,12 @@ def judge(looked: Looked) -> Finding:
     if not looked.launches:
         return Finding(
             0,
-            "The package has no launch file.",
-            "Write launch/display.launch.py: it starts robot_state_publisher with the description, "
-            "joint_state_publisher_gui, and rviz2 with your .rviz file.",
+            say("The package has no launch file."),
+            say(
+                "Write launch/display.launch.py: it starts robot_state_publisher with "
+                "the description, joint_state_publisher_gui, and rviz2 with your .rviz "
+                "file."
+            ),
         )
     found = {launch.file: lacking(looked, launch) for launch in looked.launches}
     shows = [each.file for each in looked.launches if any(map(is_rviz, each.nodes))]
@@ -49,31 +53,40 @@ def judge(looked: Looked) -> Finding:
         if each.problem is not None and each.problem.kind in ("error", "limit")
     ]
     if share < 1 and looked.not_known is not None:
-        return not_judged(looked.not_known, f"{best} alone does not show the robot")
+        return not_judged(looked.not_known, say("{best} alone does not show the robot", best=best))
     if broken:
         launch = broken[0]
         assert launch.problem is not None
         return Finding(
             min(share, BROKEN) if launch.file != best else 0.0,
-            f"{launch.file} {how_it_ends(launch.problem)}.",
+            say("{what_happens}.", what_happens=how_it_ends(launch.file, launch.problem)),
             advice(launch.problem.text),
         )
     strange = next((each for each in looked.launches if each.file == best), None)
     if share <= DESCRIPTION and strange and (include := _not_followed(strange)):
-        what = f"{best} leaves it to {include}, a file of another package, to show the robot"
         return Finding(
             0,
-            f"Not judged: {what}, and nobody knows here what that starts.",
-            "This is no fault of the package: tell whoever runs the course.",
+            say(
+                "Not judged: {best} leaves it to {include}, a file of another package, to show the "
+                "robot, and nobody knows here what that starts.",
+                best=best,
+                include=include,
+            ),
+            say("This is no fault of the package: tell whoever runs the course."),
             judged=False,
         )
     if not found[best]:
         return Finding(
-            1, f"{best} starts {PUBLISHER} with the description, and what belongs to it."
+            1,
+            say(
+                "{best} starts {publisher} with the description, and what belongs to it.",
+                best=best,
+                publisher=PUBLISHER,
+            ),
         )
     first, *others = (part.rationale for part in found[best])
-    texts = " ".join((first, *(f"{each[0].upper()}{each[1:]}" for each in others)))
-    return Finding(share, f"{best}: {texts}", found[best][0].help)
+    texts = joined([first, *(say("{fault!u}", fault=each) for each in others)], " ")
+    return Finding(share, say("{file}: {faults}", file=best, faults=texts), found[best][0].help)
 
 
 def lacking(looked: Looked, launch: Launch) -> list[Part]:
@@ -87,8 +100,8 @@ def lacking(looked: Looked, launch: Launch) -> list[Part]:
         parts.append(
             Part(
                 DESCRIPTION,
-                "it starts no robot_state_publisher.",
-                "Start it with the parameter robot_description: the text of your URDF.",
+                say("it starts no robot_state_publisher."),
+                say("Start it with the parameter robot_description: the text of your URDF."),
             )
         )
     elif not any(text.strip() for text in texts) and not _is_refused(looked, launch):
@@ -99,9 +112,13 @@ def lacking(looked: Looked, launch: Launch) -> list[Part]:
         parts.append(
             Part(
                 JOINTS,
-                "nothing publishes /joint_states: the moving joints have no transforms, and RViz "
-                "shows what hangs on them white.",
-                "Start joint_state_publisher_gui, or a node of yours that publishes JointState.",
+                say(
+                    "nothing publishes /joint_states: the moving joints have no transforms,"
+                    " and RViz shows what hangs on them white."
+                ),
+                say(
+                    "Start joint_state_publisher_gui, or a node of yours that publishes JointState."
+                ),
             )
         )
     rviz = _rviz(looked, launch)
@@ -174,11 +191,18 @@ def _not_followed(launch: Launch) -> str:
 
 def _no_description(node: Node) -> Part:
     names = [each.name for each in node.parameters]
-    found = f"its parameters are {shown(', '.join(names))}." if names else "it gets no parameter."
+    found = (
+        say("its parameters are {names}.", names=shown(", ".join(names)))
+        if names
+        else say("it gets no parameter.")
+    )
     return Part(
         DESCRIPTION,
-        f"robot_state_publisher has no robot_description: {found}",
-        "Give it parameters=[{'robot_description': ...}] with the text of the URDF, not its path.",
+        say("robot_state_publisher has no robot_description: {found}", found=found),
+        say(
+            "Give it parameters=[{{'robot_description': ...}}] with the text of the"
+            " URDF, not its path."
+        ),
     )
 
 
@@ -189,9 +213,11 @@ def _rviz(looked: Looked, launch: Launch) -> Part | None:
     if started:
         return Part(
             RVIZ,
-            "rviz2 starts without a file: it shows an empty grid.",
-            "Save RViz's settings into the package, install the file, and start rviz2 with "
-            "arguments=['-d', FILE].",
+            say("rviz2 starts without a file: it shows an empty grid."),
+            say(
+                "Save RViz's settings into the package, install the file, and start "
+                "rviz2 with arguments=['-d', FILE]."
+            ),
         )
     files = [path for path in looked.setup.installed if path.endswith(".rviz")]
     by_hand = not any(is_rviz(n) for each in looked.launches for n in each.nodes)
@@ -199,10 +225,13 @@ def _rviz(looked: Looked, launch: Launch) -> Part | None:
         return None  # who launches it opens RViz with the file that is installed
     return Part(
         RVIZ,
-        "it starts no rviz2, and no .rviz file is installed for who opens it by hand."
+        say("it starts no rviz2, and no .rviz file is installed for who opens it by hand.")
         if not files
-        else "it starts no rviz2.",
-        "Start rviz2 with arguments=['-d', FILE], FILE being the .rviz file in the share folder.",
+        else say("it starts no rviz2."),
+        say(
+            "Start rviz2 with arguments=['-d', FILE], FILE being the .rviz file in "
+            "the share folder."
+        ),
     )
 
 

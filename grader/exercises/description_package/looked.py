@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from grader.exercise.verdict import Finding
+from grader.language.phrase import say
 from grader.recording.recording import Recordings
+from grader.scenes.package.said import phrase_of
 from grader.scenes.package.trace import Description, Launch, PackageTrace, Problem, Setup
 from grader.text import clip_inside, without_controls
 
@@ -66,20 +68,24 @@ def looked_at(recordings: Recordings, judge: Callable[[Looked], Finding]) -> Fin
     return _nothing(recordings) if looked is None else judge(looked)
 
 
-def how_it_ends(problem: Problem) -> str:
-    """'ends with NameError: ... (setup.py, line 3)', 'did not come to an end in 20 s ...'."""
+def how_it_ends(file: str, problem: Problem) -> str:
+    """'setup.py ends with NameError: ... (setup.py, line 3)', '... did not come to an end ...'."""
     if problem.kind == "limit":
-        return shown(problem.text.removeprefix("it "))
-    return f"ends with {shown(problem.text)}{placed(problem)}"
+        what = shown(phrase_of(problem.text.removeprefix("it ")))
+        return say("{file} {what}", file=file, what=what)
+    return say(
+        "{file} ends with {error}{place}", file=file, error=said(problem), place=placed(problem)
+    )
 
 
 def _nothing(recordings: Recordings) -> Finding:
     run = recordings.nominal.run
-    why = f": {run.flags[0]}" if run.flags else ""
     return Finding(
         0,
-        f"The package could not be looked at{why}.",
-        "Does setup.py or a launch file end the process that it runs in, or run without end?",
+        say("The package could not be looked at: {why}.", why=run.flags[0])
+        if run.flags
+        else say("The package could not be looked at."),
+        say("Does setup.py or a launch file end the process that it runs in, or run without end?"),
     )
 
 
@@ -87,8 +93,8 @@ def nothing_started() -> Finding:
     """Of what nobody can tell, because no launch file starts anything."""
     return Finding(
         0,
-        "Not judged: no launch file starts anything, so there is nothing to look at.",
-        "Write the launch file that shows the robot first.",
+        say("Not judged: no launch file starts anything, so there is nothing to look at."),
+        say("Write the launch file that shows the robot first."),
         judged=False,
     )
 
@@ -98,24 +104,37 @@ def not_judged(launch: Launch, what: str) -> Finding:
     problem = launch.problem or Problem("", "")
     return Finding(
         0,
-        f"Not judged: {what}, and {launch.file} could not be evaluated: {shown(problem.text)}.",
-        "Give the argument a default_value: then `ros2 launch` needs no more than the file."
+        say(
+            "Not judged: {what}, and {file} could not be evaluated: {why}.",
+            what=what,
+            file=launch.file,
+            why=said(problem),
+        ),
+        say("Give the argument a default_value: then `ros2 launch` needs no more than the file.")
         if problem.kind == "argument"
-        else "This is no fault of the package: tell whoever runs the course.",
+        else say("This is no fault of the package: tell whoever runs the course."),
         judged=False,
     )
 
 
 def shown(text: str) -> str:
-    """A text of the submission's in a sentence."""
-    return clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
+    """A text of the submission's in a sentence; a phrase that fits there stays one."""
+    made = clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
+    return text if made == text else made
+
+
+def said(problem: Problem) -> str:
+    """What a problem says, in a sentence."""
+    return shown(phrase_of(problem.text))
 
 
 def placed(problem: Problem) -> str:
     """' (launch/display.launch.py, line 9)', with a blank before it; '' for no place."""
     if not problem.file:
         return ""
-    return f" ({problem.file}, line {problem.line})" if problem.line else f" ({problem.file})"
+    if not problem.line:
+        return f" ({problem.file})"
+    return say(" ({file}, line {line})", file=problem.file, line=problem.line)
 
 
 def folder_of(path: str) -> str:

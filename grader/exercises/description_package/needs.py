@@ -6,7 +6,9 @@ from typing import Final
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, nothing_started
+from grader.language.phrase import say
 from grader.scenes.package.examining.known import DESKTOP
+from grader.scenes.package.said import phrase_of
 
 #: What comes along with another package.
 COVERED: Final = {
@@ -34,17 +36,24 @@ def judge(looked: Looked) -> Finding:
     if looked.setup.manifest:
         return Finding(
             0,
-            f"package.xml cannot be read for dependencies: {looked.setup.manifest}.",
-            "Compare it with one that `ros2 pkg create` writes.",
+            say(
+                "package.xml cannot be read for dependencies: {why}.",
+                why=phrase_of(looked.setup.manifest),
+            ),
+            say("Compare it with one that `ros2 pkg create` writes."),
         )
     if not missing:
-        told = ", ".join(sorted(needed)) or "nothing but what every desktop installation has"
-        return Finding(1, f"What it uses is declared: {told}.")
+        used_ = ", ".join(sorted(needed)) or say("nothing but what every desktop installation has")
+        return Finding(1, say("What it uses is declared: {packages}.", packages=used_))
     return Finding(
         1 - len(missing) / len(needed),
-        f"package.xml does not declare {', '.join(missing)}, which the package uses: "
-        "`rosdep install` does not bring it, and on another machine it is missing.",
-        f"Add <exec_depend>{missing[0]}</exec_depend>.",
+        say(
+            "package.xml does not declare {missing}, which the package uses: "
+            "`rosdep install` does not bring it, and on another machine it is "
+            "missing.",
+            missing=", ".join(missing),
+        ),
+        say("Add <exec_depend>{package}</exec_depend>.", package=missing[0]),
     )
 
 

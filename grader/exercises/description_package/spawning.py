@@ -11,6 +11,7 @@ from grader.exercises.description_package.launching import (
     is_publisher,
 )
 from grader.exercises.description_package.looked import Looked, nothing_started, shown
+from grader.language.phrase import say
 from grader.scenes.package.trace import Launch, Node
 
 #: Program -> where the model may come from (one of these), and what must be named.
@@ -40,20 +41,25 @@ def judge(looked: Looked, is_asked: bool) -> Finding:
         if is_asked:
             return Finding(
                 0,
-                "No launch file puts the robot into Gazebo.",
-                "Start create of ros_gz_sim with -topic robot_description and -name.",
+                say("No launch file puts the robot into Gazebo."),
+                say("Start create of ros_gz_sim with -topic robot_description and -name."),
             )
-        return Finding(1, "No launch file puts the robot into Gazebo, and none need.")
+        return Finding(1, say("No launch file puts the robot into Gazebo, and none need."))
     for launch, node in found:
         fault = next(_faults(looked, launch, node), "")
         if fault:
             return Finding(
                 0,
-                f"{launch.file}: {node.executable} {fault}",
-                "Compare the arguments with `ros2 run PACKAGE PROGRAM --help`.",
+                say(
+                    "{file}: {program} {fault}",
+                    file=launch.file,
+                    program=node.executable,
+                    fault=fault,
+                ),
+                say("Compare the arguments with `ros2 run PACKAGE PROGRAM --help`."),
             )
     launches = [launch for launch, _ in found] or included
-    return Finding(1, f"{launches[0].file} puts the robot into Gazebo.")
+    return Finding(1, say("{file} puts the robot into Gazebo.", file=launches[0].file))
 
 
 def _includes_spawner(launch: Launch) -> bool:
@@ -64,25 +70,30 @@ def _faults(looked: Looked, launch: Launch, node: Node) -> Iterator[str]:
     sources, needed = PROGRAMS[node.executable]
     given = _given(node)
     if None in given:
-        yield f"gets {shown(given[None])!r}, which is no argument of it."
+        yield say("gets {word!r}, which is no argument of it.", word=shown(given[None]))
     origins = [each for each in sources if each in given]
     if len(origins) != 1:
-        told = ", ".join(origins) or "none"
-        yield f"needs exactly one of {', '.join(sources)}; it gets {told}."
+        told = ", ".join(origins) or say("none")
+        yield say(
+            "needs exactly one of {sources}; it gets {told}.", sources=", ".join(sources), told=told
+        )
     for name in needed:
         if not given.get(name):
-            yield f"needs {name} with a name."
+            yield say("needs {name} with a name.", name=name)
     for name in _PLACES:
         if name in given and not _is_number(given[name]):
-            yield f"gets {name} {shown(given[name])!r}; expected a number."
+            yield say(
+                "gets {name} {value!r}; expected a number.", name=name, value=shown(given[name])
+            )
     if "-topic" in given:
         topic = given["-topic"].rsplit("/", 1)[-1]
         if topic == "robot_description" and not any(map(_is_published, looked.launches)):
-            yield "waits for the topic robot_description, and no launch file publishes it."
+            yield say("waits for the topic robot_description, and no launch file publishes it.")
         elif topic != "robot_description" and not _is_remapped(launch, topic):
-            yield (
-                f"waits for the topic {shown(given['-topic'])!r}, which nobody publishes; "
-                "robot_state_publisher publishes robot_description."
+            yield say(
+                "waits for the topic {topic!r}, which nobody publishes; "
+                "robot_state_publisher publishes robot_description.",
+                topic=shown(given["-topic"]),
             )
 
 
@@ -136,8 +147,8 @@ def judge_one_source(looked: Looked) -> Finding:
     if not into:
         return Finding(
             0,
-            "Not judged: no launch file puts the robot into Gazebo.",
-            "Write that launch file first.",
+            say("Not judged: no launch file puts the robot into Gazebo."),
+            say("Write that launch file first."),
             judged=False,
         )
     for launch in into:
@@ -145,9 +156,15 @@ def judge_one_source(looked: Looked) -> Finding:
         if second:
             return Finding(
                 0,
-                f"{launch.file} starts {second[0].executable} beside Gazebo, which publishes the "
-                "joints as well: the wheels jump between what turns and what the sliders say.",
-                "Beside a simulator no joint_state_publisher may run; it belongs into the launch "
-                "file for RViz alone.",
+                say(
+                    "{file} starts {executable} beside Gazebo, which publishes the joints "
+                    "as well: the wheels jump between what turns and what the sliders say.",
+                    file=launch.file,
+                    executable=second[0].executable,
+                ),
+                say(
+                    "Beside a simulator no joint_state_publisher may run; it belongs into "
+                    "the launch file for RViz alone."
+                ),
             )
-    return Finding(1, "Beside Gazebo nothing else publishes joint states.")
+    return Finding(1, say("Beside Gazebo nothing else publishes joint states."))

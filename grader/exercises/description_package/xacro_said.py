@@ -5,65 +5,86 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from grader.language.phrase import say
+
 #: What xacro puts behind every fault of XML; of most it is not true.
 _CHECK_THAT: Final = " Check that:"
 #: Where what lies in the package's share folder lies in the package, if nobody renames it.
 _SHARE: Final = "/prefix/share/{}/"
-_BY_HAND: Final = "Run xacro by hand on the file: it says the same."
-_ABOVE: Final = "a tag that is not closed, or closed by another name, stands at that line or above."
+_BY_HAND: Final = say("Run xacro by hand on the file: it says the same.")
+_ABOVE: Final = say(
+    "a tag that is not closed, or closed by another name, stands at that line or above."
+)
 #: What xacro says -> what to do. The first that fits counts.
 _ADVICE: Final = (
     (
         "unbound prefix",
-        "The first tag has to say what xacro: is: "
-        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name=...>.',
+        say(
+            "The first tag has to say what xacro: is: "
+            '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name=...>.'
+        ),
     ),
-    ("mismatched tag", f"The line is where it was noticed: {_ABOVE}"),
-    ("no element found", f"The file ends too soon: {_ABOVE}"),
+    ("mismatched tag", say("The line is where it was noticed: {above}", above=_ABOVE)),
+    ("no element found", say("The file ends too soon: {above}", above=_ABOVE)),
     (
         "XML or text declaration not at start",
-        "<?xml ...?> stands at the very start of a file: take away what is above it.",
+        say("<?xml ...?> stands at the very start of a file: take away what is above it."),
     ),
     (
         "not well-formed",
-        "Look at that place: a quotation mark that is missing, a < or & that is meant as it "
-        "stands, or -- within a comment.",
+        say(
+            "Look at that place: a quotation mark that is missing, a < or & that is"
+            " meant as it stands, or -- within a comment."
+        ),
     ),
     (
         "unknown macro name",
-        "A macro is defined by <xacro:macro name=...>, or in a file that is included, above where "
-        "it is used. Compare the names.",
+        say(
+            "A macro is defined by <xacro:macro name=...>, or in a file that is "
+            "included, above where it is used. Compare the names."
+        ),
     ),
     (
         "Undefined parameters",
-        "The macro's params asks for them: each use of it has to give them, unless params has a "
-        "default (NAME:=VALUE).",
+        say(
+            "The macro's params asks for them: each use of it has to give them, "
+            "unless params has a default (NAME:=VALUE)."
+        ),
     ),
     (
         "Invalid parameter",
-        "The macro has no such parameter: add it to its params, or leave it out where it is used.",
+        say(
+            "The macro has no such parameter: add it to its params, or leave it out"
+            " where it is used."
+        ),
     ),
     (
         "No such file or directory",
-        "A name in <xacro:include filename=...> is looked for beside the file that includes it, "
-        "where it is installed: is it there, and in data_files?",
+        say(
+            "A name in <xacro:include filename=...> is looked for beside the file "
+            "that includes it, where it is installed: is it there, and in "
+            "data_files?"
+        ),
     ),
     (
         "a file of another package",
-        "$(find NAME) takes the name of a package: of your own, as package.xml has it, for your "
-        "own files. Another one has to be installed where this is graded.",
+        say(
+            "$(find NAME) takes the name of a package: of your own, as package.xml "
+            "has it, for your own files. Another one has to be installed where this"
+            " is graded."
+        ),
     ),
     (
         "codec can't decode",
-        "Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'.",
+        say("Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."),
     ),
     (
         "sequence by non-int",
-        "A number is a text here: decimals take a point, 0.11, not a comma, and no unit.",
+        say("A number is a text here: decimals take a point, 0.11, not a comma, and no unit."),
     ),
     (
         "Undefined substitution argument",
-        "<xacro:arg name=... default=...> has to come before $(arg ...) is used.",
+        say("<xacro:arg name=... default=...> has to come before $(arg ...) is used."),
     ),
 )
 _UNDEFINED: Final = re.compile(r"name '(\w+)' is not defined")
@@ -80,8 +101,10 @@ def advice(said: str) -> str:
     """What to do about what xacro says."""
     undefined = _UNDEFINED.search(said)
     if undefined is not None:
-        return (
-            f'Nothing above defines it: <xacro:property name="{undefined[1]}" value=.../>, with '
-            "xacro: before it, or a parameter of the macro. Compare letter by letter."
+        return say(
+            'Nothing above defines it: <xacro:property name="{name}" '
+            "value=.../>, with xacro: before it, or a parameter of the macro. "
+            "Compare letter by letter.",
+            name=undefined[1],
         )
     return next((help for words, help in _ADVICE if words in said), _BY_HAND)

@@ -10,15 +10,16 @@ from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Expected, Finding
 from grader.exercises.state_publisher.naming import judge_names
 from grader.exercises.state_publisher.rate import too_seldom
-from grader.exercises.state_publisher.seen import Seen, finite, number, sentence
+from grader.exercises.state_publisher.seen import Seen, finite, rounded, sentence
+from grader.language.phrase import say
 from grader.scenes.robot.motion import Floats, Joint
 from grader.scenes.robot.view import curve_of
 from robot_py.model import JointType
 
-HELP = (
-    "Angles in a JointState are in radians, lengths in metres. A joint that turns on has a "
-    "position that grows each time; one that goes to and fro changes its direction where it has "
-    "gone far enough."
+HELP = say(
+    "Angles in a JointState are in radians, lengths in metres. A joint that"
+    " turns on has a position that grows each time; one that goes to and "
+    "fro changes its direction where it has gone far enough."
 )
 
 
@@ -29,26 +30,31 @@ def judge_moves(seen: Seen, tolerances: Tolerances) -> Finding:
     if not seen.joints.keys() & seen.moving.keys():
         names = judge_names(seen)
         return Finding(0, names.rationale, names.help, names.evidence)
-    told, wrong = [], []
+    told: list[str] = []
+    wrong: list[str] = []
     where: list[Evidence] = []
     for name, joint in seen.moving.items():
         said = seen.joints.get(name)
         if said is None or len(said.positions) < tolerances["least_messages"]:
-            wrong.append(f"{name!r} has no positions to move by")
+            wrong.append(say("{joint!r} has no positions to move by", joint=name))
             continue
         fault, seen_of_it = _judge(said, joint.type, tolerances)
         if fault:
-            wrong.append(f"{name!r} {fault}")
-            where.append(seen.moment(int(said.ticks[-1]), f"{name}: {fault}"))
+            wrong.append(say("{joint!r} {movement}", joint=name, movement=fault))
+            where.append(
+                seen.moment(
+                    int(said.ticks[-1]), say("{joint}: {movement}", joint=name, movement=fault)
+                )
+            )
         else:
-            told.append(f"{name!r} {seen_of_it}")
+            told.append(say("{joint!r} {movement}", joint=name, movement=seen_of_it))
     share = len(told) / max(len(seen.moving), 1)
     help = HELP
     if wrong and all("stays at" in each for each in wrong):
-        help = "What makes the position grow each time: is it there, and is it ever reached?"
+        help = say("What makes the position grow each time: is it there, and is it ever reached?")
     if wrong and (seldom := too_seldom(seen, tolerances)):
         wrong.insert(0, seldom)
-        help = "create_timer() takes seconds: 1 / 30 calls you thirty times a second."
+        help = say("create_timer() takes seconds: 1 / 30 calls you thirty times a second.")
     wanted = tuple(_wanted(seen, name, tolerances) for name in seen.moving)
     return Finding(share, sentence(wrong or told), help, tuple(where), expected=wanted)
 
@@ -58,10 +64,19 @@ def _wanted(seen: Seen, name: str, tolerances: Tolerances) -> Expected:
     kind = seen.moving[name].type
     curve = curve_of(name)
     if kind == JointType.CONTINUOUS:
-        text = f"turns on, one way, by {number(tolerances['turn_least_rad'])} rad at least"
-        return Expected(curve, f"{text} and {number(tolerances['turn_most'])} rad/s at most")
+        text = say(
+            "turns on, one way, by {least:.4g} rad at least and {most:.4g} rad/s at most",
+            least=rounded(tolerances["turn_least_rad"]),
+            most=rounded(tolerances["turn_most"]),
+        )
+        return Expected(curve, text)
     unit, (least, most) = _width(kind, tolerances)
-    text = f"to and fro, {number(least)} to {number(most)} {unit} wide"
+    text = say(
+        "to and fro, {least:.4g} to {most:.4g} {unit} wide",
+        least=rounded(least),
+        most=rounded(most),
+        unit=unit,
+    )
     said = finite(seen.joints[name].positions) if name in seen.joints else np.empty(0)
     if not len(said):
         return Expected(curve, text)
@@ -84,9 +99,9 @@ def _judge(joint: Joint, kind: JointType, tolerances: Tolerances) -> tuple[str, 
     """What is wrong with its movement; or '', and how it moves."""
     positions = finite(joint.positions)
     if len(positions) < len(joint.positions):
-        return "has positions that are no numbers", ""
+        return say("has positions that are no numbers"), ""
     if float(np.ptp(positions)) < 1e-6:
-        return f"stays at {number(positions[0])}", ""
+        return say("stays at {position:.4g}", position=rounded(positions[0])), ""
     duration_s = max(float(joint.ticks[-1] - joint.ticks[0]) * 0.016, 0.016)
     if kind == JointType.CONTINUOUS:
         return _turns(positions, duration_s, tolerances)
@@ -102,15 +117,19 @@ def _turns(positions: Floats, duration_s: float, tolerances: Tolerances) -> tupl
     speed = float(np.abs(steps[~jumps]).sum() / duration_s) if (~jumps).any() else math.inf
     if jumps.mean() > 0.2 or speed > tolerances["turn_most"]:
         spin = float(np.median(np.abs(raw)) * len(raw) / duration_s)
-        return f"turns by {spin:.0f} rad/s, as if in degrees", ""
+        return say("turns by {speed:.0f} rad/s, as if in degrees", speed=spin), ""
     moved = steps[np.abs(steps) > 1e-9]
     one_way = max((moved > 0).mean(), (moved < 0).mean()) if len(moved) else 0.0
     total = abs(float(steps.sum()))
     if one_way < tolerances["one_way"]:
-        return "turns to and fro; it should turn on, one way", ""
+        return say("turns to and fro; it should turn on, one way"), ""
     if total < tolerances["turn_least_rad"]:
-        return f"turns by {total:.2f} rad in {duration_s:.0f} s; that is hardly seen", ""
-    return "", f"turns on, by {speed:.2f} rad/s"
+        return say(
+            "turns by {angle:.2f} rad in {duration_s:.0f} s; that is hardly seen",
+            angle=total,
+            duration_s=duration_s,
+        ), ""
+    return "", say("turns on, by {speed:.2f} rad/s", speed=speed)
 
 
 def _swings(
@@ -119,19 +138,37 @@ def _swings(
     """To and fro, within a span that such a joint has."""
     low, high = float(positions.min()), float(positions.max())
     wide = high - low
-    seen = f"goes from {number(low)} to {number(high)} {unit}"
+    seen = {"low": rounded(low), "high": rounded(high), "unit": unit}
     if wide > span[1]:
-        what = "degrees" if unit == "rad" else "centimetres"
-        return f"{seen}, {wide:.3g} {unit} wide, as if in {what}", ""
+        if unit == "rad":
+            return say(
+                "goes from {low:.4g} to {high:.4g} {unit}, {wide:.3g} {unit} wide, as if in "
+                "degrees",
+                wide=wide,
+                **seen,
+            ), ""
+        return say(
+            "goes from {low:.4g} to {high:.4g} {unit}, {wide:.3g} {unit} wide, as if in "
+            "centimetres",
+            wide=wide,
+            **seen,
+        ), ""
     if wide < span[0]:
-        return f"{seen}: that is hardly seen", ""
+        return say("goes from {low:.4g} to {high:.4g} {unit}: that is hardly seen", **seen), ""
     returns = turning_points(positions, wide / 4)
     if returns < tolerances["returns"]:
-        return f"{seen} and turns back {returns} times; it should go to and fro", ""
+        return say(
+            "goes from {low:.4g} to {high:.4g} {unit} and turns back {returns} times; it should go "
+            "to and fro",
+            returns=returns,
+            **seen,
+        ), ""
     steps = np.abs(np.diff(positions))
     if float(np.quantile(steps, 0.99)) > tolerances["jump_share"] * wide:
-        return f"{seen} in jumps, not step by step", ""
-    return "", f"{seen}, to and fro"
+        return say(
+            "goes from {low:.4g} to {high:.4g} {unit} in jumps, not step by step", **seen
+        ), ""
+    return "", say("goes from {low:.4g} to {high:.4g} {unit}, to and fro", **seen)
 
 
 def turning_points(values: Floats, least: float) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from grader.exercise.verdict import Finding
 from grader.exercises.state_publisher.seen import Seen
+from grader.language.phrase import say, say_many
 
 
 def judge_names(seen: Seen) -> Finding:
@@ -18,33 +19,66 @@ def judge_names(seen: Seen) -> Finding:
         bad = next(state for state in states if not state.is_taken)
         return Finding(
             0.5 * len(taken) / len(states),
-            f"A JointState has {len(bad.names)} names and {len(bad.positions)} positions: "
-            "robot_state_publisher ignores it as invalid.",
-            "`name` and `position` belong together, one number for each name, in the same order.",
-            (seen.moment(bad.tick, "names and positions are not as many"),),
+            say(
+                "A JointState has {names} names and {positions} positions: "
+                "robot_state_publisher ignores it as invalid.",
+                names=len(bad.names),
+                positions=len(bad.positions),
+            ),
+            say(
+                "`name` and `position` belong together, one number for each name, in "
+                "the same order."
+            ),
+            (seen.moment(bad.tick, say("names and positions are not as many")),),
         )
     wanted, found = set(seen.moving), set(seen.joints)
     if wanted == found:
-        return Finding(1, f"The joint states name {listed(sorted(wanted))}.")
+        return Finding(1, say("The joint states name {joints}.", joints=listed(sorted(wanted))))
     missing, foreign = sorted(wanted - found), sorted(found - wanted)
-    parts = []
-    if foreign:
-        are = "is" if len(foreign) == 1 else "are"
-        parts.append(f"{listed(foreign)}, which {are} none of the robot's moving joints")
-    if missing:
-        parts.append(f"never {listed(missing)}")
     return Finding(
         len(wanted & found) / len(wanted | found),
-        f"The messages on /joint_states name {', and '.join(parts)}.",
-        "Compare your names letter by letter with the <joint name=...> of the URDF: those of "
-        "joints, not of links, and none of a fixed joint. robot_state_publisher skips what it "
-        "does not know without a word, and the links behind it have no place.",
-        (seen.moment(states[0].tick, f"names {listed(sorted(set(states[0].names)))}"),),
+        _mixed_up(missing, foreign),
+        say(
+            "Compare your names letter by letter with the <joint name=...> of the "
+            "URDF: those of joints, not of links, and none of a fixed joint. "
+            "robot_state_publisher skips what it does not know without a word, and "
+            "the links behind it have no place."
+        ),
+        (
+            seen.moment(
+                states[0].tick, say("names {joints}", joints=listed(sorted(set(states[0].names))))
+            ),
+        ),
+    )
+
+
+def _mixed_up(missing: list[str], foreign: list[str]) -> str:
+    names = {"missing": listed(missing), "foreign": listed(foreign)}
+    if not foreign:
+        return say("The messages on /joint_states name never {missing}.", **names)
+    if not missing:
+        return say_many(
+            "The messages on /joint_states name {foreign}, which is none of the robot's moving "
+            "joints.",
+            "The messages on /joint_states name {foreign}, which are none of the robot's moving "
+            "joints.",
+            len(foreign),
+            **names,
+        )
+    return say_many(
+        "The messages on /joint_states name {foreign}, which is none of the robot's moving "
+        "joints, and never {missing}.",
+        "The messages on /joint_states name {foreign}, which are none of the robot's moving "
+        "joints, and never {missing}.",
+        len(foreign),
+        **names,
     )
 
 
 def listed(names: Iterable[str]) -> str:
     """A few names, as they may stand in a sentence."""
     each = [repr(name[:40]) for name in names]
-    more = f" and {len(each) - 5} more" if len(each) > 5 else ""
-    return ", ".join(each[:5]) + more if each else "nothing"
+    few = ", ".join(each[:5])
+    if len(each) > 5:
+        return say("{names} and {count} more", names=few, count=len(each) - 5)
+    return few or say("nothing")

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grader.exercise.check import Tolerances
-from grader.exercise.sentences import counted
 from grader.exercise.verdict import Finding
 from grader.exercises.state_publisher.seen import Seen, sentence
+from grader.language.phrase import say, say_many
 from grader.scenes.robot.trace import TF, TF_STATIC, TICK_S, RobotTrace
 
 #: So long a window is [ticks]: about half a second.
@@ -53,34 +53,49 @@ def judge_rate(seen: Seen, tolerances: Tolerances) -> Finding:
     trace = seen.trace
     if not trace.joint_states:
         return seen.no_joint_states()
-    each = [("joint states", _of_one_joint(trace))]
+    each = [(say("joint states"), _of_one_joint(trace))]
     messages = {t.message: t.tick for t in seen.sent if t.topic == TF}
     if messages:
-        each.append(("transforms", list(messages.values())))
-    wrong, told, where = [], [], []
+        each.append((say("transforms"), list(messages.values())))
+    wrong: list[str] = []
+    told: list[str] = []
+    where = []
     for what, ticks in each:
         found = pace(ticks, trace.ticks, tolerances)
         low, high = tolerances["rate_least_hz"], tolerances["rate_most_hz"]
-        said = f"{what} came {found.hertz:.0f} times a second"
+        said = {"what": what, "hertz": found.hertz}
         if not 0.95 * low <= found.hertz <= 1.05 * high:
-            wrong.append(f"{said}; expected {low} to {high}")
+            wrong.append(
+                say(
+                    "{what} came {hertz:.0f} times a second; expected {low} to {high}",
+                    low=low,
+                    high=high,
+                    **said,
+                )
+            )
         elif found.steady < tolerances["rate_share"]:
-            wrong.append(f"{said}, but only {found.steady:.0%} of the time")
+            wrong.append(
+                say(
+                    "{what} came {hertz:.0f} times a second, but only {steady:.0f}% of the time",
+                    steady=100 * found.steady,
+                    **said,
+                )
+            )
         else:
-            told.append(said)
+            told.append(say("{what} came {hertz:.0f} times a second, steadily", **said))
             continue
-        where.append(seen.moment(found.gap_tick, f"{what} do not come as usual"))
+        where.append(seen.moment(found.gap_tick, say("{what} do not come as usual", what=what)))
     share = 1 - len(wrong) / len(each)
     flood = _flood(seen, tolerances)
     if flood:
         wrong.append(flood)
         share = min(share, 0.5)
     if not wrong:
-        return Finding(1, sentence([f"{each}, steadily" for each in told]))
+        return Finding(1, sentence(told))
     return Finding(
         share,
         sentence(wrong),
-        "One message of each kind, from one timer at a fixed rate, is what others can follow.",
+        say("One message of each kind, from one timer at a fixed rate, is what others can follow."),
         tuple(where),
     )
 
@@ -91,7 +106,13 @@ def too_seldom(seen: Seen, tolerances: Tolerances) -> str:
     low, high = tolerances["rate_least_hz"], tolerances["rate_most_hz"]
     if hertz >= 0.95 * low:
         return ""
-    return f"joint states came {hertz:.0f} times a second; expected {low} to {high}"
+    return say(
+        "{what} came {hertz:.0f} times a second; expected {low} to {high}",
+        what=say("joint states"),
+        hertz=hertz,
+        low=low,
+        high=high,
+    )
 
 
 def _of_one_joint(trace: RobotTrace) -> list[int]:
@@ -107,13 +128,20 @@ def _flood(seen: Seen, tolerances: Tolerances) -> str:
     """What is sent more often than it should be, as a clause; ''."""
     static = len({t.message for t in seen.sent if t.topic == TF_STATIC})
     if static > tolerances["static_most"]:
-        return (
-            f"{counted(static, 'message')} came on /tf_static: a StaticTransformBroadcaster is "
-            "for what never moves, and sends it once"
+        return say_many(
+            "{n} message came on /tf_static: a StaticTransformBroadcaster is for what never moves, "
+            "and sends it once",
+            "{n} messages came on /tf_static: a StaticTransformBroadcaster is for what never "
+            "moves, and sends it once",
+            static,
         )
     per_message = Counter((t.message, t.child) for t in seen.sent)
     repeated = [key for key, number in per_message.items() if number > 1]
     if repeated:
         most = max(per_message.values())
-        return f"a message on /tf holds the transform of {repeated[0][1]!r:.60} {most} times"
+        return say(
+            "a message on /tf holds the transform of {frame} {count} times",
+            frame=f"{repeated[0][1]!r:.60}",
+            count=most,
+        )
     return ""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from grader.exercise.sentences import how_it_ended
 from grader.exercise.verdict import Evidence, Finding
+from grader.language.phrase import joined, say
 from grader.recording.recording import Recordings
 from grader.scenes.robot.motion import Floats, joints, odometry
 from grader.scenes.robot.trace import TF, TF_STATIC, TICK_S, RobotTrace
@@ -46,9 +48,12 @@ class Seen:
         """For a run in which none came."""
         return Finding(
             0,
-            f"No joint state came on /joint_states.{how_it_ended(self.recording)}",
-            "Does your node publish sensor_msgs/msg/JointState there, and does its loop or its "
-            "timer get its turn? Who calls rclpy.spin() in a loop never comes back to it.",
+            say("No joint state came on /joint_states.") + how_it_ended(self.recording),
+            say(
+                "Does your node publish sensor_msgs/msg/JointState there, and does its "
+                "loop or its timer get its turn? Who calls rclpy.spin() in a loop never"
+                " comes back to it."
+            ),
         )
 
     def moment(self, tick: int, note: str) -> Evidence:
@@ -61,16 +66,14 @@ class Seen:
         return Evidence(tick, round(tick * TICK_S, 3), _inside(x), _inside(y), note)
 
 
-def sentence(parts: list[str]) -> str:
+def sentence(parts: Sequence[str]) -> str:
     """Clauses as a sentence; what begins with the name of a file stays as it is."""
-    text = "; ".join(parts)
-    first = text.partition(" ")[0]
-    return f"{text if '.' in first else text[:1].upper() + text[1:]}."
+    return say("{clauses!u}.", clauses=joined(parts, say("; ")))
 
 
-def number(value: float) -> str:
-    """As it may stand in a sentence: -0.506, 0, 29."""
-    return f"{round(value, 3) + 0.0:.4g}"
+def rounded(value: float) -> float:
+    """As it may stand in a sentence, written by `.4g`: -0.506, 0, 29."""
+    return round(value, 3) + 0.0
 
 
 def _inside(value: float) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, shown
+from grader.language.phrase import say
 from robot_py import kinematics
 from robot_py.findings import Consequence
 from robot_py.model import Box, Model, Pose
@@ -30,30 +31,38 @@ def judge(looked: Looked, names: Sequence[str]) -> Finding:
     """Whether doubling a number moves what depends on it."""
     model = _model(looked)
     if model is None:
-        return _no_robot("vary")
+        return _no_robot(say("Not judged: there is no robot to vary."))
     good, told, help_ = 0, "", ""
     texts = _varied(looked)
     for name in names:
         if name not in texts:
-            fault = f"there is no property {name} with a number as its value"
-            advice = f'Name it: <xacro:property name="{name}" value="..."/>.'
+            fault, advice = _unnamed(name)
         else:
             fault, advice = _fault(name, model, texts[name])
         good += not fault
         told, help_ = told or fault, help_ or advice
     if told and not good and _is_incomplete(looked):
-        return _no_robot("vary: parts of it are dropped")
+        return _no_robot(say("Not judged: there is no robot to vary: parts of it are dropped."))
     if not told:
-        return Finding(1, f"What hangs on {', '.join(names)} moves along with them.")
-    return Finding(good / max(len(names), 1), f"In the xacro, {told}.", help_)
+        return Finding(
+            1, say("What hangs on {names} moves along with them.", names=", ".join(names))
+        )
+    return Finding(good / max(len(names), 1), say("In the xacro, {told}.", told=told), help_)
 
 
-def _no_robot(what: str) -> Finding:
+def _no_robot(why: str) -> Finding:
     return Finding(
         0,
-        f"Not judged: there is no robot to {what}.",
-        "See what is said of the description first.",
+        why,
+        say("See what is said of the description first."),
         judged=False,
+    )
+
+
+def _unnamed(name: str) -> tuple[str, str]:
+    return (
+        say("there is no property {name} with a number as its value", name=name),
+        say('Name it: <xacro:property name="{name}" value="..."/>.', name=name),
     )
 
 
@@ -61,19 +70,29 @@ def _fault(name: str, model: Model, text: str) -> tuple[str, str]:
     other = parse(text).model if text else None
     if other is None:
         return (
-            f"doubling {name} leaves no robot that urdfdom takes",
-            "Run xacro with the number doubled, and check_urdf on what comes out.",
+            say("doubling {name} leaves no robot that urdfdom takes", name=name),
+            say("Run xacro with the number doubled, and check_urdf on what comes out."),
         )
     if _sizes(model) == _sizes(other):
         return (
-            f"doubling {name} changes the size of nothing",
-            f"Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
+            say("doubling {name} changes the size of nothing", name=name),
+            say(
+                "Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
+                name=name,
+            ),
         )
     stays = next(_staying(model, other), "")
     if stays:
         return (
-            f"doubling {name} changes the size of a part, and {shown(stays)} does not move along",
-            f"Write the origins of wheels and caster with ${{{name}}}, not as numbers.",
+            say(
+                "doubling {name} changes the size of a part, and {link} does not move along",
+                name=name,
+                link=shown(stays),
+            ),
+            say(
+                "Write the origins of wheels and caster with ${{{name}}}, not as numbers.",
+                name=name,
+            ),
         )
     return "", ""
 
@@ -116,7 +135,7 @@ def _staying(one: Model, other: Model) -> Iterator[str]:
     """
     boxes = [(name, *both) for name in one.links if (both := _boxes(one, other, name))]
     if not boxes and not _has_moved(one, other):
-        yield "nothing"
+        yield say("nothing")
     for part, before, after in boxes:
         for joint in one.joints.values():
             if joint.parent != part or joint.name not in other.joints:
@@ -154,25 +173,34 @@ def judge_masses(looked: Looked, mass_kg: float, error: float) -> Finding:
     """Whether the robot weighs what it should."""
     model = _model(looked)
     if model is None:
-        return _no_robot("weigh")
+        return _no_robot(say("Not judged: there is no robot to weigh."))
     bare = [each.name for each in model.links.values() if each.collisions and not each.inertial]
     if bare:
         return Finding(
             0.5,
-            f"The link {bare[0]!r} has a collision and no inertial: Gazebo leaves it out.",
-            "Give every link that can be bumped into a mass and moments of inertia.",
+            say(
+                "The link {link!r} has a collision and no inertial: Gazebo leaves it out.",
+                link=bare[0],
+            ),
+            say("Give every link that can be bumped into a mass and moments of inertia."),
         )
     mass = sum(each.inertial.mass for each in model.links.values() if each.inertial)
     if abs(mass - mass_kg) > error * mass_kg:
         return Finding(
             0.5 if mass else 0,
-            f"The robot weighs {_grams(mass)} in all{_each(model)}; expected {_grams(mass_kg)}, "
-            f"give or take {100 * error:g} %.",
-            "<mass value=...> is in kilograms: 1 g is 0.001."
+            say(
+                "The robot weighs {weight} in all{links}; expected {wanted}, give or take "
+                "{error:g} %.",
+                weight=_grams(mass),
+                links=_each(model),
+                wanted=_grams(mass_kg),
+                error=100 * error,
+            ),
+            say("<mass value=...> is in kilograms: 1 g is 0.001.")
             if mass > 100 * mass_kg
-            else "Add up the masses of all links. Is each link there, and has it its mass?",
+            else say("Add up the masses of all links. Is each link there, and has it its mass?"),
         )
-    return Finding(1, f"The robot weighs {_grams(mass)} in all.")
+    return Finding(1, say("The robot weighs {weight} in all.", weight=_grams(mass)))
 
 
 def _each(model: Model) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from grader.language.phrase import joined, say
 from grader.scenes.package.trace import Launch, Node, PackageTrace
 
 
@@ -25,8 +26,12 @@ def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[str
 
 
 def _sentence(launch: Launch, started: str, why: str) -> str:
-    by_itself = f"{started} was started by itself, without {why}"
-    return f"{launch.file} was evaluated and not run: {by_itself}"
+    return say(
+        "{file} was evaluated and not run: {program} was started by itself, without {what}",
+        file=launch.file,
+        program=started,
+        what=why,
+    )
 
 
 def _why(own: list[Node], started: str) -> str:
@@ -40,9 +45,10 @@ def _given(node: Node) -> str:
     """What a launch file gives a program that makes a difference; '' for nothing."""
     parameters = [each.name for each in node.parameters if each.name != "use_sim_time"]
     parts = {
-        "its namespace": bool(node.namespace.strip("/")),
-        "its remappings": bool(node.remappings),
-        "its arguments": bool(node.arguments),
-        f"its parameters ({', '.join(parameters)[:200]})": bool(parameters),
+        say("its namespace"): bool(node.namespace.strip("/")),
+        say("its remappings"): bool(node.remappings),
+        say("its arguments"): bool(node.arguments),
+        say("its parameters ({names})", names=", ".join(parameters)[:200]): bool(parameters),
     }
-    return " and ".join(part for part, is_given in parts.items() if is_given)
+    given = [part for part, is_given in parts.items() if is_given]
+    return joined(given, say(" and ")) if given else ""

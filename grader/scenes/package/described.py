@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from grader import text
+from grader.language.phrase import joined, say, say_many
 from grader.scenes.package.trace import Description, PackageTrace
 from grader.scenes.robot_parts import name_of, named, place_less, placing, shapes
 from grader.scenes.view import Pixels, Placing, Solid, SolidFrame, Tree, TreeNode
@@ -36,7 +36,7 @@ def window(trace: PackageTrace) -> Pixels:
     if robot is None:
         return picture(NOBODY, labels=(_why_not(trace),))
     there = body(robot, forward(robot, {}), meshes(trace))
-    left_out = (f"not drawn: {named(there.left_out)}",) if there.left_out else ()
+    left_out = (say("not drawn: {names}", names=named(there.left_out)),) if there.left_out else ()
     labels = (*place_less(there.lost), *left_out)
     return picture(there, height_m=there.lowest_m, labels=labels)
 
@@ -62,7 +62,7 @@ def solid(trace: PackageTrace) -> Solid | None:
             frames.append(SolidFrame(name_of(link), numbers[joints[link].parent], (where,)))
     made, left_out = shapes(robot, numbers, meshes(trace))
     return Solid(
-        f"The robot {name_of(robot.name)}",
+        say("The robot {name}", name=name_of(robot.name)),
         _words(trace, robot, there.lost, left_out),
         tuple(frames),
         made,
@@ -92,16 +92,18 @@ def links(trace: PackageTrace) -> Tree | None:
         link = waiting.pop()
         waiting += reversed(below.get(link, []))
         on = held.get(link)
-        told = "the root" if on is None else f"{name_of(on.name)}, {on.type.value}"
+        told = [say("the root")] if on is None else [name_of(on.name), on.type.value]
         several = claimed.get(link, 0) > 1
         if several:
-            told += f", claimed by {claimed[link]} joints"
-        nodes.append(TreeNode(depths[link], name_of(link), told, "wrong" if several else ""))
+            told.append(say("claimed by {count} joints", count=claimed[link]))
+        nodes.append(
+            TreeNode(depths[link], name_of(link), joined(told, ", "), "wrong" if several else "")
+        )
     lost = [link for link in robot.links if link not in depths]
-    nodes += [TreeNode(0, name_of(each), "hangs on nothing", "lost") for each in lost]
+    nodes += [TreeNode(0, name_of(each), say("hangs on nothing"), "lost") for each in lost]
     more = len(nodes) - _MOST_NODES
-    note = f"{more} more links are not shown." if more > 0 else ""
-    return Tree("Links and the joints that hold them", tuple(nodes[:_MOST_NODES]), note)
+    note = say("{count} more links are not shown.", count=more) if more > 0 else ""
+    return Tree(say("Links and the joints that hold them"), tuple(nodes[:_MOST_NODES]), note)
 
 
 def meshes(trace: PackageTrace) -> dict[str, Floats]:
@@ -143,8 +145,8 @@ def _model(description: str) -> Model | None:
 
 def _why_not(trace: PackageTrace) -> str:
     if _described(trace) is None:
-        return "no robot description was found"
-    return "the robot description cannot be drawn"
+        return say("no robot description was found")
+    return say("the robot description cannot be drawn")
 
 
 def words(trace: PackageTrace) -> str:
@@ -158,10 +160,19 @@ def _words(
 ) -> str:
     found = _described(trace)
     by = name_of(found.by) if found is not None else ""
-    said = [f"The robot {name_of(robot.name)} with {text.count(len(robot.links), 'link')}"]
-    said.append(f"as {by} describes it, all joints at 0")
+    said = [
+        say_many(
+            "The robot {name} with {n:,} link",
+            "The robot {name} with {n:,} links",
+            len(robot.links),
+            name=name_of(robot.name),
+        )
+    ]
+    said.append(say("as {by} describes it, all joints at 0", by=by))
     if lost:
-        said.append(f"white, at the origin, for they hang on nothing: {named(lost)}")
+        said.append(
+            say("white, at the origin, for they hang on nothing: {names}", names=named(lost))
+        )
     if left_out:
-        said.append(f"not drawn: {named(left_out)}")
-    return "; ".join(said)
+        said.append(say("not drawn: {names}", names=named(left_out)))
+    return joined(said, say("; "))

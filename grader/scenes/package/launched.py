@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grader import text
+from grader.language.phrase import joined, say, say_many
+from grader.scenes.package.said import phrase_of
 from grader.scenes.package.trace import PREFIX, Lacking, Launch, Node, PackageTrace, Skipped
 from grader.scenes.view import Cell, Table
 
-HEADINGS = ("Package", "Program", "Name", "Parameters and arguments", "Said in")
+HEADINGS = (
+    *(say("Package"), say("Program"), say("Name")),
+    *(say("Parameters and arguments"), say("Said in")),
+)
 #: A page has no more launch files, rows and lines of a cell.
 _MOST_TABLES, _MOST_ROWS, _MOST_LINES = 12, 60, 12
 _LONGEST = 160
@@ -21,13 +26,16 @@ def tables(trace: PackageTrace) -> tuple[Table, ...]:
 
 def _table(trace: PackageTrace, launch: Launch) -> Table:
     rows = [_node(trace, launch, node) for node in launch.nodes]
-    rows += [_row("", "", "", (f"the program {each}",), launch.file) for each in launch.processes]
+    rows += [
+        _row("", "", "", (say("the program {name}", name=_clip(each)),), launch.file)
+        for each in launch.processes
+    ]
     for each in launch.includes:
-        told = (f"includes {each.file}", *each.arguments)
+        told = (say("includes {file}", file=_clip(each.file)), *each.arguments)
         rows.append(_row(each.package, "", "", told, launch.file))
     rows += [_skipped(each) for each in launch.skipped]
     rows += [_lacking(each) for each in launch.lacking if each.source or not _is_told(launch, each)]
-    title = f"What {_clip(launch.file)} would start"
+    title = say("What {file} would start", file=_clip(launch.file))
     return Table(title, HEADINGS, tuple(rows[:_MOST_ROWS]), _note(launch, len(rows)))
 
 
@@ -46,28 +54,36 @@ def _is_told(launch: Launch, lacking: Lacking) -> bool:
 def _note(launch: Launch, rows: int) -> str:
     said = []
     if launch.problem is not None:
-        where = f" ({_clip(launch.problem.file)}, line {launch.problem.line})"
+        where = say(
+            " ({file}, line {line})", file=_clip(launch.problem.file), line=launch.problem.line
+        )
         said.append(
-            f"It ends with {_clip(launch.problem.text)}{where if launch.problem.line else ''}."
+            say(
+                "It ends with {error}{place}.",
+                error=_clip(phrase_of(launch.problem.text)),
+                place=where if launch.problem.line else "",
+            )
         )
     elif not rows:
-        said.append("It starts nothing.")
+        said.append(say("It starts nothing."))
     if launch.declared:
-        said.append(f"Arguments: {_clip(', '.join(launch.declared))}, at their defaults.")
+        said.append(
+            say("Arguments: {names}, at their defaults.", names=_clip(", ".join(launch.declared)))
+        )
     if rows > _MOST_ROWS:
-        said.append(f"{rows - _MOST_ROWS} more rows are not shown.")
-    return " ".join(said)
+        said.append(say("{count} more rows are not shown.", count=rows - _MOST_ROWS))
+    return joined(said, " ")
 
 
 def _node(trace: PackageTrace, launch: Launch, node: Node) -> tuple[Cell, ...]:
     told = [f"{each.name} = {_value(trace, each.value, each.text)}" for each in node.parameters]
     if node.arguments:
         told.append(" ".join(node.arguments))
-    told += [f"remaps {each}" for each in node.remappings]
+    told += [say("remaps {names}", names=_clip(each)) for each in node.remappings]
     if node.condition:
-        told.append(f"{node.condition}: it is so by default")
+        told.append(say("{condition}: it is so by default", condition=_clip(node.condition)))
     if node.later:
-        told.append("later, when something else happens")
+        told.append(say("later, when something else happens"))
     missing = {(each.kind, each.name) for each in launch.lacking}
     package, executable = node.package, node.executable
     named = "/".join(filter(None, (node.namespace.strip("/"), node.name)))
@@ -85,13 +101,20 @@ def _names(told: Sequence[str], file: str) -> bool:
 
 
 def _skipped(each: Skipped) -> tuple[Cell, ...]:
-    told = f"not started: {each.condition or 'its condition'} is not so by default"
+    condition = _clip(each.condition) or say("its condition")
+    told = say("not started: {condition} is not so by default", condition=condition)
     return _row(each.package, each.executable, "", (told,), _place(each.file, each.line))
 
 
 def _lacking(each: Lacking) -> tuple[Cell, ...]:
-    told = f"the {each.kind} {each.name}"
-    lines = (told, f"the package has {each.source}, not there") if each.source else (told,)
+    name = _clip(each.name)
+    told = {
+        "file": say("the file {name}", name=name),
+        "package": say("the package {name}", name=name),
+        "executable": say("the executable {name}", name=name),
+    }.get(each.kind, f"the {each.kind} {name}")
+    there = say("the package has {source}, not there", source=_clip(each.source))
+    lines = (told, there) if each.source else (told,)
     return (Cell(("",)),) * 3 + (Cell(_lines(lines), True), Cell((_clip(each.by),)))
 
 
@@ -107,18 +130,21 @@ def _value(trace: PackageTrace, value: str, number: int) -> str:
         return value
     said = trace.texts[number]
     if not said.strip():
-        return "an empty text"
-    return f"a text of {text.count(len(said), 'character')}"
+        return say("an empty text")
+    return say_many("a text of {n:,} character", "a text of {n:,} characters", len(said))
 
 
 def _lines(told: list[str] | tuple[str, ...]) -> tuple[str, ...]:
-    more = (f"and {len(told) - _MOST_LINES} more",) if len(told) > _MOST_LINES else ()
+    more = (
+        (say("and {count} more", count=len(told) - _MOST_LINES),) if len(told) > _MOST_LINES else ()
+    )
     return (*map(_clip, told[:_MOST_LINES]), *more)
 
 
 def _place(file: str, line: int) -> str:
-    return f"{_clip(file)}, line {line}" if line else _clip(file)
+    return say("{file}, line {line}", file=_clip(file), line=line) if line else _clip(file)
 
 
 def _clip(said: str) -> str:
-    return text.clip(text.one_line(text.plain(said.replace(f"{PREFIX}/", ""))), _LONGEST)
+    made = text.clip(text.one_line(text.plain(said.replace(f"{PREFIX}/", ""))), _LONGEST)
+    return said if made == said else made  # itself: a phrase stays one

@@ -7,6 +7,8 @@ from typing import Any, Final, NoReturn
 
 import numpy as np
 
+from grader.language.phrase import say
+from grader.language.telling import tell
 from grader.scenes.channel import Channel
 from grader.scenes.package import described, messages, trace, view
 from grader.scenes.package.trace import PackageTrace
@@ -37,12 +39,12 @@ class Package:
     thing: Final = "package"
     plane: Final = view.PLANE
     window_is_plane: Final = False
-    finished: Final = "the package was looked at"
+    finished: Final = say("the package was looked at")
     farthest_start_m: Final = 0.0
 
     def wrong_setting(self, setting: str) -> str:
         """Nothing is set up."""
-        return "package takes none" if setting else ""
+        return say("package takes none") if setting else ""
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
         """None: a package is looked at once, and its variations are in that."""
@@ -59,14 +61,15 @@ class Package:
     def how_to_try(self, program: str, package: str) -> str:
         """With ROS: build it, launch it, look."""
         named = package or "my_robot_description"
-        return (
+        return tell(
             "With ROS 2, in a workspace that holds the package in `src`:\n\n"
-            f"    colcon build --packages-select {named}\n"
+            "    colcon build --packages-select {package}\n"
             "    source install/setup.bash\n"
-            f"    ros2 launch {named} display.launch.py\n\n"
+            "    ros2 launch {package} display.launch.py\n\n"
             "A link that RViz shows white, or at the origin, has no transform: nobody publishes "
             "its joint, the Fixed Frame is wrong, or the workspace was built or sourced before the "
-            "last change."
+            "last change.",
+            package=named,
         )
 
     def preload(self) -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from grader.language.phrase import say
 from grader.scenes.package import described, launched
+from grader.scenes.package.said import phrase_of
 from grader.scenes.package.trace import PackageTrace
 from grader.scenes.view import Plane, View
 
@@ -31,13 +33,27 @@ def remarks(trace: PackageTrace) -> list[str]:
     """What a reader of the result should know."""
     if trace.setup is None:
         return []
-    found = [
-        f"{launch.file} could not be evaluated: {launch.problem.text}"
+    found: list[str] = [
+        say(
+            "{file} could not be evaluated: {why}",
+            file=launch.file,
+            why=phrase_of(launch.problem.text),
+        )
         for launch in trace.launches
         if launch.problem is not None and launch.problem.kind == "unknown"
     ]
-    found += [f"{launch.file}: {remark}" for launch in trace.launches for remark in launch.remarks]
+    found += [
+        say("{file}: {remark}", file=launch.file, remark=phrase_of(remark))
+        for launch in trace.launches
+        for remark in launch.remarks
+    ]
     if trace.others:
         beside = ", ".join(trace.others[:10])
-        found.append(f"judged was the package {trace.setup.name}; beside it lie {beside}")
+        found.append(
+            say(
+                "judged was the package {name}; beside it lie {others}",
+                name=trace.setup.name,
+                others=beside,
+            )
+        )
     return found

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
+from grader.language.phrase import joined, listed, say
 from grader.scenes.robot.decoding import Transform
 from grader.scenes.robot.motion import ODOM, bare
 from grader.scenes.robot.trace import TF_STATIC, TICK_S, RobotTrace
@@ -15,7 +16,7 @@ from grader.scenes.view import Tree, TreeNode
 
 #: A tree has no more nodes: a submission can send any number of frames.
 _MOST_NODES = 150
-_SENDERS = {"scene": "robot_state_publisher", "submission": "your node"}
+_SENDERS = {"scene": "robot_state_publisher", "submission": say("your node")}
 
 
 @dataclass
@@ -42,12 +43,14 @@ def why_refused(transform: Transform) -> str:
     numbers = (*transform.translation, *transform.rotation)
     parent, child = bare(transform.parent), bare(transform.child)
     if not parent or not child:
-        return "a frame has no name"
+        return say("a frame has no name")
     if parent == child:
-        return "the two are one"
+        return say("the two are one")
     if not all(map(math.isfinite, numbers)):
-        return "it holds what is no number"
-    return "" if any(transform.rotation) else "its quaternion is all zeros, which turns nothing"
+        return say("it holds what is no number")
+    if not any(transform.rotation):
+        return say("its quaternion is all zeros, which turns nothing")
+    return ""
 
 
 def hung(trace: RobotTrace) -> dict[str, Hung]:
@@ -92,13 +95,19 @@ def tree(trace: RobotTrace) -> Tree | None:
     nodes = list(_nodes(frames, links, reached))
     lost = [link for link in links if link not in reached]
     note = (
-        f"{len(lost)} of {len(links)} links of the robot have no place in {ODOM}: {named(lost)}."
+        say(
+            "{count} of {total} links of the robot have no place in {odom}: {links}.",
+            count=len(lost),
+            total=len(links),
+            odom=ODOM,
+            links=named(lost),
+        )
         if lost
-        else f"Every link of the robot has a place in {ODOM}."
+        else say("Every link of the robot has a place in {odom}.", odom=ODOM)
     )
     if len(nodes) > _MOST_NODES:
-        note += f" {len(nodes) - _MOST_NODES} more frames are not shown."
-    return Tree("Frames, as tf2 knows them at the end", tuple(nodes[:_MOST_NODES]), note)
+        note += say(" {count} more frames are not shown.", count=len(nodes) - _MOST_NODES)
+    return Tree(say("Frames, as tf2 knows them at the end"), tuple(nodes[:_MOST_NODES]), note)
 
 
 def _nodes(
@@ -121,31 +130,31 @@ def _nodes(
             waiting += [(depth + 1, each) for each in reversed(children.get(name, []))]
     for link in links:
         if link not in seen:
-            yield TreeNode(0, name_of(link), "no transform", "lost")
+            yield TreeNode(0, name_of(link), say("no transform"), "lost")
 
 
 def _node(depth: int, name: str, frame: Hung | None, is_lost: bool) -> TreeNode:
     mark: Literal["", "lost", "wrong"] = "lost" if is_lost else ""
     if frame is None:
-        return TreeNode(depth, name_of(name), "hangs on nothing", mark)
-    told = [_pace(frame), " and ".join(sorted(_SENDERS[each] for each in frame.senders))]
+        return TreeNode(depth, name_of(name), say("hangs on nothing"), mark)
+    told = [_pace(frame), listed(sorted(_SENDERS[each] for each in frame.senders))]
     if depth == 0:
-        told.append(f"goes round in a circle by {name_of(frame.parent)}")
+        told.append(say("goes round in a circle by {frame}", frame=name_of(frame.parent)))
     if len(frame.parents) > 1:
-        told.append(f"parents: {named(sorted(frame.parents))}")
+        told.append(say("parents: {names}", names=named(sorted(frame.parents))))
     if depth == 0 or len(frame.parents) > 1 or len(frame.senders) > 1:
         mark = "wrong"
-    return TreeNode(depth, name_of(name), ", ".join(told), mark)
+    return TreeNode(depth, name_of(name), joined(told, ", "), mark)
 
 
 def _pace(frame: Hung) -> str:
     if frame.is_static:
-        return "static"
+        return say("static")
     first, last = frame.said[0], frame.said[-1]
     duration_s = (last.tick - first.tick) * TICK_S
     if not duration_s:
-        return f"{len(frame.said)} times"
-    return f"{(len(frame.said) - 1) / duration_s:.1f} Hz"
+        return say("{count} times", count=len(frame.said))
+    return say("{rate:.1f} Hz", rate=(len(frame.said) - 1) / duration_s)
 
 
 def _children(frames: dict[str, Hung]) -> dict[str, list[str]]:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 
+from grader.language.phrase import say
 from grader.scenes.robot.trace import Heard, RobotTrace
 
 #: Messages of a run, and their bytes: far above what moves a robot.
 MOST_MESSAGES, MOST_BYTES = 20_000, 20_000_000
+#: With the numbers in it: it goes from process to process as a text, by which it is found again.
+_NOT_ALL = say("of the node's messages the first 20000, or 20 MB, were taken")
 
 
 class Recorder:
@@ -40,8 +43,7 @@ class Recorder:
         self.heard += 1
         self._bytes += len(data)
         if self.heard > MOST_MESSAGES or self._bytes > MOST_BYTES:
-            most = f"the first {MOST_MESSAGES}, or {MOST_BYTES // 1_000_000} MB"
-            self.flags = (f"of the node's messages {most}, were taken",)
+            self.flags = (_NOT_ALL,)
             return False
         self._messages.append(Heard(self.ticks + 1, topic, "submission", data))
         return True

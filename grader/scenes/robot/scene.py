@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
+from grader.language.phrase import say
 from grader.scenes.channel import Channel
 from grader.scenes.robot import behaviour, decoding, solid, trace, trying, view
 from grader.scenes.robot.endpoints import ENDPOINTS
@@ -41,7 +42,7 @@ class RobotScene:
         compares_stamps=True,
     )
     thing: Final = "robot"
-    finished: Final = "the robot was watched to the end"
+    finished: Final = say("the robot was watched to the end")
     examiner: Final = ""
     plane: Final = view.PLANE
     window_is_plane: Final = False
@@ -50,12 +51,16 @@ class RobotScene:
     def wrong_setting(self, setting: str) -> str:
         """Whether robot_state_publisher takes it."""
         if len(setting) > LONGEST_SETTING:
-            return f"expected {LONGEST_SETTING} characters at most, found {len(setting)}"
+            return say(
+                "expected {most} characters at most, found {count}",
+                most=LONGEST_SETTING,
+                count=len(setting),
+            )
         try:
             Robot.of(setting)
         except RefusedDescription as error:
             said = "; ".join(finding.text for finding in error.findings)
-            return f"expected a URDF that can be used: {said or error}"
+            return say("expected a URDF that can be used: {why}", why=said or str(error))
         return ""
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from grader import text
+from grader.language.phrase import joined, say, say_many
 from grader.scenes.robot.decoding import Transform
 from grader.scenes.robot.frames import Hung, below, hung
 from grader.scenes.robot.motion import ODOM, Floats, fitted, odometry
@@ -56,7 +57,7 @@ def solid(trace: RobotTrace) -> Solid | None:
     made, left_out = shapes(robot.model, numbers, {})
     lost = tuple(link for link in robot.model.links if link not in places(trace))
     return Solid(
-        f"The robot {name_of(robot.model.name)}",
+        say("The robot {name}", name=name_of(robot.model.name)),
         words(trace, lost, left_out),
         tuple(frames),
         made,
@@ -71,7 +72,7 @@ def solid(trace: RobotTrace) -> Solid | None:
 def window(trace: RobotTrace) -> Pixels:
     """The robot as it stood at the end, with its way on the ground, uint8 (500, 500, 3)."""
     if trace.robot is None:
-        return picture(NOBODY, labels=("no robot description was recorded",))
+        return picture(NOBODY, labels=(say("no robot description was recorded"),))
     there = body(trace.robot.model, places(trace))
     line = way(trace)
     lost = [*place_less(there.lost)]
@@ -119,20 +120,33 @@ def words(trace: RobotTrace, lost: tuple[str, ...], left_out: tuple[str, ...]) -
     """What there is to see, for who cannot."""
     robot = trace.robot
     if robot is None:
-        return "no robot description was recorded"
+        return say("no robot description was recorded")
     said = [
-        f"The robot {name_of(robot.model.name)} with {text.count(len(robot.model.links), 'link')}"
+        say_many(
+            "The robot {name} with {n:,} link",
+            "The robot {name} with {n:,} links",
+            len(robot.model.links),
+            name=name_of(robot.model.name),
+        )
     ]
     root = places(trace).get(robot.model.root)
     if root is not None:
-        said.append(f"at {text.place(float(root[0, 3]), float(root[1, 3]))} in {ODOM} at the end")
+        said.append(
+            say(
+                "at {place} in {odom} at the end",
+                place=text.place(float(root[0, 3]), float(root[1, 3])),
+                odom=ODOM,
+            )
+        )
     if (round_ := circle(trace)) is not None:
-        said.append(f"its way lies about a circle of {round_[2]:.2f} m")
+        said.append(say("its way lies about a circle of {radius:.2f} m", radius=round_[2]))
     if lost:
-        said.append(f"white, at the origin, for want of a transform: {named(lost)}")
+        said.append(
+            say("white, at the origin, for want of a transform: {names}", names=named(lost))
+        )
     if left_out:
-        said.append(f"not drawn: {named(left_out)}")
-    return "; ".join(said)
+        said.append(say("not drawn: {names}", names=named(left_out)))
+    return joined(said, say("; "))
 
 
 def sample_ticks(ticks: int) -> tuple[int, ...]:
