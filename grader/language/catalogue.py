@@ -1,15 +1,16 @@
 """The languages that we speak, and the catalogues of their sentences (gettext).
 
 A catalogue may have holes: what it does not know is said in English. `make catalogues` looks for
-sentences in the code and compiles what has been translated; `locale/README.md` says how.
+sentences in the code and compiles what has been translated; docs/languages.md says how.
 """
 
 from __future__ import annotations
 
-import copy
 import gettext
 import os
+import re
 from collections.abc import Mapping
+from copy import copy
 from functools import cache
 from importlib.resources import as_file, files
 from typing import Final
@@ -45,7 +46,7 @@ def of_environment(environment: Mapping[str, str] = os.environ) -> str:
     """What the user's locale asks for; English where that is none of ours."""
     for name in _VARIABLES:
         for wanted in environment.get(name, "").split(":"):
-            code = wanted.replace("-", "_").partition("_")[0].partition(".")[0].lower()
+            code = re.split("[-_.@]", wanted)[0].lower()
             if code in LANGUAGES:
                 return code
             if code in ("c", "posix"):
@@ -63,13 +64,13 @@ def catalogue(language: str) -> gettext.NullTranslations:
 
 
 def knows(language: str, key: str, many: str = "") -> bool:
-    """Whether a catalogue has a sentence; one that reads as in English counts, too."""
+    """Whether a catalogue has a sentence, and be it the same as in English: '{seconds:.1f} s'."""
     found = _with_holes(language)
-    return bool(key) and bool(found.ngettext(key, many, 1) if many else found.gettext(key))
+    return bool(key) and bool(found.ngettext(key, many, 2) if many else found.gettext(key))
 
 
-class _Holes(gettext.NullTranslations):
-    """Answers for what a catalogue does not have."""
+class _Hole(gettext.NullTranslations):
+    """What is not there, as ''."""
 
     def gettext(self, message: str) -> str:
         return ""
@@ -80,6 +81,6 @@ class _Holes(gettext.NullTranslations):
 
 @cache
 def _with_holes(language: str) -> gettext.NullTranslations:
-    found = copy.copy(catalogue(language))
-    found.add_fallback(_Holes())
+    found = copy(catalogue(language))
+    found.add_fallback(_Hole())
     return found

@@ -73,9 +73,11 @@ def _faults(looked: Looked, launch: Launch, node: Node) -> Iterator[str]:
         yield say("gets {word!r}, which is no argument of it.", word=shown(given[None]))
     origins = [each for each in sources if each in given]
     if len(origins) != 1:
-        told = ", ".join(origins) or say("none")
-        yield say(
-            "needs exactly one of {sources}; it gets {told}.", sources=", ".join(sources), told=told
+        all_, told = ", ".join(sources), ", ".join(origins)
+        yield (
+            say("needs exactly one of {options}; it gets {given}.", options=all_, given=told)
+            if told
+            else say("needs exactly one of {options}; it gets none.", options=all_)
         )
     for name in needed:
         if not given.get(name):

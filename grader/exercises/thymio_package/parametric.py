@@ -20,6 +20,8 @@ _MOVED_M = 1e-6
 _ASIDE = 0.25
 #: The masses of so many links are told one by one.
 _FEW = 6
+#: Instead of a link, where none moves along.
+_NOTHING = "nothing"
 
 
 class _Shape(NamedTuple):
@@ -85,6 +87,11 @@ def _fault(name: str, model: Model, text: str) -> tuple[str, str]:
     if stays:
         return (
             say(
+                "doubling {name} changes the size of a part, and nothing does not move along",
+                name=name,
+            )
+            if stays == _NOTHING
+            else say(
                 "doubling {name} changes the size of a part, and {link} does not move along",
                 name=name,
                 link=shown(stays),
@@ -135,7 +142,7 @@ def _staying(one: Model, other: Model) -> Iterator[str]:
     """
     boxes = [(name, *both) for name in one.links if (both := _boxes(one, other, name))]
     if not boxes and not _has_moved(one, other):
-        yield say("nothing")
+        yield _NOTHING
     for part, before, after in boxes:
         for joint in one.joints.values():
             if joint.parent != part or joint.name not in other.joints:
