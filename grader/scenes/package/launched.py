@@ -72,11 +72,14 @@ def _note(launch: Launch, rows: int) -> str:
         )
     if rows > _MOST_ROWS:
         said.append(say("{count} more rows are not shown.", count=rows - _MOST_ROWS))
-    return joined(said, " ")
+    return joined(said, " ") if said else ""
 
 
 def _node(trace: PackageTrace, launch: Launch, node: Node) -> tuple[Cell, ...]:
-    told = [f"{each.name} = {_value(trace, each.value, each.text)}" for each in node.parameters]
+    told: list[str] = [
+        say("{name} = {value}", name=_clip(each.name), value=_value(trace, each.value, each.text))
+        for each in node.parameters
+    ]
     if node.arguments:
         told.append(" ".join(node.arguments))
     told += [say("remaps {names}", names=_clip(each)) for each in node.remappings]

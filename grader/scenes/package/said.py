@@ -97,7 +97,7 @@ def _pattern(key: str) -> str:
     for before, name, _, _ in string.Formatter().parse(key):
         parts.append(re.escape(before))
         if name is not None:
-            parts.append(rf"(?P<{name}>\S+)" if name in _WORDS else f"(?P<{name}>.+)")
+            parts.append(rf"(?P<{name}>(?!it )\S+)" if name in _WORDS else f"(?P<{name}>.+)")
     return "".join(parts)
 
 
