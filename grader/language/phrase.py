@@ -143,9 +143,9 @@ def fill(key: str, values: Mapping[str, Any], write: Callable[[Any, str], str] =
     return "".join(made)
 
 
-def _as_beginning(clause: str) -> str:
-    return clause if "." in clause.partition(" ")[0] else clause[:1].upper() + clause[1:]
-
-
 def _kept(phrase: Phrase, text: str) -> str:
     return phrase if len(text) == len(phrase) else text
+
+
+def _as_beginning(clause: str) -> str:
+    return clause if "." in clause.partition(" ")[0] else clause[:1].upper() + clause[1:]
