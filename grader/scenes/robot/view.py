@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from grader import text
+from grader.language.phrase import say
 from grader.scenes.robot import frames, solid
 from grader.scenes.robot.motion import Floats, Joint, Way, joints, odometry
 from grader.scenes.robot.trace import RobotTrace
@@ -16,8 +17,9 @@ from grader.scenes.view import Curve, PenChange, Pixels, Plane, Track, View
 PLANE = Plane(size_px=500, metre_px=50.0, size_m=10.0, origin_m=-5.0)
 BACKGROUND, GRID, AXES, INK, FITTED = "#f4f6f8", "#e0e5ea", "#aab4be", "#1f6feb", "#8a6d3b"
 #: Curves of the robot as a whole, by their titles.
-HEIGHT, HEADING = "Height above odom", "Heading"
-FROM_CENTRE, FROM_ORIGIN = "Distance from its circle's centre", "Distance from the origin of odom"
+HEIGHT, HEADING = say("Height above odom"), say("Heading")
+FROM_CENTRE = say("Distance from its circle's centre")
+FROM_ORIGIN = say("Distance from the origin of odom")
 #: So many joints have a plot; a submission can name any number.
 MOST_JOINTS = 8
 #: Beyond this there is nothing to be seen [m, rad].
@@ -109,7 +111,7 @@ def _curve(joint: Joint, unit: str) -> Curve:
 
 def curve_of(joint: str) -> str:
     """The title of a joint's curve."""
-    return f"Joint {name_of(joint)}"
+    return say("Joint {name}", name=name_of(joint))
 
 
 def _of_way(way: Way, circle: tuple[float, float, float] | None) -> tuple[Curve, ...]:
@@ -133,10 +135,18 @@ def _drawable(values: Floats) -> Floats:
 def _words(trace: RobotTrace, way: Way) -> tuple[str, ...]:
     there = way.places[np.isfinite(way.places).all(axis=1)]
     if not len(there):
-        return ("nothing: no transform from odom to the robot's root was heard",)
+        return (say("nothing: no transform from odom to the robot's root was heard"),)
     first, last = (text.place(float(row[0]), float(row[1])) for row in (there[0], there[-1]))
-    told = [f"the robot's way in odom, from {first} to {last}"]
+    told: list[str] = [
+        say("the robot's way in odom, from {first} to {last}", first=first, last=last)
+    ]
     if (round_ := solid.circle(trace)) is not None:
         centre = text.place(*round_[:2])
-        told.append(f"the circle nearest to it: {round_[2]:.2f} m around {centre}")
+        told.append(
+            say(
+                "the circle nearest to it: {radius:.2f} m around {centre}",
+                radius=round_[2],
+                centre=centre,
+            )
+        )
     return tuple(told)

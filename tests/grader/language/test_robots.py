@@ -118,8 +118,9 @@ def test_all_that_is_said_of_a_robot_can_be_said_in_every_language(controller):
     trace = drive(controller, 300, WALKER.setting)
     found = verdicts(WALKER, Recordings(Recording(trace, scene="robot")))
     assert_told(list(texts(found)))
-    parts = load_scene("robot").view(trace).parts
-    trees = [part for part in parts if isinstance(part, Tree)]
+    view = load_scene("robot").view(trace)
+    assert_told([*(curve.title for curve in view.curves), *view.drawn])
+    trees = [part for part in view.parts if isinstance(part, Tree)]
     assert_told([text for tree in trees for text in (tree.title, tree.note)])
 
 
