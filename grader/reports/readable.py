@@ -8,7 +8,7 @@ from dataclasses import replace
 from grader import text
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Verdict
-from grader.result.result import RunSummary
+from grader.result.result import Result, RunSummary
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
 _TEXT_LIMIT = 2000
@@ -22,12 +22,29 @@ def line(value: str) -> str:
     return text.clip(text.one_line(value), _TEXT_LIMIT)
 
 
-def few_flags(run: RunSummary) -> RunSummary:
-    """A run with no more flags than anybody reads, none longer than that."""
-    flags = [text.clip(flag, _TEXT_LIMIT) for flag in run.flags[:_FLAGS_LIMIT]]
+def few(result: Result) -> Result:
+    """A result with no more evidence and flags than anybody reads; the rest need not be read."""
+    return replace(
+        result,
+        verdicts=tuple(
+            replace(verdict, evidence=verdict.evidence[:_POINTS_LIMIT])
+            for verdict in result.verdicts
+        ),
+        run=_few_flags(result.run),
+        varied_runs=tuple(map(_few_flags, result.varied_runs)),
+    )
+
+
+def _few_flags(run: RunSummary) -> RunSummary:
+    flags = list(run.flags[:_FLAGS_LIMIT])
     if more := len(run.flags) - len(flags):
         flags.append(f"and {more} more")
     return replace(run, flags=tuple(flags))
+
+
+def of_run(run: RunSummary) -> RunSummary:
+    """A run with its flags clipped."""
+    return replace(run, flags=tuple(text.clip(flag, _TEXT_LIMIT) for flag in run.flags))
 
 
 def of_verdict(verdict: Verdict, name: str) -> Verdict:
@@ -42,7 +59,7 @@ def of_verdict(verdict: Verdict, name: str) -> Verdict:
         help=text.clip(verdict.help, _TEXT_LIMIT),
         evidence=tuple(
             replace(item, note=text.clip(text.one_line(item.note), _TEXT_LIMIT))
-            for item in verdict.evidence[:_POINTS_LIMIT]
+            for item in verdict.evidence
         ),
     )
 

@@ -71,7 +71,8 @@ class Report:
     """
 
     def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
-        shown: Result = text.plain_all(in_language(as_seen(result, view)), readable.LOOKED_AT)
+        told = in_language(readable.few(as_seen(result, view)))
+        shown: Result = text.plain_all(told, readable.LOOKED_AT)
         self._result = result
         self.beside = beside
         self.view = view
@@ -80,8 +81,8 @@ class Report:
         self.score = float(shown.score if shown.not_shown else shown.final)
         self.deducted = round(float(shown.score) - self.score, 2)
         self.max_score = float(shown.max_score)
-        self.run = readable.few_flags(shown.run)
-        self.varied_runs = tuple(map(readable.few_flags, shown.varied_runs))
+        self.run = readable.of_run(shown.run)
+        self.varied_runs = tuple(map(readable.of_run, shown.varied_runs))
         self.origin = origin.sentences(shown.provenance) if shown.provenance else []
         *names, self.not_shown_name = readable.distinct(
             [*(text.one_line(verdict.check) for verdict in shown.verdicts), "not shown"]
