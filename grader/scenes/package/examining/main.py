@@ -13,6 +13,7 @@ import json
 import sys
 import tempfile
 import traceback
+from contextlib import suppress
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -60,6 +61,8 @@ def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> P
     one = packages.judged(found, asked, folder and folder.resolve())
     if one is None:
         return PackageTrace()
+    with suppress(ImportError):  # once, and not by each copy that runs it
+        import xacro  # noqa: F401
     prefix = scratch / "prefix"
     laid = {id(each): layout.lay_out(each, root.resolve(), prefix) for each in found}
     judged, everything = laid[id(one)], tuple(laid.values())
