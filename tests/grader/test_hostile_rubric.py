@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from grader import grading
+from grader.exercise.loading import load_exercise
 
 FOLDER = Path(__file__).parents[1] / "submissions" / "hostile_rubric"
 COUNTING = (FOLDER / "dead_reckoning.py").read_text(encoding="utf-8")
 WAYS = ("reset", "teleport", "respawn")
+CHALLENGE = load_exercise("turtlesim_challenge")
+#: Who turns without end does so until the run is over: a third of it shows the same.
+SHORTER = replace(CHALLENGE, limits=replace(CHALLENGE.limits, total_s=60))
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +29,7 @@ def graded(tmp_path_factory):
         paths[way].write_text(COUNTING.replace('WAY = "reset"', f'WAY = "{way}"'), encoding="utf-8")
 
     def grade(path):
-        return {verdict.check: verdict for verdict in grading.grade(path).verdicts}
+        return {verdict.check: verdict for verdict in grading.grade(path, SHORTER).verdicts}
 
     with ThreadPoolExecutor(2) as pool:
         return dict(zip(paths, pool.map(grade, paths.values()), strict=True))

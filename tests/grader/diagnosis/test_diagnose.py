@@ -98,7 +98,7 @@ def form(name):
     return st.none() | anything(getattr(conduct, name.removesuffix(" | None")))
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=60)
 @given(
     conduct=anything(Conduct),
     outcome=st.sampled_from(["finished", "exited", "crashed", "stalled", "time_limit", "killed"]),

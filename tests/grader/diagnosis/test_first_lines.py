@@ -25,12 +25,14 @@ TABLE: dict[str, dict[str, Any]] = yaml.safe_load(
     (SUBMISSIONS / "first_lines" / "first_lines.yaml").read_text(encoding="utf-8")
 )
 LIMITS = Limits(first_motion_s=3, rest_s=1, total_s=10)
+#: What loops for ever is not waited for as long as a student's imports would be.
+PATIENCE = Patience(stall_cpu_s=0.5, start_cpu_s=4.0)
 
 
 def found_in(path: Path) -> Diagnosis | None:
     """The diagnosis of one run."""
     with open_submission(path) as submission:
-        recording = virtual_time.run(submission, Plan(LIMITS), patience=Patience(stall_cpu_s=0.5))
+        recording = virtual_time.run(submission, Plan(LIMITS), patience=PATIENCE)
     return diagnose(Recordings(recording))
 
 

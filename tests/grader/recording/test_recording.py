@@ -172,7 +172,7 @@ def odd_recordings(draw) -> Recording:
 
 
 @given(odd=odd_recordings())
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_odd_values_survive_bit_for_bit(tmp_path_factory, odd):
     folder = tmp_path_factory.mktemp("odd")
     storage.save(odd, folder)

@@ -272,12 +272,12 @@ long_ones = []
 for long in LONG:
     found = [samples.evidence(long)] * 100
     verdicts = [samples.verdict(f"c{n}", "failed", 0, rationale=long, help=long, evidence=found)
-                for n in range(10)]
+                for n in range(5)]
     run = samples.run(flags=[long, *map(str, range(10_000))])
     long_ones.append(samples.result(*verdicts, submission=long, run=run))
 for form in FORMATS.values():
     form.load()
-limit(40, 4_000_000_000)
+limit(30, 4_000_000_000)
 for made, long in zip(long_ones, LONG):
     report = report_of(made, long)
     for name in FORMATS:

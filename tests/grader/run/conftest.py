@@ -13,13 +13,15 @@ from grader.recording.recording import Recording
 from grader.run import virtual_time
 from grader.run.plan import Plan
 from grader.run.simulator.link import Patience
-from grader.scenes.scene import Limits
+from grader.scenes.scene import Limits, Start
 from grader.submission.opening import open_submission
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
 LIMITS = Limits(first_motion_s=3, rest_s=1, total_s=60)
 #: Of submissions that rest now and then and go on.
 LONGER = Limits(first_motion_s=3, rest_s=5, total_s=60)
+#: Of those that drive until a wall is near: a third of the way.
+NEARER = Start(8.0, 5.5, 0.0)
 #: Whose limits or patience are shorter: what they do goes on for ever.
 SHORTER = {
     "busy_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
@@ -27,6 +29,7 @@ SHORTER = {
     "blocks_in_c": (Limits(0.5, 0.5, 5), Patience(asleep_s=1.0)),
     "starts_a_program": (Limits(3, 0.2, 10), Patience()),
     "breaks_the_grader": (Limits(3, 0.2, 10), Patience()),
+    "stops_itself": (Limits(3, 1, 60), Patience(asleep_s=1.0)),
     "attacks_link": (Limits(1, 0.2, 10), Patience()),
     "floods": (Limits(3, 1, 5), Patience()),
     "floods_without_end": (Limits(3, 1, 5), Patience()),
@@ -40,7 +43,8 @@ def _run(name: str) -> Recording:
     usual = LONGER if name.startswith("messages/") else LIMITS
     limits, patience = SHORTER.get(Path(name).stem, (usual, Patience()))
     with open_submission(SUBMISSIONS / f"{name}.py") as submission:
-        return virtual_time.run(submission, Plan(limits), patience=patience)
+        start = NEARER if name.startswith("styles/") else None
+        return virtual_time.run(submission, Plan(limits, start), patience=patience)
 
 
 def pytest_configure(config: pytest.Config) -> None:

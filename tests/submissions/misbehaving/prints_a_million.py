@@ -11,6 +11,6 @@ velocity = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
 twist = Twist()
 twist.linear.x = 1.0
 velocity.publish(twist)
-for number in range(1_000_000):
-    print("line", number)
+for thousand in range(1_000):
+    print("\n".join(f"line {1_000 * thousand + number}" for number in range(1_000)))
 time.sleep(10)
