@@ -167,6 +167,18 @@ AS_ROOT = {
     *("has_privileges_in_real_time", "has_privileges_from_nothing", "reads_home_from_nothing"),
     *("daemons_of_libc", "types_into_the_terminal", "many_processes", "reads_environment"),
 }
+#: Where Landlock confines: of these what root is refused by it, and one of each kind.
+AS_ROOT_BY_LANDLOCK = AS_ROOT - {
+    *("has_privileges_in_real_time", "has_privileges_from_nothing", "reads_home_from_nothing"),
+    *("forges_results", "reads_environment", "takes_descriptors", "stops_all", "unmounts"),
+    "enters_namespaces",
+}
+#: What is the same at `landlock`: a second program that starts from nothing, as all do in real
+#: time, and limits that no level sets.
+TRIED_ELSEWHERE = {
+    *("has_privileges_in_real_time", "has_privileges_from_nothing", "reads_home_in_real_time"),
+    *("outlives_main", "takes_memory", "endless_output", "many_threads_and_files"),
+}
 
 
 def what_happens(name: str, level: str) -> str:

@@ -12,32 +12,45 @@ import os
 import pytest
 
 from tests.attacks import container, levels
-from tests.attacks.attacks import AS_ROOT, AT_LIMITS, ATTACKS, LINK, READING, RUBRIC, SIMULATOR
+from tests.attacks.attacks import (
+    AS_ROOT,
+    AS_ROOT_BY_LANDLOCK,
+    AT_LIMITS,
+    ATTACKS,
+    LINK,
+    READING,
+    RUBRIC,
+    SIMULATOR,
+    TRIED_ELSEWHERE,
+)
 from tests.attacks.conftest import Graded
 from tests.attacks.handed_in import SUBMISSIONS
 
 pytestmark = pytest.mark.timeout(900)  # the first waits for all that share its container
 
-#: What no level changes is tried at one.
+#: What no level changes is tried at one, which has all of them.
 EVERYWHERE_THE_SAME = {READING, RUBRIC, SIMULATOR, LINK}
-ONE = "namespaces-user"
+DIFFER = {name for name, each in ATTACKS.items() if each.about not in EVERYWHERE_THE_SAME}
+TRIED = {
+    "namespaces-user": ATTACKS.keys(),
+    "namespaces-root": AS_ROOT,
+    "landlock-user": DIFFER - TRIED_ELSEWHERE,
+    "landlock-root": AS_ROOT_BY_LANDLOCK,
+    "limits-user": AT_LIMITS,
+}
 #: What is wrong wherever it happens, whatever the level lets through.
 NEVER = ("the grader failed", "the grading never ended", "the next submission", "an escape on")
 
 
 def chosen() -> list[tuple[str, str]]:
     """Level and attack of each grading."""
-    pairs = []
-    for level in levels.LEVELS:
-        for name, attack in ATTACKS.items():
-            is_told = attack.about not in EVERYWHERE_THE_SAME or level == ONE
-            if levels.LEVELS[level].is_root:
-                is_told = name in AS_ROOT
-            if level == "limits-user":
-                is_told = name in AT_LIMITS
-            if is_told or os.environ.get("TURTLESIM_ATTACKS") == "all":
-                pairs.append((level, name))
-    return pairs
+    is_all = os.environ.get("TURTLESIM_ATTACKS") == "all"
+    return [
+        (level, name)
+        for level in levels.LEVELS
+        for name in ATTACKS
+        if is_all or name in TRIED[level]
+    ]
 
 
 GRADINGS = chosen()

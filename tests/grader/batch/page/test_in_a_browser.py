@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 
 import pytest
 
 from grader.batch.page import html
 from grader.exercise.loading import load_exercise
+from tests.browser import BROWSER, needs_browser
 from tests.grader.batch.page.classes import entry, result
 
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
-)
-pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+pytestmark = needs_browser
 
 
 @pytest.fixture(scope="module")

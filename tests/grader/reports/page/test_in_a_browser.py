@@ -13,16 +13,14 @@ import pytest
 
 from grader.reports import Report
 from grader.reports.page import html
+from tests.browser import BROWSER, needs_browser
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
 
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
-)
 PDF_TO_TEXT = shutil.which("pdftotext") or ""
 
-pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+pytestmark = needs_browser
 
 
 @pytest.fixture(scope="module")

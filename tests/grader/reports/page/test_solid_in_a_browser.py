@@ -8,21 +8,18 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import subprocess
 
 import pytest
 
 from grader.scenes.robot.driving import drive
+from tests.browser import BROWSER, needs_browser
 from tests.grader.reports.page.test_parts import package_trace, page_of
 from tests.grader.reports.samples import verdict
 from tests.grader.scenes.robot.robots import walks
 from tests.grader.scenes.robot.test_solid import URDF
 
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
-)
-pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+pytestmark = needs_browser
 
 #: A window has a least width, a frame has none.
 FRAME = """<!DOCTYPE html><title>nothing</title><iframe src="page.html" width="{}" height="900"
