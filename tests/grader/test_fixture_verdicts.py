@@ -27,13 +27,10 @@ RIGHT = {
     **{
         style: SUBMISSIONS / "styles" / f"{style}.py"
         for style in (
-            "timer",
+            "timer",  # ... and all that draw the same, which tests/grader/run says
             "spin_once_loop",
-            "events_executor",
             "multi_threaded",
-            "call_in_callback",
             "rate_with_spin_thread",
-            "broadcasts_tf",
         )
     },
 }

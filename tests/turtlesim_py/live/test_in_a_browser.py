@@ -20,9 +20,9 @@ from turtlesim_py.world.canvas import Canvas, Pen
 
 pytestmark = needs_browser
 
+#: The pixels of a canvas as text: a list of a million numbers takes seconds on its way here.
 PIXELS = """
-() => {
-  const canvas = document.getElementById("canvas");
+(canvas = document.getElementById("canvas")) => {
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
   let text = "";
   for (let i = 0; i < data.length; i += 8192) {
@@ -77,13 +77,18 @@ class Person:
 
     def canvas(self) -> np.ndarray:
         """The pixels that are shown, RGB."""
-        pixels = np.frombuffer(base64.b64decode(self.page.evaluate(PIXELS)), np.uint8)
-        assert (pixels[3::4] == 255).all()
-        return pixels.reshape(500, 500, 4)[..., :3]
+        pixels = pixels_of(self.page.evaluate(f"({PIXELS})()"))
+        assert (pixels[..., 3] == 255).all()
+        return pixels[..., :3]
 
     def leave(self) -> None:
         self.page.close()
         assert self.errors == []
+
+
+def pixels_of(told: str) -> np.ndarray:
+    """What `PIXELS` tells, RGBA."""
+    return np.frombuffer(base64.b64decode(told), np.uint8).reshape(500, 500, 4)
 
 
 def until_equal(person: Person, expected: np.ndarray) -> None:
@@ -181,6 +186,9 @@ def test_turtles_are_turned_and_laid_over_as_the_simulator_does(browser, page):
     first.draw_line(20.0, 30.0, 400.5, 310.25, Pen(10, 200, 30, 12))
     drawn = person.page.evaluate(
         """async ([png, runs, turtles]) => {
+          const pixels = """
+        + PIXELS
+        + """;
           const { TurtleWindow } = await import("./window.js");
           const sprites = await (await fetch("sprites.json")).json();
           const canvas = document.createElement("canvas");
@@ -190,13 +198,11 @@ def test_turtles_are_turned_and_laid_over_as_the_simulator_does(browser, page):
           view.draw([[[10, 200, 30], runs]]);
           view.turtles = turtles;
           view.show();
-          const { data } = canvas.getContext("2d").getImageData(0, 0, 500, 500);
-          return [...data];
+          return pixels(canvas);
         }""",
         [png_of(first), runs, told],
     )
-    shown = np.array(drawn, np.uint8).reshape(500, 500, 4)[..., :3]
-    assert np.array_equal(shown, expected)
+    assert np.array_equal(pixels_of(drawn)[..., :3], expected)
     person.leave()
 
 
