@@ -42,6 +42,7 @@ def launched(folder, body: str, file: str = FILE) -> Launch:
         ("TimerAction(2.0, [])", "positional argument"),
         ("IncludeLaunchDescription('a', arguments={})", "unexpected keyword"),
         ("DeclareLaunchArgument('a', default='b')", "unexpected keyword"),
+        ("AppendEnvironmentVariable('A', 'a', prepend='at')", "Failed to convert 'at' to bool"),
         ("DeclareLaunchArgument('a', default_value='b', choices=['c'])", "is not in provided"),
         ("LogInfo(msg=LaunchConfiguration('none'))", "'none' does not exist"),
         ("LogInfo(msg='a', condition=IfCondition('yes'))", "invalid condition expression 'yes'"),
@@ -116,6 +117,34 @@ def test_conditions_groups_and_includes_are_followed(tmp_path):
     assert launch.declared == ("go",)
 
 
+def test_the_environment_is_appended_to_or_prepended_with_any_separator(tmp_path):
+    launch = launched(
+        tmp_path,
+        """
+        def told(name):
+            return Node(package='rviz2', executable='rviz2', name=EnvironmentVariable(name))
+        return LaunchDescription([
+            AppendEnvironmentVariable('A', 'a'), AppendEnvironmentVariable('A', 'b'),
+            AppendEnvironmentVariable('A', 'c', prepend='yes'),
+            AppendEnvironmentVariable('A', 'd', True, TextSubstitution(text='-')), told('A'),
+            SetEnvironmentVariable('B', ''), AppendEnvironmentVariable('B', 'b', separator=','),
+            told('B')])
+        """,
+    )
+    assert launch.problem is None
+    assert [node.name for node in launch.nodes] == ["d-c:a:b", ",b"]
+    in_xml = launched(
+        tmp_path / "xml",
+        """<launch>
+        <append_env name="A" value="a"/>
+        <append_env name="A" value="b" prepend="true" separator="-"/>
+        <node pkg="rviz2" exec="rviz2" name="$(env A)"/>
+        </launch>""",
+        "launch/display.launch.xml",
+    )
+    assert [node.name for node in in_xml.nodes] == ["b-a"]
+
+
 def test_values_of_parameters_go_through_yaml_where_the_original_does_so(tmp_path):
     launch = launched(
         tmp_path,
@@ -149,6 +178,7 @@ def test_values_of_parameters_go_through_yaml_where_the_original_does_so(tmp_pat
         ("<param name='robot_description' value='a'/>", "Unrecognized entity of the type: param"),
         ("<node", "ParseError"),
         ("<arg name='a'/><let name='b'/>", "Attribute 'value'"),
+        ("<set_env name='a' value='b' prepend='true'/>", "Unexpected attribute(s)"),
     ],
 )
 def test_a_launch_file_in_xml_is_refused_where_the_original_does_so(element, says, tmp_path):

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable
 from typing import Any
 
+import yaml
 from launch._core import (
     NOT_KNOWN,
     Action,
@@ -235,7 +236,9 @@ class ExecuteProcess(ExecuteLocal):
         return list(self.process_description.cmd)
 
 
-class SetEnvironmentVariable(Action):
+class _NameAndValue(Action):
+    """Gives something of a name a value."""
+
     def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._both = (
@@ -243,12 +246,18 @@ class SetEnvironmentVariable(Action):
             normalize_to_list_of_substitutions(value),
         )
 
+    def texts(self, context: LaunchContext) -> tuple[str, str]:
+        name, value = self._both
+        return text_of(context, name), text_of(context, value)
+
+
+class SetEnvironmentVariable(_NameAndValue):
     def execute(self, context: LaunchContext) -> None:
-        name, value = (text_of(context, each) for each in self._both)
+        name, value = self.texts(context)
         context.environment[name] = value
 
 
-class AppendEnvironmentVariable(Action):
+class AppendEnvironmentVariable(_NameAndValue):
     def __init__(
         self,
         name: Any,
@@ -257,16 +266,26 @@ class AppendEnvironmentVariable(Action):
         separator: Any = os.pathsep,
         **kwargs: Any,
     ) -> None:
-        super().__init__(**kwargs)
-        self._both = (
-            normalize_to_list_of_substitutions(name),
-            normalize_to_list_of_substitutions(value),
+        super().__init__(name, value, **kwargs)
+        self._prepend = (
+            prepend if isinstance(prepend, bool) else normalize_to_list_of_substitutions(prepend)
         )
+        self._separator = normalize_to_list_of_substitutions(separator)
 
     def execute(self, context: LaunchContext) -> None:
-        name, value = (text_of(context, each) for each in self._both)
-        before = context.environment.get(name)
-        context.environment[name] = f"{before}{os.pathsep}{value}" if before else value
+        name, value = self.texts(context)
+        parts = [context.environment[name], value] if name in context.environment else [value]
+        if self._is_first(context):
+            parts.reverse()
+        context.environment[name] = text_of(context, self._separator).join(parts)
+
+    def _is_first(self, context: LaunchContext) -> bool:
+        if isinstance(self._prepend, bool):
+            return self._prepend
+        text = text_of(context, self._prepend)
+        if not isinstance(found := yaml.safe_load(text), bool):
+            raise ValueError(f"Failed to convert '{text}' to bool")
+        return found
 
 
 class UnsetEnvironmentVariable(Action):
@@ -278,16 +297,9 @@ class UnsetEnvironmentVariable(Action):
         context.environment.pop(text_of(context, self._name), None)
 
 
-class SetLaunchConfiguration(Action):
-    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self._both = (
-            normalize_to_list_of_substitutions(name),
-            normalize_to_list_of_substitutions(value),
-        )
-
+class SetLaunchConfiguration(_NameAndValue):
     def execute(self, context: LaunchContext) -> None:
-        name, value = (text_of(context, each) for each in self._both)
+        name, value = self.texts(context)
         context.launch_configurations[name] = value
 
 
