@@ -90,7 +90,7 @@ def recordings(draw: st.DrawFn) -> Recording:
 
 @pytest.mark.parametrize("name", NAMES)
 @given(nominal=recordings(), varied=recordings())
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=30, deadline=None, suppress_health_check=list(HealthCheck))
 def test_whatever_was_recorded_is_judged(name, nominal, varied):
     exercise = load_exercise(name)
     asked = Recordings(replace(nominal, start=None), (varied,))

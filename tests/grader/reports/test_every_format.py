@@ -172,7 +172,7 @@ def classroom(monkeypatch):
 @pytest.mark.parametrize("name", FORMATS)
 @settings(
     deadline=None,
-    max_examples=40,
+    max_examples=20,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(made=any_results(), output=st.lists(TEXTS, max_size=3).map("\n".join))
