@@ -4,35 +4,43 @@ import { ENGLISH, LANGUAGES, language, speak } from "./language.js";
 
 const NAME = "lang";
 
+/** Of each language that has come its sentences. */
+const catalogues = new Map([[ENGLISH, {}]]);
+
+/** Speak what the address asks for, was chosen before, or the browser prefers. */
+export async function speakAsAsked() {
+  speak(ENGLISH, {});
+  await speakIfItComes(preferred());
+}
+
 /** Let it be chosen; `onChange` is called after each choice. */
 export function offerLanguages(select, onChange) {
   for (const [code, name] of Object.entries(LANGUAGES)) {
     const option = new Option(name, code);
     option.lang = code;
     select.append(option);
+    load(code);  // now: when it is chosen, the server may have ended
   }
   select.value = language();
   select.addEventListener("change", async () => {
-    keep(select.value);
-    await begin(select.value);
+    await speakIfItComes(select.value);
     select.value = language();
+    keep(language());
     onChange();
   });
 }
 
-/** Speak what the address asks for, was chosen before, or the browser prefers. */
-export function speakAsAsked() { return begin(preferred()); }
+/** Speak a language; where its catalogue does not come, the one that is spoken stays. */
+async function speakIfItComes(code) {
+  await load(code);
+  if (catalogues.has(code)) speak(code, catalogues.get(code));
+}
 
-/** Speak a language, or English where its catalogue does not come. */
-async function begin(code) {
-  if (code === ENGLISH) {
-    speak(ENGLISH, {});
-    return;
-  }
+async function load(code) {
+  if (catalogues.has(code)) return;
   try {
-    speak(code, await (await fetch(`${code}.json`)).json());
-  } catch {  // the simulator has ended
-    speak(ENGLISH, {});
+    catalogues.set(code, await (await fetch(`${code}.json`)).json());
+  } catch {  // the server has ended
   }
 }
 

@@ -275,7 +275,7 @@ OF_THE_REPORT = "title, header, #runs, #outcome, #checks, #compared-with, #canva
 @pytest.mark.parametrize(
     ("language", "tick", "curve"),
     [
-        ("fr", "1,920 s, tick 120 sur 300", "écart\N{NO-BREAK SPACE}: "),
+        ("fr", "1,920 s, pas 120 sur 300", "écart\N{NO-BREAK SPACE}: "),
         ("zh", "1.920 s\uff0c第 120 步\uff0c共 300 步", "相距\uff1a"),
     ],
 )
