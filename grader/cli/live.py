@@ -21,6 +21,8 @@ from grader import system
 from grader import text as texts
 from grader.errors import UsageError
 from grader.exercise.loading import Exercise
+from grader.language.phrase import Phrase, say
+from grader.language.telling import tell
 from grader.recording.recording import Clock
 from grader.reports import Report, playback
 from grader.run.plan import Plan
@@ -30,10 +32,10 @@ from grader.text import for_terminal
 from turtlesim_py import browser
 
 #: What --speed takes -> how many times as fast as in real time, and that in words.
-SPEEDS: Final[Mapping[str, tuple[float | None, str]]] = {
-    "1": (1.0, "as fast as in real time"),
-    "5": (5.0, "five times as fast as in real time"),
-    "free": (None, "as fast as it goes"),
+SPEEDS: Final[Mapping[str, tuple[float | None, Phrase]]] = {
+    "1": (1.0, say("as fast as in real time")),
+    "5": (5.0, say("five times as fast as in real time")),
+    "free": (None, say("as fast as it goes")),
 }
 #: Where the page is, unless somebody has that port.
 USUAL_PORT: Final = 8080
@@ -79,18 +81,22 @@ class Live:
         is_first = self._page is None
         if is_first:
             self._page = _serve(exercise)
-        self._change(Grading(f"{texts.one_line(texts.plain(submission))}, {exercise.title}"))
+        name = texts.one_line(texts.plain(submission))
+        title = tell("{submission}, {exercise}", submission=name, exercise=exercise.title)
+        self._change(Grading(title))
         if is_first:
             self._invite(messages)
 
     def _invite(self, messages: Console) -> None:
         assert self._page is not None
         address = self._page.address
-        messages.print(Text(for_terminal(f"The runs are to be seen at {address}")), soft_wrap=True)
+        said = tell("The runs are to be seen at {address}", address=address)
+        messages.print(Text(for_terminal(said)), soft_wrap=True)
         browser.show(address)
-        messages.print(f"Waiting for somebody to look, {PATIENCE_S:g} s at most ...")
+        wait = tell("Waiting for somebody to look, {most_s:g} s at most ...", most_s=PATIENCE_S)
+        messages.print(wait)
         if not self._page.await_viewer(PATIENCE_S):
-            messages.print("Nobody looks yet; the run begins.")
+            messages.print(tell("Nobody looks yet; the run begins."))
 
     # An audience ------------------------------------------------------------------------------
 
@@ -98,13 +104,19 @@ class Live:
         """Show an empty window, and which run it is."""
         starts = [each.start for each in self._plans]
         number, varied = starts.index(plan.start), len(starts) - 1
-        name = f"varied run {number} of {varied}" if number else "nominal run"
+        pace = say("in real time") if time == "real" else self._pace
+        run = tell("nominal run, {pace}", pace=pace)
         if plan.start is not None:
-            name += f" from {texts.place(plan.start.x, plan.start.y)}"
-        pace = "in real time" if time == "real" else self._pace
+            run = tell(
+                "varied run {number} of {runs} from {place}, {pace}",
+                number=number,
+                runs=varied,
+                place=texts.place(plan.start.x, plan.start.y),
+                pace=pace,
+            )
         assert self._page is not None
         self._page.begin()
-        self._change(run=f"{name}, {pace}")
+        self._change(run=run)
 
     def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
         """Show what happens in the run."""
@@ -114,19 +126,20 @@ class Live:
     def ends(self, is_whole: bool) -> None:
         """Say so where the run could not be shown to its end."""
         if not is_whole:
-            self._change(run=f"{self._grading.run} (not all of it could be shown)")
+            run = self._grading.run
+            self._change(run=tell("{run} (not all of it could be shown)", run=run))
 
     # What comes to be known -------------------------------------------------------------------
 
     def know_of_nominal(self, report: Report) -> None:
         """Show what the nominal run decides while the others still go."""
-        score = "The nominal run is over, the others still go."
+        score = tell("The nominal run is over, the others still go.")
         self._change(score=score, judged=playback.judged(report, 1))
 
     def know(self, report: Report) -> None:
         """Show the verdicts."""
         self._change(
-            score=f"Score: {report.score_text}",
+            score=tell("Score: {score}", score=report.score_text),
             first=report.first_line,
             judged=playback.judged(report, len(self._plans)),
             is_over=True,
@@ -136,8 +149,8 @@ class Live:
         """In a terminal, keep the page until Ctrl-C."""
         if self._page is None or not sys.stderr.isatty():
             return
-        where = Text(for_terminal(f"The page stays at {self._page.address}; Ctrl-C ends it."))
-        Console(stderr=True, highlight=False).print(where, soft_wrap=True)
+        said = tell("The page stays at {address}; Ctrl-C ends it.", address=self._page.address)
+        Console(stderr=True, highlight=False).print(Text(for_terminal(said)), soft_wrap=True)
         with suppress(KeyboardInterrupt):
             threading.Event().wait()
 
@@ -152,11 +165,15 @@ def _serve(exercise: Exercise) -> LivePage:
     serve = load_live(exercise.scene)
     if serve is None:
         raise UsageError(
-            f"--live: runs of the exercise {exercise.name!r} cannot be shown, for its scene "
-            f"{exercise.scene!r} has no such page; its report.html shows what came of them"
+            say(
+                "--live: runs of the exercise {exercise!r} cannot be shown, for its scene "
+                "{scene!r} has no such page; its report.html shows what came of them",
+                exercise=exercise.name,
+                scene=exercise.scene,
+            )
         )
     if not system.inherits_descriptors():
-        raise UsageError("--live needs Linux or macOS; grader view plays the run afterwards")
+        raise UsageError(say("--live needs Linux or macOS; grader view plays the run afterwards"))
     try:
         return serve(USUAL_PORT)
     except OSError:
@@ -164,4 +181,9 @@ def _serve(exercise: Exercise) -> LivePage:
     try:
         return serve(0)
     except OSError as error:
-        raise UsageError(f"--live: no page can be served at 127.0.0.1 ({error.strerror})") from None
+        raise UsageError(
+            say(
+                "--live: no page can be served at 127.0.0.1 ({why})",
+                why=error.strerror or str(error),
+            )
+        ) from None

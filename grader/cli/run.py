@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
+from grader.language.phrase import say
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
@@ -109,11 +110,16 @@ def _check_speed(args: argparse.Namespace) -> None:
     if args.speed is None:
         return
     if not args.live:
-        raise UsageError("--speed is for --live: a run that nobody sees goes as fast as it can")
+        raise UsageError(
+            say("--speed is for --live: a run that nobody sees goes as fast as it can")
+        )
     if args.time == "real" and args.speed != SPEEDS[0]:
         raise UsageError(
-            f"--speed {args.speed} needs virtual time: a run in real time goes as fast as the wall "
-            "clock; leave out --speed or --time real"
+            say(
+                "--speed {speed} needs virtual time: a run in real time goes as fast as the wall "
+                "clock; leave out --speed or --time real",
+                speed=args.speed,
+            )
         )
 
 

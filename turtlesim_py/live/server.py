@@ -18,7 +18,7 @@ from functools import cached_property, partial
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
-from urllib.parse import urlsplit
+from urllib.parse import urlencode, urlsplit
 
 import PIL.Image
 from websockets.asyncio.server import ServerConnection, broadcast, serve
@@ -70,6 +70,7 @@ class Settings:
         token: '' makes one.
         needs_token: whether nobody comes in without; elsewhere than at 127.0.0.1 nobody does.
         has_graph: whether viewers may look at the topics and services of a ROS graph.
+        language: what the page speaks; '' for what a viewer's browser prefers.
     """
 
     port: int
@@ -78,6 +79,7 @@ class Settings:
     token: str = ""
     needs_token: bool = False
     has_graph: bool = True
+    language: str = ""
 
 
 class _Viewer:
@@ -125,6 +127,7 @@ class LiveServer(Generic[_Source]):
         self.port = settings.port
         self._host = settings.host
         self._has_graph = settings.has_graph
+        self._language = settings.language
         needs_token = settings.needs_token or not is_loopback(settings.host)
         self._admission = Admission(settings.token or secrets.token_urlsafe(12), needs_token)
         self._files = {path.name: path.read_bytes() for path in _PAGE.iterdir()}
@@ -141,8 +144,11 @@ class LiveServer(Generic[_Source]):
     def address(self) -> str:
         """Where the page is; with the token where nobody comes in without."""
         host = f"[{self._host}]" if ":" in self._host else self._host
-        needed = f"?token={self._admission.token}" if self._admission.needs_token else ""
-        return f"http://{host}:{self.port}/{needed}"
+        asked = {"token": self._admission.token} if self._admission.needs_token else {}
+        if self._language:
+            asked["lang"] = self._language
+        query = f"?{urlencode(asked)}" if asked else ""
+        return f"http://{host}:{self.port}/{query}"
 
     @property
     def forwarded_address(self) -> str:

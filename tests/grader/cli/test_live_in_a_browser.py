@@ -10,7 +10,7 @@ import numpy as np
 import PIL.Image
 import pytest
 
-from tests.browser import needs_browser, obstacles, open_browser
+from tests.browser import english, needs_browser, obstacles, open_browser
 from tests.grader.cli.test_live import QUICK
 from tests.programs import DEADLINE_S, Program
 from tests.turtlesim_py.live.test_in_a_browser import PIXELS
@@ -26,10 +26,10 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
     (tmp_path / "one_run.yaml").write_text(EXERCISE)
     out = tmp_path / "out"
     words = (str(QUICK), "--live", "--speed", "free", "--out", str(out))
-    given = ("run", *words, "--exercise", "one_run.yaml")
+    given = ("run", *words, "--exercise", "one_run.yaml", "--lang", "en")
     with Program("grader", *given, cwd=tmp_path) as program, open_browser() as browser:
         address = re.search(r"http://\S+", program.wait_for_line("to be seen at"))[0]
-        page = browser.new_page(viewport={"width": width, "height": 900})
+        page = browser.new_page(viewport={"width": width, "height": 900}, locale="fr-FR")
         page.set_default_timeout(DEADLINE_S * 1000)
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))
@@ -51,3 +51,23 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert obstacles(page) == []
         assert errors == []
+
+
+def test_the_page_speaks_the_language_of_the_call_as_the_verdicts_do(tmp_path):
+    (tmp_path / "one_run.yaml").write_text(EXERCISE)
+    words = (str(QUICK), "--live", "--speed", "free", "--lang", "fr", "--out", "out")
+    given = ("run", *words, "--exercise", "one_run.yaml")
+    with Program("grader", *given, cwd=tmp_path) as program, open_browser() as browser:
+        address = re.search(r"http://\S+", program.wait_for_line("token="))[0]
+        page = browser.new_page(locale="zh-CN")
+        page.set_default_timeout(DEADLINE_S * 1000)
+        page.goto(address)
+        page.wait_for_selector("#state:has-text('ce qui est affiché reste.')")
+        assert program.wait() == 0
+        assert page.get_attribute("html", "lang") == "fr"
+        of_the_report = "#state, #grading-score, #grading-first, #checks"
+        assert english(page, "fr", of_the_report) == []
+        page.select_option("#language", "zh")
+        page.wait_for_selector("#state:has-text('页面上的内容会保留。')")
+        assert page.inner_text("#grading-title") == "检查项的结果"
+        assert english(page, "zh", of_the_report) == []

@@ -4,6 +4,7 @@ import { key, t } from "./language.js";
 
 /** As turtlesim_py/live/ has them: messages.py, graph.py, rosbridge.py. */
 const ANSWERS = [
+  key("there are no topics and services to be seen here"),
   key("nobody serves the action {action}"),
   key("nobody serves {service}"),
   key("the goal for {action} was not accepted"),

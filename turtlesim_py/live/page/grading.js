@@ -1,5 +1,7 @@
 // Where the run on view is graded: which run it is, and what the checks say, as far as is known.
 
+import { t } from "./language.js";
+
 const MARKS = { passed: "✓", failed: "✗", not_judged: "–" };
 
 function made(tag, kind, text) {
@@ -20,7 +22,7 @@ function check({ status, title, word, rationale, help }) {
 
 /** What is told at the top of the page: whose run, and which. */
 export function headingOf({ heading, run }) {
-  return [heading, run].filter(Boolean).join(": ");
+  return run ? t("{what}: {value}", { what: heading, value: run }) : heading;
 }
 
 export function tellGrading(element, { score, first, checks }) {

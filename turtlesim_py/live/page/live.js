@@ -68,11 +68,10 @@ async function take(news) {
   showSoon();
 }
 
-const seen = () => {
-  if (grading) return headingOf(grading);
-  return about.read_only ? t("{node}, for looking only", about) : about.node;
-};
+const node = () => (about.read_only ? t("{node}, for looking only", about) : about.node);
+const seen = () => (grading ? headingOf(grading) : node());
 
+/** What is told where there is no connection. */
 function missed() {
   if (grading?.is_over) return t("{what}. The grading is over; what is here stays.", { what: seen() });
   return grading

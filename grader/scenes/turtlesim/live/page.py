@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from grader.language.catalogue import spoken
 from grader.scenes.live import Grading
 from grader.scenes.turtlesim.live.mirror import Mirror
 from turtlesim_py.live.server import LiveServer, Settings
@@ -21,7 +22,13 @@ class TurtlesimPage:
 
     def __init__(self, port: int) -> None:
         """Serve it; OSError: that cannot be, as where another one does."""
-        settings = Settings(port, is_read_only=True, needs_token=True, has_graph=False)
+        settings = Settings(
+            port,
+            is_read_only=True,
+            needs_token=True,
+            has_graph=False,
+            language=spoken(),  # that of the verdicts
+        )
         self._server = LiveServer(Mirror, settings, _ABOUT)
         self._mirror = self._server.feed
         self._server.start()
