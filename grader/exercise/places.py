@@ -281,7 +281,7 @@ def _of_entry_point(point: EntryPoint) -> Place:
                 say(
                     "{told} is not an exercise: {folder}: {why}",
                     told=_told(point),
-                    path=str(folder),
+                    folder=str(folder),
                     why=_instead_of(folder / name),
                 )
             )
