@@ -46,7 +46,8 @@ FILES = {
     "syntax_error": "import rclpy\ndef main()\n    pass\n",
     "missing_import": "import rclpy\nimport turtlesim_messages\n\ndef main():\n    pass\n",
     "exits_at_once": "print('nothing to do')\n",
-    "never_ends": NODE.format(topic="/turtle1/cmd_vel") + "while True:\n    pass\n",
+    "never_ends": NODE.format(topic="/turtle1/cmd_vel")
+    + "rclpy.spin_once(node, timeout_sec=0.1)\nwhile True:\n    pass\n",
     "wrong_topic": NODE.format(topic="/turtle/cmd_vel")
     + "node.create_timer(0.1, lambda: pub.publish(twist))\nrclpy.spin(node)\n",
     "forks_away": "import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(1000)\n",
