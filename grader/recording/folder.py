@@ -35,7 +35,7 @@ from typing import TYPE_CHECKING, Any
 from grader import limited, strict_json
 from grader.errors import RecordingError
 from grader.language import stored
-from grader.language.phrase import Phrase
+from grader.language.phrase import Phrase, say
 from grader.limited import Limits
 from grader.recording import remarks
 from grader.recording.conduct import Conduct
@@ -182,10 +182,21 @@ def load_all(path: Path) -> Recordings:
     count = max(first.facts["varied_runs"], len(found))
     lost = next((number for number in range(1, count + 1) if number not in found), None)
     if lost is not None:
-        raise RecordingError(f"{folder} is incomplete: its folder varied_{lost} is missing")
+        raise RecordingError(
+            say(
+                "{folder} is incomplete: its folder varied_{lost} is missing",
+                folder=str(folder),
+                lost=str(lost),
+            )
+        )
     if count > MOST_VARIED_RUNS:
         raise RecordingError(
-            f"{folder} has {count} varied runs; expected {MOST_VARIED_RUNS} at most"
+            say(
+                "{folder} has {count} varied runs; expected {most} at most",
+                folder=str(folder),
+                count=count,
+                most=MOST_VARIED_RUNS,
+            )
         )
     varied = (_told(folder / f"varied_{number}") for number in range(1, count + 1))
     nominal, *others = _loaded([first, *varied])
@@ -311,7 +322,9 @@ def _bag() -> ModuleType:
 
 def _folder(path: Path) -> Path:
     if not path.exists():
-        raise RecordingError(f"cannot read the recording: {path} does not exist")
+        raise RecordingError(
+            say("cannot read the recording: {path} does not exist", path=str(path))
+        )
     return path if path.is_dir() else path.parent
 
 
@@ -325,23 +338,48 @@ def _facts(folder: Path) -> dict[str, Any]:
     """The contents of run.json and circumstances.json, valid by the schema."""
     has_bag, has_run = (folder / METADATA).exists(), (folder / RUN).exists()
     if not has_run:
-        what = "a rosbag, but no recording of the grader" if has_bag else "no recording"
-        raise RecordingError(f"{folder} is {what}: it has no {RUN}")
+        words = {"folder": str(folder), "run": RUN}
+        raise RecordingError(
+            say("{folder} is a rosbag, but no recording of the grader: it has no {run}", **words)
+            if has_bag
+            else say("{folder} is no recording: it has no {run}", **words)
+        )
     if not has_bag:
-        raise RecordingError(f"{folder} is incomplete: it has no {METADATA}, which is saved last")
+        raise RecordingError(
+            say(
+                "{folder} is incomplete: it has no {metadata}, which is saved last",
+                folder=str(folder),
+                metadata=METADATA,
+            )
+        )
     for name, most in SIZES.items():
         path = folder / name
         if path.exists() and not path.is_file():  # a pipe would be waited for, for ever
-            raise RecordingError(f"{path} is damaged: it is no ordinary file")
+            raise RecordingError(say("{path} is damaged: it is no ordinary file", path=str(path)))
         if path.is_symlink() and not path.resolve().is_relative_to(folder.resolve()):
-            raise RecordingError(f"{path} is no part of a recording: it leads somewhere else")
+            raise RecordingError(
+                say("{path} is no part of a recording: it leads somewhere else", path=str(path))
+            )
         if path.exists() and path.stat().st_size > most:
             size = path.stat().st_size
-            raise RecordingError(f"{path} has {size} bytes; expected {most} at most")
+            raise RecordingError(
+                say(
+                    "{path} has {size} bytes; expected {most} at most",
+                    path=str(path),
+                    size=size,
+                    most=most,
+                )
+            )
     facts = _read_json(folder / RUN)
     if facts.get("schema") != SCHEMA:
-        found = f"expected schema {SCHEMA!r}, found {facts.get('schema')!r}"
-        raise RecordingError(f"{folder / RUN} is of another version: {found}")
+        raise RecordingError(
+            say(
+                "{run} is of another version: expected schema {schema!r}, found {found!r}",
+                run=str(folder / RUN),
+                schema=SCHEMA,
+                found=facts.get("schema"),
+            )
+        )
     path = folder / CIRCUMSTANCES_FILE
     circumstances = _read_json(path) if path.exists() else {}
     if isinstance(facts.get("run"), dict):
@@ -352,11 +390,20 @@ def _facts(folder: Path) -> dict[str, Any]:
 
     error = best_match(_validator().iter_errors(facts))
     if error is not None:
-        raise RecordingError(f"{folder / RUN} is damaged: {error.json_path}: {error.message}")
+        raise RecordingError(
+            say(
+                "{run} is damaged: {place}: {message}",
+                run=str(folder / RUN),
+                place=error.json_path,
+                message=error.message,
+            )
+        )
     try:
         facts["run"]["flags"] = stored.restored(tuple(facts["run"]["flags"]), phrases)
     except (ValueError, TypeError, AttributeError) as wrong:
-        raise RecordingError(f"{path} is damaged: {wrong}") from None
+        raise RecordingError(
+            say("{path} is damaged: {error}", path=str(path), error=str(wrong))
+        ) from None
     return facts
 
 
@@ -383,12 +430,17 @@ def _told(folder: Path) -> _Told:
         output = (folder / OUTPUT).read_bytes().decode("utf-8", "surrogatepass")
         run = Run(**facts["run"])
     except OSError as error:
-        raise RecordingError(f"cannot read the recording: {error}") from None
+        raise RecordingError(say("cannot read the recording: {error}", error=str(error))) from None
     except (ValueError, TypeError) as error:
-        raise RecordingError(f"{folder} is damaged: {error}") from None
+        raise RecordingError(
+            say("{path} is damaged: {error}", path=str(folder), error=str(error))
+        ) from None
     if digest != facts["bag_sha256"]:
         raise RecordingError(
-            f"{folder / BAG} is damaged: it is cut off or was changed since it was saved"
+            say(
+                "{bag} is damaged: it is cut off or was changed since it was saved",
+                bag=str(folder / BAG),
+            )
         )
     scene = _scene(folder, facts.get("scene", FIRST_SCENE))
     _must_agree(folder, "ticks", run.ticks, round(run.simulated_s * 1e9 / scene.tick_ns))
@@ -420,7 +472,13 @@ def _trace(told: _Told, copy: limited.Copy, number: int) -> Trace:
     try:
         answer = copy.ask(number)
     except limited.LimitHit as hit:
-        raise RecordingError(f"the bag in {told.folder} cannot be read: reading it {hit}") from None
+        raise RecordingError(
+            say(
+                "the bag in {folder} cannot be read: reading it {hit}",
+                folder=str(told.folder),
+                hit=hit.args[0],
+            )
+        ) from None
     if answer.startswith(_ERROR):
         raise RecordingError(answer.removeprefix(_ERROR).decode())
     return told.scene.decode(answer)
@@ -448,9 +506,11 @@ def _package(path: Path) -> Trace | None:
     try:
         return load_scene(PACKAGE_SCENE).decode(path.read_bytes())
     except OSError as error:
-        raise RecordingError(f"cannot read the recording: {error}") from None
+        raise RecordingError(say("cannot read the recording: {error}", error=str(error))) from None
     except ValueError as error:
-        raise RecordingError(f"{path} is damaged: {error}") from None
+        raise RecordingError(
+            say("{path} is damaged: {error}", path=str(path), error=str(error))
+        ) from None
 
 
 def _conduct(path: Path) -> Conduct:
@@ -460,13 +520,21 @@ def _conduct(path: Path) -> Conduct:
     try:
         return Conduct.from_json(_read_json(path))
     except ValueError as error:
-        raise RecordingError(f"{path} is damaged: {error}") from None
+        raise RecordingError(
+            say("{path} is damaged: {error}", path=str(path), error=str(error))
+        ) from None
 
 
 def _must_agree(folder: Path, key: str, told: object, found: object) -> None:
     if told != found:
         raise RecordingError(
-            f"{folder / RUN} is damaged: its {key} is {told!r:.80}, but the run's is {found!r:.80}"
+            say(
+                "{run} is damaged: its {key} is {told}, but the run's is {found}",
+                run=str(folder / RUN),
+                key=key,
+                told=f"{told!r:.80}",
+                found=f"{found!r:.80}",
+            )
         )
 
 
@@ -474,18 +542,28 @@ def _scene(folder: Path, name: str) -> Scene:
     try:
         return load_scene(name)
     except KeyError as error:
-        raise RecordingError(f"{folder} cannot be read: {error.args[0]}") from None
+        raise RecordingError(
+            say("{folder} cannot be read: {why}", folder=str(folder), why=error.args[0])
+        ) from None
 
 
 def _read_json(path: Path) -> dict[str, Any]:
     try:
         data = strict_json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise RecordingError(f"cannot read the recording: {error}") from None
+        raise RecordingError(say("cannot read the recording: {error}", error=str(error))) from None
     except (ValueError, RecursionError) as error:
-        raise RecordingError(f"{path} is damaged: it is not JSON ({error})") from None
+        raise RecordingError(
+            say("{path} is damaged: it is not JSON ({error})", path=str(path), error=str(error))
+        ) from None
     if not isinstance(data, dict):
-        raise RecordingError(f"{path} is damaged: expected an object, found {data!r:.40}")
+        raise RecordingError(
+            say(
+                "{path} is damaged: expected an object, found {data}",
+                path=str(path),
+                data=f"{data!r:.40}",
+            )
+        )
     return data
 
 
