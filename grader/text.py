@@ -8,6 +8,8 @@ from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import Any
 
+from grader.language.phrase import say
+
 _ESCAPE_SEQUENCES = re.compile(
     r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)?|[@-Z\\^_])"
 )
@@ -30,8 +32,7 @@ def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str
     Args:
         keep: those of them that may stay.
     """
-    shown, found = _controls_but(keep).subn(lambda _: sign, text)
-    return shown if found else text  # itself: a phrase stays one
+    return _itself(text, _controls_but(keep).sub(lambda _: sign, text))
 
 
 @cache
@@ -46,6 +47,11 @@ def plain(text: str) -> str:
     """
     text = without_controls(_LINE_BREAKS.sub("\n", _ESCAPE_SEQUENCES.sub("", text)), keep="\t\n")
     return _COMMANDS.sub(lambda match: f"{match[1]}: :" if match[0].endswith(":") else "# #", text)
+
+
+def plain_phrase(text: str) -> str:
+    """The same; a phrase that is plain already stays one."""
+    return _itself(text, plain(text))
 
 
 def for_terminal(text: str) -> str:
@@ -75,8 +81,7 @@ def plain_all(value: Any, limit: int = 1_000_000) -> Any:
 
 def one_line(text: str) -> str:
     """The text with every run of white space as one space."""
-    line = " ".join(text.split())
-    return line if line != text else text  # itself: a phrase stays one
+    return _itself(text, " ".join(text.split()))
 
 
 def clip(text: str, limit: int) -> str:
@@ -120,4 +125,9 @@ def count(number: int, noun: str) -> str:
 def place(x: float, y: float) -> str:
     """A place in the window [m]: '(5.54, 7.20)'."""
     known = math.isfinite(x) and math.isfinite(y)
-    return f"({x:.2f}, {y:.2f})" if known else "an unknown place"
+    return say("({x:.2f}, {y:.2f})", x=x, y=y) if known else say("an unknown place")
+
+
+def _itself(text: str, made: str) -> str:
+    """The text itself where nothing was changed: a phrase stays one."""
+    return text if text == made else made

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar, cast
 
-from grader.language.phrase import Phrase
+from grader.language.phrase import Phrase, like
 
 #: Phrases in phrases: none that a check makes is deeper.
 _DEEPEST = 12
@@ -44,8 +44,11 @@ def phrase(text: str, data: Any, depth: int = 0) -> Phrase:
     """
     if not isinstance(data, dict) or depth > _DEEPEST:
         raise ValueError("expected a phrase: a key with values, or parts")
-    parts = [_part(part, depth) for part in data.get("parts", [])]
-    values = {name: _value(value, depth) for name, value in data.get("values", {}).items()}
+    listed, named = data.get("parts", []), data.get("values", {})
+    if not isinstance(listed, list) or not isinstance(named, dict):
+        raise ValueError("expected a list of parts, or values by their names")
+    parts = [_part(part, depth) for part in listed]
+    values = {name: _value(value, depth) for name, value in named.items()}
     key, many = data.get("key", ""), data.get("many", "")
     if not isinstance(key, str) or not isinstance(many, str):
         raise ValueError("expected texts as keys of a phrase")
@@ -113,7 +116,7 @@ def _restore(value: Any, made: Mapping[str, Phrase]) -> Any:
     if isinstance(value, Mapping):
         return {key: _restore(item, made) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return type(value)(_restore(item, made) for item in value)
+        return like(value, [_restore(item, made) for item in value])
     if is_dataclass(value) and not isinstance(value, type):
         names = [field.name for field in fields(value)]
         return replace(value, **{name: _restore(getattr(value, name), made) for name in names})

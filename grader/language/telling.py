@@ -9,7 +9,7 @@ from numbers import Real
 from typing import Any
 
 from grader.language.catalogue import ENGLISH, catalogue, knows, spoken
-from grader.language.phrase import Phrase, fill, say, say_many
+from grader.language.phrase import Phrase, fill, like, say, say_many
 
 _POINT = re.compile(r"(?<=\d)\.(?=\d)")
 _COMMA = re.compile(r"(?<=\d),(?=\d{3})")
@@ -40,27 +40,37 @@ def told(text: str, language: str = "") -> str:
         return catalogue(language).gettext(text) if text else text
     if language in text.words:
         return text.words[language]
+    try:
+        return _told(text, language)
+    except (ValueError, TypeError, LookupError, ArithmeticError):
+        return str(text)  # of a file that somebody has changed: values that are not the key's
+
+
+def _told(text: Phrase, language: str) -> str:
     if text.parts:
         return _close_up("".join(told(part, language) for part in text.parts))
     if not knows(language, text.key, text.many):
         return str(text)
-    found = catalogue(language)
-    n = text.values.get("n", 0)
-    key = found.ngettext(text.key, text.many, n) if text.many else found.gettext(text.key)
+    found, many = catalogue(language), text.many
+    n = int(text.values["n"]) if many else 0
+    key = found.ngettext(text.key, many, n) if many else found.gettext(text.key)
     return fill(key, text.values, lambda value, form: _written(value, form, language))
 
 
 def in_language(value: Any, language: str = "") -> Any:
-    """A dataclass, list or dictionary with each of its texts in a language."""
+    """A dataclass, list or dictionary with each of its phrases said in a language.
+
+    A text that is no phrase stays as it is: it may be a name, a status or a student's own.
+    """
     language = language or spoken()
     if language == ENGLISH:
         return value
-    if isinstance(value, str):
+    if isinstance(value, Phrase):
         return told(value, language)
     if isinstance(value, Mapping):
         return {key: in_language(item, language) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return type(value)(in_language(item, language) for item in value)
+        return like(value, [in_language(item, language) for item in value])
     if is_dataclass(value) and not isinstance(value, type):
         names = [field.name for field in fields(value)]
         return replace(value, **{n: in_language(getattr(value, n), language) for n in names})

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.errors import UsageError
+from grader.language.phrase import say
 from grader.reports.beside import Beside
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
@@ -45,17 +46,19 @@ class Format:
 
 
 FORMATS: Final[Mapping[str, Format]] = {
-    "terminal": Format("terminal", "for reading in a terminal"),
-    "html": Format("page.html", "one self-contained page: picture, plots, animation, verdicts"),
-    "markdown": Format("markdown", "a GitHub step summary, a comment, a release's text"),
-    "csv": Format("csv", "one row a result, for a teacher's spreadsheet", takes_several=True),
-    "junit": Format("junit", "JUnit XML for GitLab, Jenkins and GitHub actions"),
-    "gradescope": Format("gradescope", "Gradescope's results.json"),
-    "classroom50": Format("classroom50", "Classroom 50's result.json"),
-    "prairielearn": Format("prairielearn", "PrairieLearn's results.json"),
-    "autolab": Format("autolab", "the last two lines of an Autolab autograder's output"),
-    "moodle-vpl": Format("moodle_vpl", "Moodle's Virtual Programming Lab"),
-    "github-autograding": Format("github_autograding", "GitHub Classroom's old reporter"),
+    "terminal": Format("terminal", say("for reading in a terminal")),
+    "html": Format(
+        "page.html", say("one self-contained page: picture, plots, animation, verdicts")
+    ),
+    "markdown": Format("markdown", say("a GitHub step summary, a comment, a release's text")),
+    "csv": Format("csv", say("one row a result, for a teacher's spreadsheet"), takes_several=True),
+    "junit": Format("junit", say("JUnit XML for GitLab, Jenkins and GitHub actions")),
+    "gradescope": Format("gradescope", say("Gradescope's results.json")),
+    "classroom50": Format("classroom50", say("Classroom 50's result.json")),
+    "prairielearn": Format("prairielearn", say("PrairieLearn's results.json")),
+    "autolab": Format("autolab", say("the last two lines of an Autolab autograder's output")),
+    "moodle-vpl": Format("moodle_vpl", say("Moodle's Virtual Programming Lab")),
+    "github-autograding": Format("github_autograding", say("GitHub Classroom's old reporter")),
 }
 
 
@@ -89,8 +92,13 @@ def render(name: str, reports: Sequence[Report | ErrorReport]) -> str:
     if len(reports) != 1:
         several = ", ".join(n for n, f in FORMATS.items() if f.takes_several)
         raise UsageError(
-            f"the format {name} shows one result, found {len(reports)}; several can be given "
-            f"with: {several}"
+            say(
+                "the format {name} shows one result, found {n}; several can be given with: "
+                "{several}",
+                name=name,
+                n=len(reports),
+                several=several,
+            )
         )
     (report,) = reports
     module = form.load()

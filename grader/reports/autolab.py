@@ -7,6 +7,8 @@ from typing import Any
 
 from grader import text
 from grader.errors import UsageError
+from grader.language.phrase import say
+from grader.language.telling import tell
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import word
@@ -39,11 +41,16 @@ def render_error(report: ErrorReport) -> str:
     """
     if not report.is_judged:
         raise UsageError(
-            "the format autolab cannot say that nothing was judged; end without scores instead: "
-            f"{text.one_line(report.message)}"
+            say(
+                "the format autolab cannot say that nothing was judged; end without scores "
+                "instead: {message}",
+                message=text.one_line(report.message),
+            )
         )
     if not report.checks:
-        raise UsageError("the format autolab needs the exercise of an error: add --exercise NAME")
+        raise UsageError(
+            say("the format autolab needs the exercise of an error: add --exercise NAME")
+        )
     hint = {"passed": False, "hint": _hint(report.title, [text.one_line(report.message)])}
     return _lines(dict.fromkeys(report.checks, hint), dict.fromkeys(report.checks, 0))
 
@@ -54,4 +61,4 @@ def _lines(checks: dict[str, Any], scores: dict[str, Any]) -> str:
 
 
 def _hint(word: str, lines: list[str]) -> str:
-    return " ".join([f"{word.capitalize()}.", *filter(None, lines)])
+    return " ".join([tell("{title}.", title=word.capitalize()), *filter(None, lines)])

@@ -53,7 +53,7 @@ class Beside:
             try:
                 loaded[run] = storage.load(base / f"varied_{run}" if run else base)
             except RecordingError as error:
-                loaded[run] = str(error)
+                loaded[run] = error.message
         return loaded
 
     @cached_property

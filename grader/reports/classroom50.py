@@ -10,6 +10,7 @@ from typing import Any
 
 from grader import text
 from grader.errors import UsageError
+from grader.language.phrase import say
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.whole_points import WholePoints, whole_points, zero_points
@@ -55,8 +56,11 @@ def render_error(report: ErrorReport) -> str:
     """
     if not report.is_judged:
         raise UsageError(
-            "the format classroom50 cannot say that nothing was judged; leave with an exit code "
-            f"other than 0 instead: {text.one_line(report.message)}"
+            say(
+                "the format classroom50 cannot say that nothing was judged; leave with an exit "
+                "code other than 0 instead: {message}",
+                message=text.one_line(report.message),
+            )
         )
     points = zero_points(report.max_score or 0)
     test = {
@@ -91,16 +95,25 @@ def _identity(env: Mapping[str, str]) -> dict[str, str]:
         missing.append("OWNER (or USERNAME)")
     if missing:
         raise UsageError(
-            "the format classroom50 needs the environment of a Classroom 50 autograder; "
-            f"not set: {', '.join(missing)}"
+            say(
+                "the format classroom50 needs the environment of a Classroom 50 autograder; "
+                "not set: {missing}",
+                missing=", ".join(missing),
+            )
         )
     if not env["SUBMISSION_TAG"].startswith("submit/"):
         raise UsageError(
-            f"SUBMISSION_TAG is {env['SUBMISSION_TAG']!r}, expected a tag that starts with submit/"
+            say(
+                "SUBMISSION_TAG is {tag!r}, expected a tag that starts with submit/",
+                tag=env["SUBMISSION_TAG"],
+            )
         )
     kind = env.get("ASSIGNMENT_TYPE") or _TYPES[0]
     if kind not in _TYPES:
-        raise UsageError(f"ASSIGNMENT_TYPE is {kind!r}, expected {' or '.join(_TYPES)}")
+        types = say("{one} or {other}", one=_TYPES[0], other=_TYPES[1])
+        raise UsageError(
+            say("ASSIGNMENT_TYPE is {kind!r}, expected {types}", kind=kind, types=types)
+        )
     return {
         "classroom": env["CLASSROOM"],
         "assignment": env["ASSIGNMENT"],

@@ -11,7 +11,7 @@ from typing import Any
 from grader import text
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.reports.wording import word
+from grader.reports.wording import WORDS
 
 _BEFORE = ("submission", "exercise", "score", "max_score")
 #: Also in the wide letters of Chinese, Japanese and Korean.
@@ -65,7 +65,7 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
     ]
     for name in checks:
         verdict = verdicts.get(name)
-        row += [text.number(verdict.score), word(verdict)] if verdict else ["", ""]
+        row += [text.number(verdict.score), str(WORDS[verdict.status])] if verdict else ["", ""]
     first = report.first_key
     return [
         *row,
@@ -84,7 +84,7 @@ def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
     return [
         *(cell(report.name), "", score, max_score),
         *[""] * (2 * len(checks)),
-        *(report.title.lower(), what, "", "", cell(str(report.file or report.folder))),
+        *(report.state, what, "", "", cell(str(report.file or report.folder))),
     ]
 
 

@@ -7,17 +7,20 @@ from pathlib import Path
 from typing import Final
 
 from grader import text
+from grader.language.phrase import joined, say
+from grader.language.telling import in_language, tell, told
+from grader.reports.wording import points
 from grader.result.error import ErrorResult
 
 _TEXT_LIMIT: Final = 4000
-_NOT_YOURS: Final = (
+_NOT_YOURS: Final = say(
     "This is not your fault, and it says nothing about your work. Please tell the course staff: "
     "they have to grade it again."
 )
 _WHAT: Final = {
-    "exercise": "The exercise cannot be used.",
-    "call": "The grader was not called as it should be.",
-    "grader": "The grader failed.",
+    "exercise": say("The exercise cannot be used."),
+    "call": say("The grader was not called as it should be."),
+    "grader": say("The grader failed."),
 }
 
 
@@ -49,7 +52,7 @@ class ErrorReport:
     ) -> None:
         self.is_judged = error.whose == "submission"
         self.whose = error.whose
-        self.message = text.clip_middle(text.plain(error.message).strip(), _TEXT_LIMIT)
+        self.message = text.clip_middle(text.plain(in_language(error.message)).strip(), _TEXT_LIMIT)
         self.max_score = None if error.max_score is None else float(error.max_score)
         self.folder = folder
         self.checks = tuple(checks)
@@ -64,26 +67,33 @@ class ErrorReport:
         return text.one_line(text.plain(file.parent.name if file.stem == "error" else file.stem))
 
     @property
+    def state(self) -> str:
+        """The same in all languages, for tables."""
+        return "cannot be graded" if self.is_judged else "not graded"
+
+    @property
     def title(self) -> str:
         """What has happened, in two words."""
-        return "Cannot be graded" if self.is_judged else "Not graded"
+        return tell("Cannot be graded") if self.is_judged else tell("Not graded")
 
     @property
     def score_text(self) -> str:
         """The points, where there are some: '0 of 100'."""
-        return "0" if self.max_score is None else f"0 of {text.points(self.max_score)}"
+        if self.max_score is None:
+            return "0"
+        return tell("{score} of {max_score}", score="0", max_score=points(self.max_score))
 
     @property
     def before(self) -> str:
         """The sentence that leads to the message."""
         if self.is_judged:
-            return "This cannot be graded, so it has no points:"
-        return f"{_WHAT[self.whose]} {_NOT_YOURS}"
+            return tell("This cannot be graded, so it has no points:")
+        return told(joined([_WHAT[self.whose], _NOT_YOURS], " "))
 
     @property
     def after(self) -> str:
         """The sentence that follows it; may be ''."""
-        return "Mend that, and hand in again." if self.is_judged else ""
+        return tell("Mend that, and hand in again.") if self.is_judged else ""
 
     @property
     def paragraphs(self) -> list[str]:

@@ -12,6 +12,7 @@ from typing import Any
 
 from grader import text
 from grader.exercise.verdict import Verdict
+from grader.language.telling import tell
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
 from grader.reports.report import Report
@@ -70,9 +71,9 @@ def _tests(report: Report) -> list[dict[str, Any]]:
 def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
     lines = report.lines(verdict)
     if verdict.status == "not_judged":
-        lines.insert(0, "Not judged.")
+        lines.insert(0, tell("Not judged."))
     elif verdict.is_partial:
-        lines.insert(0, "Partial credit.")
+        lines.insert(0, tell("Partial credit."))
     return {
         "name": f"{verdict.check}: {verdict.title}",
         "number": str(index + 1),
@@ -89,8 +90,10 @@ def _overview(report: Report) -> str:
     parts += [f"<p>{html.escape(line)}</p>" for line in said if line]
     picture = pictures.canvas_uri(report)
     if picture:
-        parts.append(f'<p><img src="{picture}" width="500" alt="The window at the end"></p>')
+        alt = html.escape(tell("The window at the end"))
+        parts.append(f'<p><img src="{picture}" width="500" alt="{alt}"></p>')
     output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
     if output:
-        parts.append(f"<p>What the node printed:</p><pre>{html.escape(output)}</pre>")
+        printed = html.escape(tell("What the node printed:"))
+        parts.append(f"<p>{printed}</p><pre>{html.escape(output)}</pre>")
     return "".join(parts)

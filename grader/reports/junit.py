@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 from grader import text
 from grader.exercise.verdict import Verdict
+from grader.language.telling import tell
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, word
@@ -82,7 +83,7 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
         failure.text = "\n".join(lines)
     elif verdict.status == "not_judged":
         ElementTree.SubElement(case, "skipped", message)
-    said = [f"{word(verdict)}, {score_text(verdict)} points"]
+    said = [tell("{word}, {score} points", word=word(verdict), score=score_text(verdict))]
     if verdict.status != "failed":
         said += [_quote(line) for line in lines]
     elif attachment := _canvas_here(report):

@@ -6,6 +6,8 @@ import re
 
 from grader import text
 from grader.exercise.verdict import Verdict
+from grader.language.telling import tell
+from grader.reports import wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
@@ -21,8 +23,9 @@ _OUTPUT_LIMIT = 10_000
 def render(report: Report) -> str:
     """The report, ending with a line break so that it can be appended to a file."""
     parts = [
-        f"## {_quote(report.exercise)}: {report.score_text} points",
-        f"Submission: {_quote(report.submission)}",
+        "## "
+        + tell("{title}: {score} points", title=_quote(report.exercise), score=report.score_text),
+        tell("Submission: {submission}", submission=_quote(report.submission)),
         _first(report),
         _table(report),
         *(_quote(said) for said in (*report.handed_in, report.not_shown)),
@@ -34,9 +37,11 @@ def render(report: Report) -> str:
 
 def render_error(report: ErrorReport) -> str:
     """The error, ending with a line break."""
-    points = f": {report.score_text} points" if report.is_judged else ""
+    title = report.title
+    if report.is_judged:
+        title = tell("{title}: {score} points", title=title, score=report.score_text)
     message = "\\\n".join(map(_quote, report.message.splitlines()))
-    parts = [f"## {report.title}{points}", report.before, message, report.after]
+    parts = [f"## {title}", report.before, message, report.after]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -52,48 +57,70 @@ def _first(report: Report) -> str:
     if found is None and first is None:
         return f"**{_quote(report.headline)}**"
     is_of_check = found is None or found.check
-    about = f", {_quote(title_of(first))}" if is_of_check and first is not None else ""
-    line = f"**First to mend{about}:** {_quote(report.headline)}"
+    if is_of_check and first is not None:
+        about = tell("First to mend, {title}:", title=_quote(title_of(first)))
+    else:
+        about = tell("First to mend:")
+    line = f"**{about}** {_quote(report.headline)}"
     return "\n\n".join([line, *map(_quote, report.advice)])
 
 
 def _table(report: Report) -> str:
-    rows = ["| verdict | asked for | points | check |", "| --- | --- | ---: | --- |"]
+    headings = (tell("verdict"), tell("asked for"), tell("points"), tell("check"))
+    rows = [f"| {' | '.join(headings)} |", "| --- | --- | ---: | --- |"]
     for verdict in report.verdicts:
         name = _quote(verdict.check)
         if waited_for := report.waited_for(verdict):
-            name += f" (waits for {_quote(', '.join(waited_for))})"
-        points = score_text(verdict) + (" (partial credit)" if verdict.is_partial else "")
+            name += " " + tell("(waits for {checks})", checks=_quote(", ".join(waited_for)))
+        points = score_text(verdict)
+        if verdict.is_partial:
+            points += " " + tell("(partial credit)")
         sign = f"{_SIGNS[verdict.status]} {word(verdict)}"
         if seen := report.seen_by_students(verdict):
-            name += f" ({seen})"
+            name += " " + tell("({seen})", seen=seen)
         rows.append(f"| {sign} | {_quote(title_of(verdict))} | {points} | {name} |")
     if report.deducted:
-        rows.append(f"| | handed in late | -{text.points(report.deducted)} | |")
-    rows.append(f"| | **total** | **{report.score_text.replace(' of ', ' / ')}** | |")
+        late = tell("handed in late")
+        rows.append(f"| | {late} | -{wording.points(report.deducted)} | |")
+    total = f"{wording.points(report.score)} / {wording.points(report.max_score)}"
+    rows.append(f"| | **{tell('total')}** | **{total}** | |")
     return "\n".join(rows)
 
 
 def _seen(report: Report, verdict: Verdict) -> str:
     lines = [
-        f"### {_quote(title_of(verdict))}: {score_text(verdict)}",
+        "### "
+        + tell("{title}: {score}", title=_quote(title_of(verdict)), score=score_text(verdict)),
         "",
         _quote(verdict.rationale),
     ]
     if verdict.evidence:
         lines += ["", *(f"- {_quote(str(point))}" for point in report.points_of(verdict))]
     if help_ := report.help_for(verdict):
-        lines += ["", f"**Look at:** {_quote(help_)}"]
+        lines += ["", f"**{tell('Look at:')}** {_quote(help_)}"]
     return "\n".join(lines)
 
 
 def _run(report: Report) -> str:
     run = report.run
-    took = f" in {run.wall_s:.1f} s" if run.wall_s else ""
-    outcome = _quote(report.outcome(0))
-    lines = [f"Run: {outcome}, {run.simulated_s:.1f} s simulated{took} ({run.time} time)."]
-    lines += [f"- Note: {_quote(flag)}" for flag in run.flags]
+    lines = [_how(report), *("- " + tell("Note: {flag}", flag=_quote(flag)) for flag in run.flags)]
     return "\n".join(lines)
+
+
+def _how(report: Report) -> str:
+    run = report.run
+    said = {
+        "outcome": _quote(wording.outcome(report.outcome(0))),
+        "simulated_s": run.simulated_s,
+        "clock": wording.clock(run.time),
+    }
+    if not run.wall_s:
+        return tell("Run: {outcome}, {simulated_s:.1f} s simulated ({clock} time).", **said)
+    return tell(
+        "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
+        wall_s=run.wall_s,
+        **said,
+    )
 
 
 def _output(report: Report) -> str:
@@ -104,6 +131,6 @@ def _output(report: Report) -> str:
     longest = max((len(run) for run in re.findall(r"`+", output)), default=0)
     fence = "`" * max(3, longest + 1)
     return (
-        "<details><summary>What the node printed</summary>\n\n"
+        f"<details><summary>{tell('What the node printed')}</summary>\n\n"
         f"{fence}text\n{output}\n{fence}\n\n</details>"
     )

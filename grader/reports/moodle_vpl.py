@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from grader import text
 from grader.exercise.verdict import Verdict
+from grader.language.telling import tell
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
@@ -11,9 +12,13 @@ from grader.reports.wording import score_text, title_of, word
 
 def render(report: Report) -> str:
     """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
-    lines = ["<|--", "-What to do", _quote(report.first_line)]
+    lines = ["<|--", f"-{tell('What to do')}", _quote(report.first_line)]
     lines += map(_quote, report.advice)
-    lines += [f"Also: {_quote(said)}" for said in (*report.handed_in, report.not_shown) if said]
+    lines += [
+        tell("Also: {said}", said=_quote(said))
+        for said in (*report.handed_in, report.not_shown)
+        if said
+    ]
     for verdict in report.verdicts:
         lines += _verdict(report, verdict)
     lines += ["--|>", f"Grade :=>> {text.points(report.score)}"]
@@ -34,15 +39,23 @@ def render_error(report: ErrorReport) -> str:
 def _verdict(report: Report, verdict: Verdict) -> list[str]:
     # A title that ended with a number in brackets would be taken for a deduction.
     lines = [
-        f"-{_quote(title_of(verdict))}: {word(verdict)}, {score_text(verdict)} points",
-        f"Asked for: {_quote(verdict.title)}",
-        f"Seen: {_quote(verdict.rationale)}",
+        "-"
+        + tell(
+            "{title}: {word}, {score} points",
+            title=_quote(title_of(verdict)),
+            word=word(verdict),
+            score=score_text(verdict),
+        ),
+        tell("Asked for: {title}", title=_quote(verdict.title)),
+        tell("Seen: {rationale}", rationale=_quote(verdict.rationale)),
     ]
     if waited_for := report.waited_for(verdict):
-        lines.append(f"Waits for: {_quote(', '.join(waited_for))}")
-    lines += [f"Where: {_quote(str(point))}" for point in report.points_of(verdict)]
+        lines.append(tell("Waits for: {checks}", checks=_quote(", ".join(waited_for))))
+    lines += [
+        tell("Where: {where}", where=_quote(str(point))) for point in report.points_of(verdict)
+    ]
     if verdict.help:
-        lines.append(f"Look at: {_quote(verdict.help)}")
+        lines.append(tell("Look at: {help}", help=_quote(verdict.help)))
     return lines
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from grader import text
+from grader.language.telling import tell
 from grader.recording.conduct import Place
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
@@ -23,9 +24,9 @@ def of(
     takes = tuple(_take(number, each) for number, each in enumerate(recordings))
     if report is None:
         return Playback(text.one_line(text.plain(name)), "", takes, (), other)
-    where = f"Where: {report.where_first}" if report.where_first else ""
+    where = tell("Where: {where}", where=report.where_first) if report.where_first else ""
     return Playback(
-        title=f"{report.submission}: {report.score_text}",
+        title=tell("{title}: {score}", title=report.submission, score=report.score_text),
         summary=f"{report.first_line} {where}".strip(),
         takes=takes,
         judged=judged(report, len(takes)),
@@ -39,14 +40,17 @@ def judged(report: Report, runs: int) -> tuple[Judged, ...]:
 
 
 def _take(number: int, recording: Recording) -> Take:
-    outcome = recording.run.outcome.replace("_", " ")
+    outcome = wording.outcome(recording.run.outcome.replace("_", " "))
     start = recording.start
     if start is not None:
-        outcome = f"{outcome}; from {text.place(start.x, start.y)}"
+        outcome = tell(
+            "{outcome}; from {place}", outcome=outcome, place=text.place(start.x, start.y)
+        )
+    after = recording.run.simulated_s
     return Take(
         number,
-        f"Varied run {number}" if number else "Nominal run",
-        f"{outcome}, after {recording.run.simulated_s:.1f} s",
+        tell("Varied run {number}", number=number) if number else tell("Nominal run"),
+        tell("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
         recording.trace,
         start,
         _sent(recording),
@@ -81,7 +85,11 @@ def _judged(report: Report, index: int, runs: int) -> Judged:
     return Judged(
         wording.title_of(verdict),
         verdict.status,
-        f"{wording.word(verdict)}, {wording.score_text(verdict)} points",
+        tell(
+            "{word}, {score} points",
+            word=wording.word(verdict),
+            score=wording.score_text(verdict),
+        ),
         verdict.rationale,
         verdict.help,
         tuple(
@@ -91,7 +99,7 @@ def _judged(report: Report, index: int, runs: int) -> Judged:
                 point.evidence.tick,
                 point.evidence.x if point.evidence.has_place else None,
                 point.evidence.y if point.evidence.has_place else None,
-                f"{point.where}: {point.evidence.note}",
+                str(point),
             )
             for point in points
             if point.evidence.run < runs

@@ -7,6 +7,7 @@ from typing import Any
 
 from grader import text
 from grader.exercise.verdict import Verdict
+from grader.language.telling import tell
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
 from grader.reports.report import Report
@@ -20,7 +21,7 @@ _OUTPUT_LIMIT = 20_000
 def render(report: Report) -> str:
     """The JSON document, without the picture or even the explanations if it would be too large."""
     picture = pictures.canvas_uri(report)
-    images = [{"label": "The window at the end", "url": picture}] if picture else []
+    images = [{"label": tell("The window at the end"), "url": picture}] if picture else []
     for shown, tests_in_full in ((images, True), ([], True), ([], False)):
         document = json.dumps(_document(report, shown, tests_in_full)) + "\n"
         if len(document) <= LIMIT_BYTES:  # json.dumps writes ASCII: characters are bytes
@@ -54,7 +55,7 @@ def _said(report: Report) -> list[str]:
 
 def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
     test = {
-        "name": f"{title_of(verdict)} ({word(verdict)})",
+        "name": tell("{title} ({word})", title=title_of(verdict), word=word(verdict)),
         "points": text.number(verdict.score),
         "max_points": text.number(verdict.max_score),
     }

@@ -8,6 +8,8 @@ from dataclasses import replace
 from grader import text
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Verdict
+from grader.language.phrase import say
+from grader.language.telling import told
 from grader.result.result import Result, RunSummary
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
@@ -38,7 +40,7 @@ def few(result: Result) -> Result:
 def _few_flags(run: RunSummary) -> RunSummary:
     flags = list(run.flags[:_FLAGS_LIMIT])
     if more := len(run.flags) - len(flags):
-        flags.append(f"and {more} more")
+        flags.append(say("and {more} more", more=more))
     return replace(run, flags=tuple(flags))
 
 
@@ -52,7 +54,7 @@ def of_verdict(verdict: Verdict, name: str) -> Verdict:
     return replace(
         verdict,
         check=name,
-        title=text.one_line(verdict.title),
+        title=text.one_line(text.plain(told(verdict.title))),
         score=float(verdict.score),
         max_score=float(verdict.max_score),
         rationale=text.clip(verdict.rationale, _TEXT_LIMIT),
@@ -74,7 +76,7 @@ def of_diagnosis(found: Diagnosis) -> Diagnosis:
     return replace(
         found,
         key=key,
-        cause=cause or key or "(no cause)",
+        cause=cause or key or tell("(no cause)"),
         help=line(found.help),
         place=place,
         check=line(found.check),

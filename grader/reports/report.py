@@ -10,12 +10,12 @@ from typing import Self
 
 from grader import text
 from grader.exercise.verdict import Evidence, Verdict
-from grader.language.telling import in_language
+from grader.language.telling import in_language, tell, told
 from grader.recording.folder import FIRST_SCENE
 from grader.recording.recording import Recording, Recordings
 from grader.reports import origin, readable, wording
 from grader.reports.beside import Beside, StillInMemory
-from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, title_of, where, word
+from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, points, title_of, where, word
 from grader.result.result import Result
 from grader.result.visible import View, as_seen
 from grader.scenes import NAMES as SCENES
@@ -43,7 +43,7 @@ class Point:
         return where(self.evidence)
 
     def __str__(self) -> str:
-        return f"{self.where}: {self.evidence.note}"
+        return tell("{where}: {note}", where=self.where, note=self.evidence.note)
 
 
 class Report:
@@ -76,8 +76,8 @@ class Report:
         self._result = result
         self.beside = beside
         self.view = view
-        self.exercise = readable.line(shown.exercise) or "(no name)"
-        self.submission = readable.line(shown.submission) or "(no name)"
+        self.exercise = readable.line(shown.exercise) or tell("(no name)")
+        self.submission = readable.line(shown.submission) or tell("(no name)")
         self.score = float(shown.score if shown.not_shown else shown.final)
         self.deducted = round(float(shown.score) - self.score, 2)
         self.max_score = float(shown.max_score)
@@ -118,7 +118,9 @@ class Report:
 
     def seen_by_students(self, verdict: Verdict) -> str:
         """For a teacher, what of a verdict students see; '' for all of it, and for students."""
-        return wording.SEEN_BY_STUDENTS.get(verdict.visible, "") if self.view == "whole" else ""
+        return (
+            told(wording.SEEN_BY_STUDENTS.get(verdict.visible, "")) if self.view == "whole" else ""
+        )
 
     @property
     def folder(self) -> Path:
@@ -128,7 +130,8 @@ class Report:
     @property
     def score_text(self) -> str:
         """The total: '87.5 of 100'."""
-        return f"{text.points(self.score)} of {text.points(self.max_score)}"
+        score, most = points(self.score), points(self.max_score)
+        return tell("{score} of {max_score}", score=score, max_score=most)
 
     @cached_property
     def points(self) -> tuple[Point, ...]:
@@ -165,7 +168,7 @@ class Report:
         led = [each for each in self.verdicts if each.help and self._comes_of_the_first(each)]
         if verdict not in led:
             return verdict.help
-        return SEE_FIRST if verdict is led[0] else ""
+        return told(SEE_FIRST) if verdict is led[0] else ""
 
     def _comes_of_the_first(self, verdict: Verdict) -> bool:
         """Whether a run's own diagnosis may be behind it: not if it is all about other runs."""
@@ -178,10 +181,10 @@ class Report:
         """What was seen, where, and what to look at: for formats that show plain text."""
         lines = [text.one_line(verdict.rationale)]
         if waited_for := self.waited_for(verdict):
-            lines.append(f"Waits for: {', '.join(waited_for)}")
+            lines.append(tell("Waits for: {checks}", checks=", ".join(waited_for)))
         lines += [f"- {text.one_line(str(point))}" for point in self.points_of(verdict)]
         if verdict.help:
-            lines.append(f"Look at: {text.one_line(verdict.help)}")
+            lines.append(tell("Look at: {help}", help=text.one_line(verdict.help)))
         return [line for line in lines if line]
 
     def led_lines(self, verdict: Verdict) -> list[str]:
@@ -222,7 +225,7 @@ class Report:
     def first_line(self) -> str:
         """The headline, with what it is before it."""
         lost = self.diagnosis is not None or self.first_to_mend is not None
-        return f"First to mend: {self.headline}" if lost else self.headline
+        return tell("First to mend: {headline}", headline=self.headline) if lost else self.headline
 
     @property
     def first_key(self) -> str:
@@ -237,8 +240,8 @@ class Report:
         found = self.diagnosis
         if found is None:
             return []
-        lines = [f"Where: {self.where_first}"] if self.where_first else []
-        return [*lines, *([f"What to do: {found.help}"] if found.help else [])]
+        lines = [tell("Where: {where}", where=self.where_first)] if self.where_first else []
+        return [*lines, *([tell("What to do: {help}", help=found.help)] if found.help else [])]
 
     @property
     def where_first(self) -> str:
@@ -246,12 +249,17 @@ class Report:
         place = self.diagnosis.place if self.diagnosis is not None else None
         if place is None:
             return ""
-        function = f", in {place.function}" if place.function else ""
-        line = f": {place.text}" if place.text else ""
-        return text.one_line(f"{place.file}, line {place.line}{function}{line}")
+        at = {"file": place.file, "line": str(place.line), "function": place.function}
+        if place.function:
+            where = tell("{file}, line {line}, in {function}", **at)
+        else:
+            where = tell("{file}, line {line}", **at)
+        return text.one_line(
+            tell("{where}: {code}", where=where, code=place.text) if place.text else where
+        )
 
     def outcome(self, run: int) -> str:
-        """How a run ended, in a word or two: that of the result, for people."""
+        """How a run ended, in a word or two: a key of `wording.OUTCOMES`."""
         summary = self.varied_runs[run - 1] if run else self.run
         if summary.outcome == "time_limit" and self._never_moved(run):
             return NOTHING_MOVED
@@ -281,7 +289,9 @@ class Report:
     def no_recording(self, run: int) -> str:
         """Why a run has no recording."""
         reason = self.beside.recordings.get(run)
-        return text.plain(reason) if isinstance(reason, str) else "no recording lies beside it"
+        if not isinstance(reason, str):
+            return tell("no recording lies beside it")
+        return text.plain(told(reason))
 
     @cached_property
     def output(self) -> str:

@@ -12,10 +12,12 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.exercise.verdict import Verdict
+from grader.language.telling import tell, tell_many
+from grader.reports import wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
-from grader.text import for_terminal, points
+from grader.text import for_terminal
 
 _MARKS = {
     "passed": ("✓", "green"),
@@ -36,13 +38,13 @@ def render_error(report: ErrorReport) -> str:
 
 def show_error(report: ErrorReport, console: Console) -> None:
     """Print an error."""
-    console.print(_text(f"{report.title}.", "bold"), soft_wrap=True)
+    console.print(_text(tell("{title}.", title=report.title), "bold"), soft_wrap=True)
     for part in report.paragraphs:
         console.print()
         console.print(_text(part), soft_wrap=True)
     if report.is_judged:
         console.print()
-        console.print(_text(f"Score: {report.score_text}", "bold"))
+        console.print(_score(report))
 
 
 def _captured(print_to: Callable[[Console], None]) -> str:
@@ -56,7 +58,8 @@ def show(report: Report, console: Console) -> None:
     """Print the report."""
     _lead(report, console)
     console.print()
-    console.print(_text(f"{report.submission}: {report.exercise}", "bold"), soft_wrap=True)
+    head = tell("{submission}: {exercise}", submission=report.submission, exercise=report.exercise)
+    console.print(_text(head, "bold"), soft_wrap=True)
     _checks(report, console)
     for verdict in report.verdicts:
         if not verdict.passed and not report.waited_for(verdict):
@@ -65,20 +68,29 @@ def show(report: Report, console: Console) -> None:
     console.print()
     console.print(
         _text(
-            f"Run: {report.outcome(0)}, {run.simulated_s:.1f} s simulated "
-            f"in {run.wall_s:.1f} s ({run.time} time)."
+            tell(
+                "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
+                outcome=wording.outcome(report.outcome(0)),
+                simulated_s=run.simulated_s,
+                wall_s=run.wall_s,
+                clock=wording.clock(run.time),
+            )
         )
     )
     for flag in run.flags:
-        console.print(_text(f"Note: {flag}"))
+        console.print(_text(tell("Note: {flag}", flag=flag)))
     for said in filter(None, (*report.handed_in, report.not_shown)):
         console.print(_text(said))
-    console.print(_text(f"Score: {report.score_text}", "bold"))
+    console.print(_score(report))
+
+
+def _score(report: Report | ErrorReport) -> Text:
+    return _text(tell("Score: {score}", score=report.score_text), "bold")
 
 
 def show_nominal(report: Report, console: Console) -> None:
     """Print what the nominal run decides while the varied ones still go."""
-    console.print(_text("The nominal run is over, the others still go.", "bold"))
+    console.print(_text(tell("The nominal run is over, the others still go."), "bold"))
     if report.verdicts:
         _checks(report, console)
     if report.diagnosis is not None and not report.diagnosis.check:
@@ -108,10 +120,17 @@ def _checks(report: Report, console: Console) -> None:
         console.print(_table(report, judged, console.width))
     sign, color = _MARKS["not_judged"]
     for titles, verdicts in report.waiting.items():
-        since = " and ".join(f"“{title}”" for title in titles)
-        names = ", ".join(verdict.check for verdict in verdicts)
-        worth = points(sum(verdict.max_score for verdict in verdicts))
-        said = f"not judged, since {since} did not pass: {names} ({worth} points)"
+        since, *more = (tell("“{title}”", title=title) for title in titles)
+        for title in more:
+            since = tell("{those} and {last}", those=since, last=title)
+        said = tell_many(
+            "not judged, since {titles} did not pass: {names} ({worth} points)",
+            "not judged, since {titles} did not pass: {names} ({worth} points)",
+            len(titles),
+            titles=since,
+            names=", ".join(verdict.check for verdict in verdicts),
+            worth=wording.points(sum(verdict.max_score for verdict in verdicts)),
+        )
         grid = Table.grid(padding=(0, 1))
         grid.add_row(Text(f" {sign}", color), _text(said, color))
         console.print(grid)
@@ -140,7 +159,7 @@ def _row(verdict: Verdict, seen: str) -> tuple[Text, Text, Text, Text]:
     sign, color = _MARKS[verdict.status]
     notes = [_text(verdict.check, "dim")] if verdict.title else []
     if verdict.is_partial:
-        notes.append(_text("partial credit", "yellow"))
+        notes.append(_text(tell("partial credit"), "yellow"))
     if seen:
         notes.append(_text(seen, "dim"))
     said = Text(f" {sign} {word(verdict)}", color)
@@ -154,9 +173,12 @@ def _row(verdict: Verdict, seen: str) -> tuple[Text, Text, Text, Text]:
 
 def _explanation(report: Report, verdict: Verdict) -> Group:
     sign, color = _MARKS[verdict.status]
-    partial = " (partial credit)" if verdict.is_partial else ""
-    head = _text(f"{sign} {title_of(verdict)}: {score_text(verdict)}{partial}", f"bold {color}")
-    lines: list[RenderableType] = [Text(), head]
+    said = {"title": title_of(verdict), "score": score_text(verdict)}
+    if verdict.is_partial:
+        head = tell("{title}: {score} (partial credit)", **said)
+    else:
+        head = tell("{title}: {score}", **said)
+    lines: list[RenderableType] = [Text(), _text(f"{sign} {head}", f"bold {color}")]
     lines.append(Padding(_text(" ".join(verdict.rationale.split())), (0, 0, 0, 2)))
     lines += [_indented("•", str(point)) for point in report.points_of(verdict)]
     if help_ := report.help_for(verdict):

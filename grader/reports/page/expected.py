@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from grader import text
+from grader.language.telling import told
 from grader.reports.page.plots import HEIGHT, Plot, Plots
 from grader.reports.report import Report
 
@@ -30,7 +31,7 @@ def expected(report: Report, plots: Plots | None) -> dict[str, Drawn]:
     """Of the plots of the nominal run, by their titles."""
     if plots is None:
         return {}
-    wanted = {each.curve: each for verdict in report.verdicts for each in verdict.expected}
+    wanted = {told(each.curve): each for verdict in report.verdicts for each in verdict.expected}
     found = {}
     for plot in plots.curves:
         each = wanted.get(plot.title)

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 from weakref import WeakKeyDictionary
 
 import jinja2
@@ -21,6 +21,9 @@ import numpy as np
 from markupsafe import Markup
 
 from grader import text
+from grader.language.catalogue import spoken
+from grader.language.phrase import say
+from grader.language.telling import in_language, number, tell, told
 from grader.recording.recording import Recording
 from grader.reports import wording
 from grader.reports.error_report import ErrorReport
@@ -38,6 +41,12 @@ from grader.scenes import load_scene
 from grader.scenes.scene import Scene
 from grader.scenes.view import Floats, Solid, Table, Tree
 
+#: What scenes are about, as the object of a sentence.
+_THE: Final = {
+    "turtle": say("the turtle"),
+    "robot": say("the robot"),
+    "package": say("the package"),
+}
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
 #: On paper, of what a node printed, so many lines and characters: the last tell how it ended.
@@ -129,6 +138,8 @@ def render(report: Report) -> str:
             },
             to_px=plane.to_px,
             thing=report.scene.thing,
+            the=_the(report.scene),
+            words=_script_words(),
             radius=RADIUS_PX,
         )
     )
@@ -158,22 +169,37 @@ def _faulty_runs(report: Report) -> set[int]:
 
 
 def _outcomes(scene: Scene) -> dict[str, str]:
-    thing = scene.thing
+    the = _the(scene)
     if scene.examiner:
         return {
-            "finished": f"the {thing} was looked at",
-            "time limit": f"looking at the {thing} did not come to an end",
-            "crashed": f"the {thing} ended the process that looked at it",
-            "killed": f"the {thing} ended the process that looked at it",
+            "finished": tell("{the_thing} was looked at", the_thing=the),
+            "time limit": tell("looking at {the_thing} did not come to an end", the_thing=the),
+            "crashed": tell("{the_thing} ended the process that looked at it", the_thing=the),
+            "killed": tell("{the_thing} ended the process that looked at it", the_thing=the),
         }
     return {
-        "finished": scene.finished,
-        "exited": "the node ended by itself, without an error",
-        "crashed": "the node ended with an error",
-        "stalled": "the node stopped responding",
-        "time limit": f"the {thing} was still going at the time limit",
-        wording.NOTHING_MOVED: f"the {thing} never moved, so the run was ended",
-        "killed": "somebody killed the node",
+        "finished": told(scene.finished),
+        "exited": tell("the node ended by itself, without an error"),
+        "crashed": tell("the node ended with an error"),
+        "stalled": tell("the node stopped responding"),
+        "time limit": tell("{the_thing} was still going at the time limit", the_thing=the),
+        wording.NOTHING_MOVED: tell("{the_thing} never moved, so the run was ended", the_thing=the),
+        "killed": tell("somebody killed the node"),
+    }
+
+
+def _the(scene: Scene) -> str:
+    return _THE.get(scene.thing, say("the {thing}", thing=scene.thing))
+
+
+def _script_words() -> dict[str, str]:
+    """What the page's script writes."""
+    return {
+        "play": tell("Play"),
+        "pause": tell("Pause"),
+        "end": tell("end"),
+        "seconds": tell("{seconds} s", seconds="#"),
+        "point": number("0.0")[1:-1],
     }
 
 
@@ -194,6 +220,10 @@ def _environment() -> jinja2.Environment:
         see_first=wording.SEE_FIRST,
         place=text.place,
         word=wording.word,
+        run_name=_name,
+        clock=wording.clock,
+        outcome_word=wording.outcome,
+        points=wording.points,
         score_text=wording.score_text,
     )
     return made
@@ -210,12 +240,14 @@ class Drawing:
     tables: tuple[Table, ...] = ()
 
 
-_drawings: WeakKeyDictionary[Recording, Drawing] = WeakKeyDictionary()
+#: By language.
+_drawings: WeakKeyDictionary[Recording, dict[str, Drawing]] = WeakKeyDictionary()
 
 
 def draw(recording: Recording) -> Drawing:
     """Draw a recording, once: ahead of the page, while other runs go, or for it."""
-    drawing = _drawings.get(recording)
+    drawings = _drawings.setdefault(recording, {})
+    drawing = drawings.get(spoken())
     if drawing is None:
         scene = load_scene(recording.scene)
         view, tick_s = scene.view(recording.trace), scene.tick_ns / 1e9
@@ -226,9 +258,9 @@ def draw(recording: Recording) -> Drawing:
             plots(view, ticks, tick_s),
             turnable(solids[0], tick_s) if solids else None,
             tuple(drawn(part) for part in view.parts if isinstance(part, Tree)),
-            tuple(part for part in view.parts if isinstance(part, Table)),
+            tuple(in_language(part) for part in view.parts if isinstance(part, Table)),
         )
-        _drawings[recording] = drawing
+        drawings[spoken()] = drawing
     return drawing
 
 
@@ -259,19 +291,25 @@ def _view(report: Report, number: int, on_paper: bool) -> RunView:
 
 def _still_words(drawing: Drawing) -> str:
     if drawing.turnable is not None:
-        return drawing.turnable.solid.text
+        return str(in_language(drawing.turnable.solid.text))
     shown = drawing.film.drawn if drawing.film is not None else ()
-    return "; ".join(shown) or "The window at the end"
+    return "; ".join(shown) or tell("The window at the end")
+
+
+def _name(number: int) -> str:
+    return tell("Varied run {number}", number=number) if number else tell("Nominal run")
 
 
 def _title(report: Report, number: int) -> str:
-    if number == 0:
-        return "Nominal run"
-    start = report.varied_runs[number - 1].start
+    start = report.varied_runs[number - 1].start if number else None
     if start is None:
-        return f"Varied run {number}"
-    heading = math.degrees(start.theta)
-    return f"Varied run {number}: from {text.place(start.x, start.y)}, heading {heading:.0f}°"
+        return _name(number)
+    return tell(
+        "Varied run {number}: from {place}, heading {heading:.0f}°",
+        number=number,
+        place=text.place(start.x, start.y),
+        heading=math.degrees(start.theta),
+    )
 
 
 def _film_data(shown: Film) -> dict[str, Any]:

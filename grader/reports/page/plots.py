@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from grader.language.telling import in_language, tell, told
 from grader.reports.page.tracks import svg_path
 from grader.scenes.view import Call, Curve, Floats, View
 
@@ -138,9 +139,12 @@ def _plot(curve: Curve, x: Floats) -> Plot:
     bottom, top = steps[0], steps[-1]
     y = (top - values) / (top - bottom) * HEIGHT
     labels = tuple(Tick(100 * (v - bottom) / (top - bottom), f"{v:g}") for v in steps)
-    summary = f"{curve.title}: from {low:.3g} to {high:.3g} {curve.unit}"
+    title, unit = told(curve.title), told(curve.unit)
+    summary = tell(
+        "{title}: from {low:.3g} to {high:.3g} {unit}", title=title, low=low, high=high, unit=unit
+    )
     path = svg_path(*_thinned(x, y))
-    return Plot(curve.title, curve.unit, path, labels, summary, bottom, top)
+    return Plot(title, unit, path, labels, summary, bottom, top)
 
 
 def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -174,10 +178,15 @@ def _calls(made: Sequence[Call], ticks: int, tick_s: float) -> tuple[Calls, ...]
             name,
             len(calls),
             _sparse([Mark(100 * call.tick / ticks, call.color) for call in calls]),
-            tuple(Row(c.tick * tick_s, c.color, c.text, c.where) for c in calls[:_ROWS]),
+            tuple(_row(call, tick_s) for call in calls[:_ROWS]),
         )
         for name, calls in listed
     )
+
+
+def _row(call: Call, tick_s: float) -> Row:
+    said, where = in_language((call.text, call.where))
+    return Row(call.tick * tick_s, call.color, said, where)
 
 
 def _sparse(marks: list[Mark]) -> tuple[Mark, ...]:

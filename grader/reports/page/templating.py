@@ -10,7 +10,8 @@ import jinja2
 from markupsafe import Markup
 
 from grader import text
-from grader.language.telling import tell, tell_many
+from grader.language.catalogue import spoken
+from grader.language.telling import in_language, number, tell, tell_many, told
 from grader.reports.page.compiled import BesideTheTemplates
 
 #: How all pages look.
@@ -37,6 +38,10 @@ def environment(script: Path, *styles: Path) -> jinja2.Environment:
         counted=text.count,
         tell=tell,
         tell_many=tell_many,
+        told=told,
+        said=in_language,
+        number=number,
+        spoken=spoken,
         style=Markup("".join(path.read_text(encoding="utf-8") for path in (STYLE, *styles))),
         script=Markup(code),
         script_digest=base64.b64encode(hashlib.sha256(code.encode()).digest()).decode(),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from grader.language.telling import in_language
 from grader.scenes.view import Floats, Rest, Track, View
 
 #: A track has no more samples than this, however long the run.
@@ -90,7 +91,7 @@ def film(view: View, run_ticks: int, tick_s: float) -> Film:
         tuple(sorted({int(np.searchsorted(ticks, tick)) for tick in view.cleared})),
         view.background,
         view.rest,
-        view.drawn,
+        in_language(view.drawn),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from grader import text
+from grader.language.telling import in_language, tell
 from grader.scenes.view import Tree, TreeNode
 
 #: The drawing's width, a row's height, a step to the right [px]; deeper ones stay where they are.
@@ -69,17 +70,21 @@ def drawn(tree: Tree) -> DrawnTree:
 
 
 def _node(node: TreeNode, x: int, y: int, path: str) -> DrawnNode:
-    room = WIDTH - x - 12
+    room, said = WIDTH - x - 12, in_language(node.text)
     return DrawnNode(
         *(x, y),
         text.clip(node.name, int(room / _NAME_PX)),
-        text.clip(node.text, int(room / _TEXT_PX)),
-        f"{node.name}: {node.text}",
+        text.clip(said, int(room / _TEXT_PX)),
+        tell("{name}: {text}", name=node.name, text=said),
         node.mark,
         path,
     )
 
 
 def _words(node: TreeNode) -> str:
-    mark = {"": "", "lost": " (no place)", "wrong": " (wrong)"}[node.mark]
-    return f"{'- ' * node.depth}{node.name}{mark}: {node.text}"
+    said = {"name": "- " * node.depth + node.name, "text": in_language(node.text)}
+    if node.mark == "lost":
+        return tell("{name} (no place): {text}", **said)
+    if node.mark == "wrong":
+        return tell("{name} (wrong): {text}", **said)
+    return tell("{name}: {text}", **said)

@@ -5,6 +5,7 @@
   const SVG = "http://www.w3.org/2000/svg";
   const all = (selector, root = document) => [...root.querySelectorAll(selector)];
   const films = JSON.parse(document.getElementById("films").textContent);
+  const words = JSON.parse(document.getElementById("words").textContent);
   document.documentElement.classList.add("script");
 
   /** The index of the last sample that is not after `time`. */
@@ -54,14 +55,14 @@
     play() {
       if (+this.slider.value >= this.end) this.seek(0);
       this.playing = true;
-      this.button.textContent = "Pause";
+      this.button.textContent = words.pause;
       this.last = performance.now();
       requestAnimationFrame((now) => this.frame(now));
     }
 
     pause() {
       this.playing = false;
-      this.button.textContent = "Play";
+      this.button.textContent = words.play;
     }
 
     frame(now) {
@@ -77,7 +78,7 @@
       time = Math.min(Math.max(time, 0), this.end);
       const atEnd = time >= this.end;
       this.slider.value = time;
-      this.output.textContent = atEnd ? "end" : `${time.toFixed(1)} s`;
+      this.output.textContent = atEnd ? words.end : words.seconds.replace("#", time.toFixed(1).replace(".", words.point));
       for (const cursor of this.cursors) {
         cursor.hidden = atEnd;
         cursor.style.left = `${100 * time / this.end}%`;
