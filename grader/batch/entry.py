@@ -16,6 +16,7 @@ from typing import Any, Literal, Self
 from grader import files
 from grader.batch.hand_in import HandIn
 from grader.errors import UsageError
+from grader.language import stored
 from grader.result import json_file
 from grader.result.result import RESULT, Result
 
@@ -74,6 +75,8 @@ class Entry:
         """
         own = {name: getattr(self, name) for name in OWN}
         data = {"schema": SCHEMA, **own, "hand_in": self.hand_in.to_json()}
+        if phrases := stored.phrases_in(self.message):
+            data["phrases"] = phrases
         files.put(self.folder / ENTRY, json_file.text(data).encode("utf-8"))
 
     @classmethod
@@ -94,6 +97,7 @@ class Entry:
             raise ValueError(f"is no entry of a class: expected the schema {SCHEMA}")
         try:
             own = {name: data[name] for name in OWN}
+            own["message"] = stored.restored(own["message"], data.get("phrases", {}))
             return cls(hand_in=HandIn.from_json(data["hand_in"]), **own)
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"is damaged: {error}") from None

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Self
 
 from grader import strict_json
 from grader.batch.hand_in import HandIn
+from grader.language.catalogue import spoken
 from grader.recording.recording import Clock
 
 
@@ -28,6 +29,7 @@ class Task:
         run: the folder of the run, if it is made already.
         into: an empty folder for what is made; see `grader.batch.store`.
         judge_only: whether results alone are asked for: no pages, no pictures.
+        language: of the pages; that of whoever asks.
     """
 
     key: str
@@ -40,6 +42,7 @@ class Task:
     run: Path | None
     into: Path
     judge_only: bool = False
+    language: str = field(default_factory=spoken)
 
     def to_line(self) -> bytes:
         """As it is sent."""
@@ -47,6 +50,7 @@ class Task:
             **{name: getattr(self, name) for name in ("key", "filename", "exercise", "time")},
             "seed": self.seed,
             "judge_only": self.judge_only,
+            "language": self.language,
             "path": str(self.path),
             "run": None if self.run is None else str(self.run),
             "into": str(self.into),

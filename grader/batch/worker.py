@@ -16,6 +16,7 @@ from typing import IO
 
 from grader.batch.task import Answer, Task
 from grader.errors import CheckFailed, GraderError
+from grader.language.catalogue import speak
 from grader.text import plain
 
 
@@ -38,6 +39,7 @@ def done(task: Task) -> Answer:
     from grader.batch.grade import make  # here: it takes long, and a line may wait meanwhile
 
     try:
+        speak(task.language)
         make(task)
     except CheckFailed as error:
         return Answer("exercise", plain(error.message))

@@ -21,7 +21,8 @@ try:  # somebody may think better of it at once
 
     from grader.cli import error_file, language
     from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
-    from grader.language.telling import told
+    from grader.language.phrase import say
+    from grader.language.telling import tell, told
     from grader.text import for_terminal
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
@@ -29,16 +30,21 @@ except KeyboardInterrupt:
 
 #: Each verb with the first line of its module, which is imported where the verb is called.
 VERBS = {
-    "run": "Run a submission and judge it.",
-    "check": "Judge a saved recording again.",
-    "view": "Play a graded run: the window at every moment, what came in, what the checks say.",
-    "report": "Show a result in another format.",
-    "new": "Write the exercise sheet and the starter package of the challenge, or of another "
-    "exercise.",
-    "batch": "Grade a class: find the submissions, grade them in parallel, and look at them "
-    "together.",
-    "check-exercise": "Try an exercise on its right solutions and mutants: who catches what, and "
-    "what is to mend.",
+    "run": say("Run a submission and judge it."),
+    "check": say("Judge a saved recording again."),
+    "view": say(
+        "Play a graded run: the window at every moment, what came in, what the checks say."
+    ),
+    "report": say("Show a result in another format."),
+    "new": say(
+        "Write the exercise sheet and the starter package of the challenge, or of another exercise."
+    ),
+    "batch": say(
+        "Grade a class: find the submissions, grade them in parallel, and look at them together."
+    ),
+    "check-exercise": say(
+        "Try an exercise on its right solutions and mutants: who catches what, and what is to mend."
+    ),
 }
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -48,7 +54,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return _main(sys.argv[1:] if argv is None else argv)
     except KeyboardInterrupt:  # before a verb was at work
-        print("grader: interrupted", file=sys.stderr)
+        print(tell("{who}: interrupted", who="grader"), file=sys.stderr)
         return INTERRUPTED
 
 
@@ -62,7 +68,8 @@ def _main(words: Sequence[str]) -> int:
     try:
         args = _parser(words).parse_args(words)
     except error_file.Misuse as error:
-        print(f"{error.usage}{error.prog}: error: {for_terminal(str(error))}", file=sys.stderr)
+        said = tell("{prog}: error: {message}", prog=error.prog, message=error.message)
+        print(f"{error.usage}{for_terminal(said)}", file=sys.stderr)
         return _misused(error, error_file.look_for(words))
     from grader.run.processes import watched
 
@@ -71,26 +78,32 @@ def _main(words: Sequence[str]) -> int:
     try:
         error_file.prepare(args)
     except UsageError as error:
-        _say(f"grader {args.verb}:", error.message)
+        _say(_who(args.verb), error.message)
         return error.exit_code
     try:
         return int(load(args.verb).main(args))
     except KeyboardInterrupt:
-        print(f"grader {args.verb}: interrupted", file=sys.stderr)
-        return _ended(UsageError("interrupted"), args, INTERRUPTED)
+        print(tell("{who}: interrupted", who=f"grader {args.verb}"), file=sys.stderr)
+        return _ended(UsageError(say("interrupted")), args, INTERRUPTED)
     except (GraderFailure, CheckFailed) as error:
-        who = "exercise" if isinstance(error, CheckFailed) else "grader"
-        _say(f"The {who} failed; this is not the submission's fault:", error.message)
+        if isinstance(error, CheckFailed):
+            _say(say("The exercise failed; this is not the submission's fault:"), error.message)
+        else:
+            _say(say("The grader failed; this is not the submission's fault:"), error.message)
         return _ended(error, args)
     except GraderError as error:
         is_to_mend = isinstance(error, SubmissionError)  # the first line says so, as of a result
-        _say("First to mend:" if is_to_mend else f"grader {args.verb}:", error.message)
+        _say(say("First to mend:") if is_to_mend else _who(args.verb), error.message)
         return _ended(error, args)
     except Exception as error:
-        _say("The grader failed; this is not the submission's fault. Please report:")
+        _say(say("The grader failed; this is not the submission's fault. Please report:"))
         print(for_terminal(traceback.format_exc()), end="", file=sys.stderr)
         what = "".join(traceback.format_exception_only(error)).strip()
-        return _ended(GraderFailure(f"unexpected: {what}"), args)
+        return _ended(GraderFailure(say("unexpected: {what}", what=what)), args)
+
+
+def _who(verb: str) -> str:
+    return tell("{who}:", who=f"grader {verb}")
 
 
 def _say(red: str, message: str = "") -> None:
@@ -106,12 +119,12 @@ def _say(red: str, message: str = "") -> None:
 def _parser(words: Sequence[str]) -> error_file.Parser:
     """The parser of a call: of the verb that it asks for it knows the arguments."""
     asked = next((word for word in words if not word.startswith("-")), None)
-    parser = error_file.Parser(prog="grader", description="Grade the turtlesim challenge.")
+    parser = error_file.Parser(prog="grader", description=tell("Grade the turtlesim challenge."))
     known = _versions() if "--version" in words else ""
     parser.add_argument("--version", action="version", version=known)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, summary in VERBS.items():
-        verb = verbs.add_parser(name, help=summary, description=summary)
+        verb = verbs.add_parser(name, help=told(summary), description=told(summary))
         if name == asked:
             load(name).add_arguments(verb)
             error_file.add_argument(verb)
@@ -131,7 +144,7 @@ def _misused(error: error_file.Misuse, args: Namespace) -> int:
     try:
         error_file.prepare(args)
     except UsageError as unwritable:
-        print(f"grader: {for_terminal(str(unwritable))}", file=sys.stderr)
+        print(f"grader: {for_terminal(told(unwritable.message))}", file=sys.stderr)
         return error.exit_code
     return _ended(error, args)
 
@@ -141,5 +154,5 @@ def _ended(error: GraderError, args: Namespace, exit_code: int | None = None) ->
     try:
         error_file.write(error, args)
     except UsageError as unwritten:
-        print(f"grader: {for_terminal(str(unwritten))}", file=sys.stderr)
+        print(f"grader: {for_terminal(told(unwritten.message))}", file=sys.stderr)
     return error.exit_code if exit_code is None else exit_code

@@ -15,7 +15,9 @@ from rich.text import Text
 from grader.cli.run import CLOCKS, LEVELS
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.text import count, for_terminal
+from grader.language.phrase import say
+from grader.language.telling import tell, tell_many, told
+from grader.text import for_terminal
 
 if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
@@ -33,38 +35,47 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "submissions",
         type=Path,
         nargs="?",
-        help="the folder or archive that a course system exports, or a folder with one file, "
-        "folder or archive a student",
+        help=tell(
+            "the folder or archive that a course system exports, or a folder with "
+            "one file, folder or archive a student"
+        ),
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="the folder of the class")
+    parser.add_argument("--out", type=Path, metavar="DIR", help=tell("the folder of the class"))
     parser.add_argument(
-        "--jobs", type=_jobs, metavar="N", help="so many gradings at once (as many as cores)"
+        "--jobs", type=_jobs, metavar="N", help=tell("so many gradings at once (as many as cores)")
     )
     parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="grade on the workers of a dask cluster instead"
+        "--scheduler",
+        metavar="ADDRESS",
+        help=tell("grade on the workers of a dask cluster instead"),
     )
     parser.add_argument(
         "--exercise",
         default=DEFAULT,
         metavar="NAME|FOLDER|FILE",
-        help="an installed one, the folder of another, or an edited exercise.yaml",
+        help=tell("an installed one, the folder of another, or an edited exercise.yaml"),
     )
     parser.add_argument(
-        "--time", choices=CLOCKS, default="virtual", help="the clock that submissions live by"
+        "--time", choices=CLOCKS, default="virtual", help=tell("the clock that submissions live by")
     )
     parser.add_argument(
-        "--seed", type=int, metavar="N", help="where the varied runs start (the exercise's own)"
+        "--seed",
+        type=int,
+        metavar="N",
+        help=tell("where the varied runs start (the exercise's own)"),
     )
-    parser.add_argument("--pattern", metavar="P", help="how names tell whose a submission is")
-    parser.add_argument("--roster", type=Path, metavar="FILE", help="names: a CSV with a column id")
+    parser.add_argument("--pattern", metavar="P", help=tell("how names tell whose a submission is"))
+    parser.add_argument(
+        "--roster", type=Path, metavar="FILE", help=tell("names: a CSV with a column id")
+    )
     parser.add_argument(
         "--again",
         default="",
         metavar="failed|all|ID",
-        help="grade anew: where the grader failed, everything, or one",
+        help=tell("grade anew: where the grader failed, everything, or one"),
     )
     parser.add_argument(
-        "--shard", type=_shard, default=(1, 1), metavar="I/N", help="only the I-th of N parts"
+        "--shard", type=_shard, default=(1, 1), metavar="I/N", help=tell("only the I-th of N parts")
     )
     parser.add_argument(
         "--merge",
@@ -72,33 +83,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="DIR",
-        help="put parts together that --shard has made, instead of grading",
+        help=tell("put parts together that --shard has made, instead of grading"),
     )
     parser.add_argument(
         "--regrade",
         type=Path,
         metavar="DIR",
-        help="show what --exercise would change in the class of this folder; run nothing",
+        help=tell("show what --exercise would change in the class of this folder; run nothing"),
     )
     parser.add_argument(
-        "--apply", action="store_true", help="with --regrade: write it; what was before is kept"
+        "--apply",
+        action="store_true",
+        help=tell("with --regrade: write it; what was before is kept"),
     )
     parser.add_argument(
         "--after-due",
         action="store_true",
-        help="students may see now what their exercise hides until it is due",
+        help=tell("students may see now what their exercise hides until it is due"),
     )
     parser.add_argument(
         "--assignment",
         default="",
         metavar="NAME",
-        help='what Canvas calls the exercise, as in "Spiral (4711)" (its title)',
+        help=tell('what Canvas calls the exercise, as in "Spiral (4711)" (its title)'),
     )
     parser.add_argument(
         "--isolation",
         choices=LEVELS,
         metavar="LEVEL",
-        help=f"refuse to run submissions confined less well: {', '.join(LEVELS)}",
+        help=tell(
+            "refuse to run submissions confined less well: {levels}", levels=", ".join(LEVELS)
+        ),
     )
 
 
@@ -147,8 +162,11 @@ def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
 
     if (args.submissions / CLASS).is_file() or _are_same(args.submissions, args.out):
         raise UsageError(
-            f"{args.submissions} is the folder of a class, which `grader batch` writes into; name "
-            "the submissions themselves. Nothing was changed."
+            say(
+                "{submissions} is the folder of a class, which `grader batch` writes "
+                "into; name the submissions themselves. Nothing was changed.",
+                submissions=args.submissions,
+            )
         )
     with find(args.submissions, args.pattern, args.roster) as found:
         _tell(messages, found.notes)
@@ -170,8 +188,16 @@ def _grade(
     work = _on_a_cluster(args, messages) if args.scheduler else _on_this_machine(args)
     planned = batch.plan(found.hand_ins, order, store)
     if aside := store.set_aside(hand_in.id for hand_in in found.hand_ins):
-        told = f"{count(len(aside), 'hand-in')} in {args.out} not among these submissions"
-        _tell(messages, [f"{told}, and set aside in {store.out / ASIDE}: {listed(aside)}"])
+        note = tell_many(
+            "{n:,} hand-in in {out} not among these submissions, and set aside in {aside}: {names}",
+            "{n:,} hand-ins in {out} not among these submissions, and set aside in {aside}: "
+            "{names}",
+            len(aside),
+            out=args.out,
+            aside=store.out / ASIDE,
+            names=listed(aside),
+        )
+        _tell(messages, [note])
     with class_progress.shown(messages, planned, store) as show:
         for hand_in in batch.carry_out(planned, order, store, work):
             show(hand_in)
@@ -181,11 +207,13 @@ def _check_words(args: argparse.Namespace) -> None:
     """Refuse a call that asks for two things, or for none."""
     asked = [bool(args.submissions), bool(args.merge), bool(args.regrade)]
     if sum(asked) != 1:
-        raise UsageError("name one: the submissions, parts to --merge, or a class to --regrade")
+        raise UsageError(
+            say("name one: the submissions, parts to --merge, or a class to --regrade")
+        )
     if args.apply and not args.regrade:
-        raise UsageError("--apply belongs to --regrade DIR")
+        raise UsageError(say("--apply belongs to --regrade DIR"))
     if args.out is None and not args.regrade:
-        raise UsageError("name a folder for the class: --out DIR")
+        raise UsageError(say("name a folder for the class: --out DIR"))
 
 
 def _jobs_of(args: argparse.Namespace) -> int:
@@ -218,17 +246,21 @@ def _merge(args: argparse.Namespace, exercise: Exercise, store: Store, messages:
 
 def _tell(console: Console, notes: Sequence[str]) -> None:
     for note in notes:
-        console.print(Text(for_terminal(note)), soft_wrap=True)
+        console.print(Text(for_terminal(told(note))), soft_wrap=True)
 
 
 def _jobs(text: str) -> int:
     if not re.fullmatch(r"[1-9]\d{0,3}", text):
-        raise argparse.ArgumentTypeError(f"expected a number of processes, found {text}")
+        raise argparse.ArgumentTypeError(
+            tell("expected a number of processes, found {text}", text=text)
+        )
     return int(text)
 
 
 def _shard(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
     if match is None or not 1 <= int(match[1]) <= int(match[2]):
-        raise argparse.ArgumentTypeError(f"expected I/N with I from 1 to N, found {text}")
+        raise argparse.ArgumentTypeError(
+            tell("expected I/N with I from 1 to N, found {text}", text=text)
+        )
     return int(match[1]), int(match[2])

@@ -15,6 +15,8 @@ from grader.cli.run import points
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.loading import Exercise, load_exercise, names
+from grader.language.phrase import say
+from grader.language.telling import tell
 from grader.recording.folder import WINDOW_PICTURE, load_all
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings
@@ -28,20 +30,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "recording",
         type=Path,
-        help="the folder of a result, whose page is then made anew; or the folder `recording` in "
-        "it; or a recording anywhere else",
+        help=tell(
+            "the folder of a result, whose page is then made anew; or the folder "
+            "`recording` in it; or a recording anywhere else"
+        ),
     )
     parser.add_argument(
         "--exercise",
         metavar="NAME|FOLDER|FILE",
-        help="an installed one, the folder of another, or an edited exercise.yaml; default: the "
-        "one that it was made for",
+        help=tell(
+            "an installed one, the folder of another, or an edited exercise.yaml; "
+            "default: the one that it was made for"
+        ),
     )
     parser.add_argument(
-        "--json", type=Path, metavar="FILE", help="write the result here, and nothing else"
+        "--json", type=Path, metavar="FILE", help=tell("write the result here, and nothing else")
     )
     parser.add_argument(
-        "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"
+        "--fail-under", type=points, metavar="POINTS", help=tell("exit 1 below this score")
     )
 
 
@@ -96,8 +102,11 @@ def _show(
         page = _rewrite(place, result, recordings)
     elif place.older is not None:
         _say_left(
-            f"the installed exercise {result.exercise!r} is another one than they were made with; "
-            "say with --exercise which one you mean"
+            say(
+                "the installed exercise {exercise!r} is another one than they were made"
+                " with; say with --exercise which one you mean",
+                exercise=result.exercise,
+            )
         )
     showing.show(Report.of(result, folder, recordings), page)
 
@@ -114,8 +123,11 @@ def _exercise(asked: str | None, place: Place, recordings: Recordings) -> Exerci
     name = (origin and origin.exercise) or (place.older and place.older.exercise) or DEFAULT
     if name not in names():
         raise UsageError(
-            f"the recording was made for the exercise {name!r}, which is not installed here; give "
-            "its folder: --exercise FOLDER"
+            say(
+                "the recording was made for the exercise {name!r}, which is not "
+                "installed here; give its folder: --exercise FOLDER",
+                name=name,
+            )
         )
     return load_exercise(name)
 
@@ -139,10 +151,11 @@ def _rewrite(place: Place, result: Result, recordings: Recordings) -> Path | Non
             report = Report.of(result, place.folder, recordings)
             files.put(page, render("html", [report]).encode("utf-8"))
     except UsageError as error:
-        _say_left(str(error))
+        _say_left(error.message)
         return None
     return page
 
 
 def _say_left(why: str) -> None:
-    print(f"Left as they were: {RESULT}, {PAGE}: {for_terminal(why)}", file=sys.stderr)
+    left = tell("Left as they were: {files}: {why}", files=f"{RESULT}, {PAGE}", why=why)
+    print(for_terminal(left), file=sys.stderr)

@@ -13,26 +13,37 @@ from rich.table import Table
 
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
+from grader.language.phrase import say
+from grader.language.telling import tell, told
 from grader.testing.checking import Progress, check_exercise
 from grader.testing.examination import Examination
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.epilog = "Exit code: 0 all is fine, 1 there is something to mend, 2 it cannot be used."
-    parser.add_argument("exercise", metavar="NAME|FOLDER", help="an installed one, or a folder")
-    parser.add_argument(
-        "--mutants", type=Path, metavar="FILE", help="the solutions (mutants.yaml in its folder)"
+    parser.epilog = tell(
+        "Exit code: 0 all is fine, 1 there is something to mend, 2 it cannot be used."
     )
-    parser.add_argument("--jobs", type=_jobs, metavar="N", help="so many at once (one a core)")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all of it here")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the table here")
+    parser.add_argument(
+        "exercise", metavar="NAME|FOLDER", help=tell("an installed one, or a folder")
+    )
+    parser.add_argument(
+        "--mutants",
+        type=Path,
+        metavar="FILE",
+        help=tell("the solutions (mutants.yaml in its folder)"),
+    )
+    parser.add_argument(
+        "--jobs", type=_jobs, metavar="N", help=tell("so many at once (one a core)")
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help=tell("write all of it here"))
+    parser.add_argument("--markdown", type=Path, metavar="FILE", help=tell("write the table here"))
 
 
 def _jobs(text: str) -> int:
     number = int(text)
     if number < 1:
-        raise argparse.ArgumentTypeError(f"expected a number from 1, found {text}")
+        raise argparse.ArgumentTypeError(tell("expected a number from 1, found {text}", text=text))
     return number
 
 
@@ -55,35 +66,55 @@ def _write(path: Path, text: str) -> None:
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {strerror}", path=path, strerror=error.strerror)
+        ) from None
 
 
 def _print(examination: Examination, console: Console) -> None:
     table = Table(
-        "check", "catches", title=f"{examination.exercise}: mutants", title_justify="left"
+        tell("check"),
+        tell("catches"),
+        title=tell("{exercise}: mutants", exercise=examination.exercise),
+        title_justify="left",
     )
     for check, names in examination.catches.items():
-        table.add_row(check, ", ".join(names) or "(none)")
-    table.add_row("nobody", ", ".join(examination.uncaught) or "(none)")
+        table.add_row(check, ", ".join(names) or tell("(none)"))
+    table.add_row(tell("nobody"), ", ".join(examination.uncaught) or tell("(none)"))
     console.print(table)
     for trial in examination.trials:
         for remark in trial.remarks:
-            console.print(f"{trial.solution.name}: {remark}", markup=False, soft_wrap=True)
+            console.print(f"{trial.solution.name}: {told(remark)}", markup=False, soft_wrap=True)
     for problem in examination.problems:
-        console.print(f"To mend: {problem}", markup=False, soft_wrap=True)
-    count = f"{len(examination.checks)} checks, {len(examination.mutants)} mutants"
+        console.print(tell("To mend: {problem}", problem=problem), markup=False, soft_wrap=True)
+    count = tell(
+        "{checks} checks, {mutants} mutants",
+        checks=len(examination.checks),
+        mutants=len(examination.mutants),
+    )
     if examination.is_fine:
-        console.print(f"All is fine: {count}, each caught.", soft_wrap=True)
+        console.print(tell("All is fine: {count}, each caught.", count=count), soft_wrap=True)
     else:
-        console.print(f"{len(examination.problems)} to mend; {count}.", soft_wrap=True)
+        console.print(
+            tell("{problems} to mend; {count}.", problems=len(examination.problems), count=count),
+            soft_wrap=True,
+        )
 
 
 @contextmanager
 def _shown(console: Console, name: str) -> Iterator[Progress]:
     """Show which solution is through; yields the function that is told."""
     if console.is_terminal:
-        with console.status(f"{name}: running its solutions ...") as status:
-            yield lambda count, total, last: status.update(f"{name}: {count} of {total}, {last}")
+        with console.status(tell("{name}: running its solutions ...", name=name)) as status:
+            yield lambda count, total, last: status.update(
+                tell(
+                    "{name}: {count} of {total}, {last}",
+                    name=name,
+                    count=count,
+                    total=total,
+                    last=last,
+                )
+            )
         return
     yield lambda count, total, last: console.print(
         f"{count}/{total} {last}", markup=False, soft_wrap=True

@@ -17,14 +17,17 @@ from grader.batch.batch import Planned
 from grader.batch.entry import Entry, State
 from grader.batch.hand_in import HandIn
 from grader.batch.store import Store
-from grader.text import clip, count, for_terminal, points
+from grader.language.phrase import say
+from grader.language.telling import tell, tell_many, told
+from grader.reports.wording import points
+from grader.text import clip, for_terminal
 
 MINUTE_S = 60.0
 _STATES: dict[State, str] = {
-    "judged": "judged",
-    "unusable": "cannot be started",
-    "nothing": "handed in nothing",
-    "failed": "where the grader failed",
+    "judged": say("judged"),
+    "unusable": say("cannot be started"),
+    "nothing": say("handed in nothing"),
+    "failed": say("where the grader failed"),
 }
 
 
@@ -33,13 +36,23 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
     """Show how far it is; yields the function that is told of each that is over."""
     total, before = planned.hand_ins, len(planned.done)
     if planned.alike:
-        alike = count(planned.alike, "hand-in")
-        console.print(f"{alike} not run: the same content has been run already.")
+        alike = tell_many(
+            "{n:,} hand-in not run: the same content has been run already.",
+            "{n:,} hand-ins not run: the same content has been run already.",
+            planned.alike,
+        )
+        console.print(alike)
     if before:
-        console.print(f"{count(before, 'hand-in')} of {total} graded before.")
+        graded = tell_many(
+            "{n:,} hand-in of {total} graded before.",
+            "{n:,} hand-ins of {total} graded before.",
+            before,
+            total=total,
+        )
+        console.print(graded)
     if console.is_terminal:
-        with _bar(console, planned, store) as tell:
-            yield tell
+        with _bar(console, planned, store) as show:
+            yield show
         return
     over = before
 
@@ -59,7 +72,7 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
     began = time.monotonic()
     over = failed = 0
     columns = (
-        TextColumn("{task.completed} of {task.total}"),
+        TextColumn(tell("{done} of {total}", done="{task.completed}", total="{task.total}")),
         BarColumn(),
         TextColumn("{task.fields[rate]}"),
         TextColumn("{task.fields[failed]}", style="red"),
@@ -71,7 +84,7 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
             "", total=planned.hand_ins, completed=len(planned.done), rate="", failed=""
         )
 
-        def tell(hand_in: HandIn) -> None:
+        def show(hand_in: HandIn) -> None:
             nonlocal over, failed
             over += 1
             entry = Entry.read(store.student(hand_in.id))
@@ -80,35 +93,61 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
             progress.update(
                 task,
                 advance=1,
-                rate=f"{a_minute:.0f} a minute",
-                failed=f"{failed} failed" if failed else "",
+                rate=tell("{a_minute:.0f} a minute", a_minute=a_minute),
+                failed=tell("{failed} failed", failed=failed) if failed else "",
                 description=clip(for_terminal(f"{hand_in.id}: {_told(entry)}"), 60),
             )
 
-        yield tell
+        yield show
 
 
 def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
     """Say what came of it."""
     states = Counter(entry.state for entry in entries)
-    told = ", ".join(f"{states[state]} {what}" for state, what in _STATES.items() if states[state])
-    console.print(f"{count(len(entries), 'hand-in')}{f': {told}' if told else ''}.")
+    counts = ", ".join(
+        tell("{number} {state}", number=states[state], state=what)
+        for state, what in _STATES.items()
+        if states[state]
+    )
+    if counts:
+        all_told = tell_many(
+            "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", len(entries), counts=counts
+        )
+    else:
+        all_told = tell_many("{n:,} hand-in.", "{n:,} hand-ins.", len(entries))
+    console.print(all_told)
     scores = [
         entry.score for entry in entries if entry.state == "judged" and entry.score is not None
     ]
     if scores:
         most = points(entries[0].max_score)
-        console.print(f"Mean of those judged: {points(round(mean(scores), 2))} of {most}.")
+        console.print(
+            tell(
+                "Mean of those judged: {points} of {most}.",
+                points=points(round(mean(scores), 2)),
+                most=most,
+            )
+        )
     for entry in entries:
         if entry.state == "failed":
-            text = f"The grader failed for {entry.id}; nobody is to blame for it: {entry.message}"
+            text = tell(
+                "The grader failed for {id}; nobody is to blame for it: {message}",
+                id=entry.id,
+                message=entry.message,
+            )
             console.print(Text(for_terminal(text), "red"), soft_wrap=True)
     if states["failed"]:
-        console.print("Once more for these: the same call with --again failed")
-    console.print(Text(f"The class: {out}"), soft_wrap=True)
+        console.print(tell("Once more for these: the same call with --again failed"))
+    console.print(Text(tell("The class: {out}", out=out)), soft_wrap=True)
 
 
 def _told(entry: Entry) -> str:
     if entry.state == "judged" and entry.score is not None:
-        return f"{points(entry.score)} of {points(entry.max_score)}"
-    return f"{_STATES[entry.state]}: {entry.message}" if entry.message else _STATES[entry.state]
+        score, most = points(entry.score), points(entry.max_score)
+        return tell("{score} of {max_score}", score=score, max_score=most)
+    state = _STATES[entry.state]
+    return (
+        tell("{state}: {message}", state=state, message=entry.message)
+        if entry.message
+        else told(state)
+    )

@@ -13,6 +13,7 @@ from typing import NoReturn
 
 from grader import files
 from grader.errors import GraderError, UsageError
+from grader.language.telling import tell
 
 
 class Misuse(UsageError):
@@ -35,7 +36,10 @@ class Parser(argparse.ArgumentParser):
 def add_argument(parser: argparse.ArgumentParser) -> None:
     """Declare the option."""
     parser.add_argument(
-        "--error-json", type=Path, metavar="FILE", help="where to write what went wrong, if it does"
+        "--error-json",
+        type=Path,
+        metavar="FILE",
+        help=tell("where to write what went wrong, if it does"),
     )
 
 

@@ -23,6 +23,7 @@ from grader import files, grading
 from grader.cli import error_file, progress
 from grader.exercise.loading import Exercise, load_exercise
 from grader.grading import Finished
+from grader.language import telling
 from grader.recording import folder
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
@@ -79,14 +80,15 @@ def _run_and_judge(
 ) -> tuple[Result, Recordings]:
     """Run a submission, judge it, and keep its recordings; `held` holds what is written to."""
     messages = Console(stderr=True, highlight=False)
-    messages.print(Text(for_terminal(f"Found: {submission.found}")), soft_wrap=True)
+    messages.print(
+        Text(for_terminal(telling.tell("Found: {found}", found=submission.found))), soft_wrap=True
+    )
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
     if live is not None:
         live.open(exercise, submission.name, plans, messages)
     origin = grading.provenance(submission, exercise, args.seed)
     _make_folders(out, args.json, held)
-    how = f"Running it beside a simulator, in {args.time} time"
-    messages.print(f"{how if exercise.is_started else 'Looking at it, and starting nothing'} ...")
+    messages.print(_how(args.time, exercise.is_started))
 
     def tell(nominal: Recording) -> None:
         if not args.watch and live is None:
@@ -104,7 +106,7 @@ def _run_and_judge(
     at_once = None if live is None else 1
     with folder.saving(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
         with (
-            progress.shown(messages, "running") as show,
+            progress.shown(messages, telling.tell("running")) as show,
             grading.start(submission, plans, runner, show, origin, at_once) as runs,
         ):
             if cores.share() > len(plans):
@@ -114,6 +116,14 @@ def _run_and_judge(
         result = grading.judge(recordings, exercise, submission=submission.name)
         unsaved.put()
     return replace(result, artifacts=dict(ARTIFACTS)), recordings
+
+
+def _how(time: str, is_started: bool) -> str:
+    if not is_started:
+        return telling.tell("Looking at it, and starting nothing ...")
+    if time == "virtual":
+        return telling.tell("Running it beside a simulator, in virtual time ...")
+    return telling.tell("Running it beside a simulator, in real time ...")
 
 
 def _kept(

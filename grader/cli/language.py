@@ -6,8 +6,30 @@ import argparse
 from collections.abc import Sequence
 
 from grader.language.catalogue import LANGUAGES, of_environment, speak
+from grader.language.phrase import say, say_many
+from grader.language.telling import tell, tell_many, told
 
 OPTION = "--lang"
+#: What argparse says by itself, of Python 3.11 to 3.13; here so that it comes into the catalogues.
+ARGPARSE = (
+    say("usage: "),
+    say("positional arguments"),
+    say("options"),
+    say("show this help message and exit"),
+    say("show program's version number and exit"),
+    say("the following arguments are required: %s"),
+    say("argument %(argument_name)s: %(message)s"),
+    say("invalid choice: %(value)r (choose from %(choices)s)"),
+    say("invalid %(type)s value: %(value)r"),
+    say("unrecognized arguments: %s"),
+    say("ambiguous option: %(option)s could match %(matches)s"),
+    say("not allowed with argument %s"),
+    say("expected one argument"),
+    say("expected at least one argument"),
+    say("expected at most one argument"),
+    say("ignored explicit argument %r"),
+    say_many("expected %s argument", "expected %s arguments", 1),
+)
 
 
 def choose(words: Sequence[str]) -> None:
@@ -15,6 +37,7 @@ def choose(words: Sequence[str]) -> None:
 
     It is looked for before the call is parsed: what is wrong with the call is said in it as well.
     """
+    _argparse_too()
     for word, after in zip(words, [*words[1:], ""], strict=True):
         name, _, value = word.partition("=")
         language = value or after
@@ -23,11 +46,18 @@ def choose(words: Sequence[str]) -> None:
     return speak(of_environment())
 
 
+def _argparse_too() -> None:
+    """Its own words in our language: it looks them up by these two of gettext's names."""
+    vars(argparse).update(_=told, ngettext=tell_many)
+
+
 def add_argument(parser: argparse.ArgumentParser) -> None:
     """Declare the option."""
     parser.add_argument(
         OPTION,
         choices=tuple(LANGUAGES),
-        help="the language of what people read (that of your locale: LANG); result files are the "
-        "same in all",
+        help=tell(
+            "the language of what people read (that of your locale: LANG); result files are the "
+            "same in all"
+        ),
     )

@@ -15,6 +15,8 @@ from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.loading import Exercise, load_exercise
 from grader.exercise.sheet import Start, sheet
+from grader.language.phrase import say
+from grader.language.telling import tell
 from grader.scenes import load_scene
 from grader.scenes.scene import Scene
 
@@ -29,15 +31,15 @@ PROGRAM = "my_node.py"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
+    parser.add_argument("folder", type=Path, metavar="DIR", help=tell("a new or empty folder"))
     parser.add_argument(
-        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help="which one (the challenge)"
+        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help=tell("which one (the challenge)")
     )
     parser.add_argument(
         "--ros",
         choices=RELEASES,
         default=os.environ.get("ROS_DISTRO"),
-        help="the ROS 2 release that it is for; default: the sourced one, else as it comes",
+        help=tell("the ROS 2 release that it is for; default: the sourced one, else as it comes"),
     )
 
 
@@ -51,9 +53,13 @@ def main(args: argparse.Namespace) -> int:
     exercise = load_exercise(args.exercise)
     try:
         if folder.exists() and not folder.is_dir():
-            raise UsageError(f"{folder} is a file; give a new folder, nothing was written")
+            raise UsageError(
+                say("{folder} is a file; give a new folder, nothing was written", folder=folder)
+            )
         if folder.exists() and any(folder.iterdir()):
-            raise UsageError(f"{folder} is not empty; give a new folder, nothing was written")
+            raise UsageError(
+                say("{folder} is not empty; give a new folder, nothing was written", folder=folder)
+            )
         with _whole_or_not_at_all(folder) as copy:
             if exercise.starter is None:
                 copy.mkdir()
@@ -66,17 +72,27 @@ def main(args: argparse.Namespace) -> int:
                 _adapt(copy, load_scene(exercise.scene), args.ros)
     except shutil.Error as error:
         source, _, why = error.args[0][0]  # (source, target, why) of each file
-        raise UsageError(f"cannot copy {source}: {why}; nothing was written") from None
+        raise UsageError(
+            say("cannot copy {source}: {why}; nothing was written", source=source, why=why)
+        ) from None
     except OSError as error:
-        raise UsageError(f"cannot write {folder}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {folder}: {strerror}", folder=folder, strerror=error.strerror)
+        ) from None
     has_starter = exercise.starter is not None
-    print(f"The {'starter package' if has_starter else 'exercise sheet'} is in {folder}.")
-    print(f"{SHEET} says what is asked for and how it is judged.")
+    if has_starter:
+        print(tell("The starter package is in {folder}.", folder=folder))
+    else:
+        print(tell("The exercise sheet is in {folder}.", folder=folder))
+    print(tell("{sheet} says what is asked for and how it is judged.", sheet=SHEET))
     to_fill_in = _with_todos(folder)
     if to_fill_in:
-        print(f"Fill in the TODOs of {', '.join(to_fill_in)}, then run:")
+        print(
+            tell("Fill in the TODOs of {to_fill_in}, then run:", to_fill_in=", ".join(to_fill_in))
+        )
     else:
-        print("Then run:" if has_starter else f"Write {PROGRAM} beside it, then run:")
+        then = tell("Write {program} beside it, then run:", program=PROGRAM)
+        print(tell("Then run:") if has_starter else then)
     print(f"    {_grading(str(folder), args.exercise)}")
     return 0
 

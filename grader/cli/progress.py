@@ -7,6 +7,8 @@ from contextlib import contextmanager
 
 from rich.console import Console
 
+from grader.language.telling import tell
+
 #: Where no line can be overwritten, as in a CI log, one is printed this often [simulated s].
 LINE_EVERY_S = 10.0
 
@@ -16,7 +18,9 @@ def shown(console: Console, what: str) -> Iterator[Callable[[float], None]]:
     """Show `what` and the simulated seconds; yields the function that takes them."""
     if console.is_terminal:
         with console.status(what) as status:
-            yield lambda seconds: status.update(f"{what}: {seconds:.0f} s simulated")
+            yield lambda seconds: status.update(
+                tell("{what}: {seconds:.0f} s simulated", what=what, seconds=seconds)
+            )
         return
     due = LINE_EVERY_S
 
@@ -24,6 +28,9 @@ def shown(console: Console, what: str) -> Iterator[Callable[[float], None]]:
         nonlocal due
         if seconds >= due:
             due = seconds + LINE_EVERY_S
-            console.print(f"{what}: {seconds:.0f} s simulated", soft_wrap=True)
+            console.print(
+                tell("{what}: {seconds:.0f} s simulated", what=what, seconds=seconds),
+                soft_wrap=True,
+            )
 
     yield line

@@ -17,8 +17,9 @@ from grader.batch.regrade import applying, html, judging, shown, table
 from grader.batch.regrade.applying import BEFORE, CHANGES_CSV, CHANGES_PAGE
 from grader.batch.regrade.changes import Regrade
 from grader.batch.store import Store
+from grader.language.telling import tell, tell_many
 from grader.result.visible import View
-from grader.text import count, for_terminal
+from grader.text import for_terminal
 
 #: Where the table and the page come, in the folder of the class.
 REGRADE = "regrade"
@@ -44,26 +45,30 @@ def run(args: Namespace, jobs: int, view: View) -> int:
         found = _found(out, args.exercise, jobs, messages)
         shown.show(found, console)
         _write(found, into, console)
-        console.print("Nothing of the class was changed. To write it: the same call with --apply")
+        console.print(
+            tell("Nothing of the class was changed. To write it: the same call with --apply")
+        )
         return GRADER_FAILED if found.failures else DONE
     judging.check(out, args.exercise)
     with Store.opened(out) as store:
         found = _found(out, args.exercise, jobs, messages)
         shown.show(found, console)
         _write(found, into, console)
-        with _progress(messages, len(found.entries), "writing") as tell:
-            failures = applying.apply(found, store, jobs, tell, view, args.assignment)
+        with _progress(messages, len(found.entries), tell("writing")) as show:
+            failures = applying.apply(found, store, jobs, show, view, args.assignment)
         for failure in failures:
-            text = f"Left as it is: {failure.entry.id}: {failure.why}"
+            text = tell("Left as it is: {id}: {why}", id=failure.entry.id, why=failure.why)
             console.print(Text(for_terminal(text), "red"), soft_wrap=True)
-    console.print(Text(f"Written. What was before: {out / BEFORE}"), soft_wrap=True)
+    console.print(
+        Text(tell("Written. What was before: {before}", before=out / BEFORE)), soft_wrap=True
+    )
     return GRADER_FAILED if found.failures or failures else DONE
 
 
 def _found(out: Path, exercise_path: str, jobs: int, messages: Console) -> Regrade:
     judged = judging.check(out, exercise_path)
-    with _progress(messages, judged, "judging") as tell:
-        return judging.regrade(out, exercise_path, jobs, tell)
+    with _progress(messages, judged, tell("judging")) as show:
+        return judging.regrade(out, exercise_path, jobs, show)
 
 
 def _write(found: Regrade, into: Path, console: Console) -> None:
@@ -71,17 +76,24 @@ def _write(found: Regrade, into: Path, console: Console) -> None:
     files.make_folder(into)
     files.put(into / CHANGES_CSV, table.render(found).encode("utf-8"))
     files.put(into / CHANGES_PAGE, html.render(found, to_class.as_posix()).encode("utf-8"))
-    console.print(Text(f"Table and page: {into}"), soft_wrap=True)
+    console.print(Text(tell("Table and page: {into}", into=into)), soft_wrap=True)
 
 
 @contextmanager
 def _progress(console: Console, total: int, what: str) -> Iterator[Callable[[Entry], None]]:
     """A bar in a terminal, a line in a log."""
     if not console.is_terminal:
-        console.print(f"{what} {count(total, 'recording')} ...")
+        console.print(
+            tell_many("{what} {n:,} recording ...", "{what} {n:,} recordings ...", total, what=what)
+        )
         yield lambda _: None
         return
-    columns = TextColumn(f"{what} {{task.completed}} of {{task.total}}"), BarColumn()
+    columns = (
+        TextColumn(
+            f"{what} " + tell("{done} of {total}", done="{task.completed}", total="{task.total}")
+        ),
+        BarColumn(),
+    )
     with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as progress:
         task = progress.add_task("", total=total)
         yield lambda _: progress.update(task, advance=1)

@@ -12,6 +12,8 @@ from grader import files, reports
 from grader.cli import error_file
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
+from grader.language.phrase import say
+from grader.language.telling import tell, told
 from grader.reports import FORMATS, Report
 from grader.result.result import ARTIFACTS
 from grader.result.visible import View, is_hidden
@@ -21,38 +23,44 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     width = max(map(len, FORMATS))
-    parser.epilog = "formats:\n" + "\n".join(
-        f"  {name:{width}}  {form.summary}" for name, form in FORMATS.items()
+    parser.epilog = (
+        tell("formats:")
+        + "\n"
+        + "\n".join(f"  {name:{width}}  {told(form.summary)}" for name, form in FORMATS.items())
     )
     parser.add_argument(
         "result",
         type=Path,
         nargs="+",
         metavar="RESULT.json",
-        help="a result, or what --error-json has written; several only with csv",
+        help=tell("a result, or what --error-json has written; several only with csv"),
     )
     parser.add_argument("--format", choices=FORMATS, default="terminal", metavar="NAME")
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help="write there, not to standard output"
+        "--out", type=Path, metavar="FILE", help=tell("write there, not to standard output")
     )
     parser.add_argument(
-        "--exercise", metavar="NAME", help="which checks get 0 points for an error; autolab only"
+        "--exercise",
+        metavar="NAME",
+        help=tell("which checks get 0 points for an error; autolab only"),
     )
     who = parser.add_mutually_exclusive_group()
     who.add_argument(
         "--after-due",
         action="store_true",
-        help="what students see when the exercise is over; default: what they see before",
+        help=tell("what students see when the exercise is over; default: what they see before"),
     )
     who.add_argument(
         "--whole",
         action="store_true",
-        help="for teachers: also what the exercise hides from students; csv always is whole",
+        help=tell("for teachers: also what the exercise hides from students; csv always is whole"),
     )
     parser.add_argument(
         "--github-summary",
         action="store_true",
-        help="append the result as Markdown to $GITHUB_STEP_SUMMARY as well, as students see it",
+        help=tell(
+            "append the result as Markdown to $GITHUB_STEP_SUMMARY as well, as students see it"
+        ),
     )
 
 
@@ -118,14 +126,18 @@ def _append(path: Path, content: str) -> None:
         with path.open("a", encoding="utf-8") as file:
             file.write(content)
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {strerror}", path=path, strerror=error.strerror)
+        ) from None
 
 
 def _summary_file() -> Path:
     name = os.environ.get("GITHUB_STEP_SUMMARY")
     if not name:
         raise UsageError(
-            "--github-summary works in a step of GitHub Actions only: "
-            "GITHUB_STEP_SUMMARY is not set"
+            say(
+                "--github-summary works in a step of GitHub Actions only: "
+                "GITHUB_STEP_SUMMARY is not set"
+            )
         )
     return Path(name)

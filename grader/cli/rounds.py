@@ -11,10 +11,11 @@ from rich.text import Text
 
 from grader.cli import error_file, grade_one
 from grader.errors import GraderError
+from grader.language.telling import tell, told
+from grader.reports.wording import points as shown
 from grader.result.result import Result
 from grader.result.visible import student_view
 from grader.text import for_terminal
-from grader.text import points as shown
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
@@ -44,21 +45,25 @@ class Rounds:
         try:
             result = grade_one.graded(self._args, self._live)
         except GraderError as error:
-            messages.print(Text(for_terminal(error.message)), soft_wrap=True)
+            messages.print(Text(for_terminal(told(error.message))), soft_wrap=True)
             error_file.write(error, self._args)
         else:
             seen = student_view(result)
             said = f"{time.strftime('%H:%M:%S')}  {change(self._last, seen)}"
             console.print(Text(said, "bold"), soft_wrap=True)
             self._last = seen
-        messages.print("Waiting for the next save; Ctrl-C ends.", style="dim")
+        messages.print(tell("Waiting for the next save; Ctrl-C ends."), style="dim")
 
 
 def change(last: Result | None, result: Result) -> str:
     """What a score is compared with the last one: '62 -> 80 (+18)'."""
     score = shown(result.score)
     if last is None:
-        return f"{score} of {shown(result.max_score)}"
+        return tell("{score} of {max_score}", score=score, max_score=shown(result.max_score))
     by = round(result.score - last.score, 2)
     sign = "+" if by > 0 else ""
-    return f"{shown(last.score)} -> {score} ({sign}{shown(by)})" if by else f"{score}, as before"
+    return (
+        f"{shown(last.score)} -> {score} ({sign}{shown(by)})"
+        if by
+        else tell("{score}, as before", score=score)
+    )

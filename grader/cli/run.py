@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.language.phrase import say
+from grader.language.telling import tell
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
@@ -24,45 +25,57 @@ SPEEDS = ("1", "5", "free")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.add_argument("submission", type=Path, help="a .py file, a folder, a package or a zip")
+    parser.add_argument(
+        "submission", type=Path, help=tell("a .py file, a folder, a package or a zip")
+    )
     parser.add_argument(
         "--exercise",
         default=DEFAULT,
         metavar="NAME|FOLDER|FILE",
-        help="an installed one, the folder of another, or an edited exercise.yaml",
+        help=tell("an installed one, the folder of another, or an edited exercise.yaml"),
     )
     parser.add_argument(
         "--time",
         choices=CLOCKS,
         default="virtual",
-        help="the clock that the submission lives by; virtual takes seconds and is the default",
+        help=tell(
+            "the clock that the submission lives by; virtual takes seconds and is the default"
+        ),
     )
     parser.add_argument(
-        "--seed", type=int, metavar="N", help="where the varied runs start (the exercise's own)"
+        "--seed",
+        type=int,
+        metavar="N",
+        help=tell("where the varied runs start (the exercise's own)"),
     )
-    parser.add_argument("--watch", action="store_true", help="grade again on every save")
+    parser.add_argument("--watch", action="store_true", help=tell("grade again on every save"))
     parser.add_argument(
         "--live",
         action="store_true",
-        help="show the runs, one after the other, in a page while they happen",
+        help=tell("show the runs, one after the other, in a page while they happen"),
     )
     parser.add_argument(
         "--speed",
         choices=SPEEDS,
-        help="of --live: as in real time (default), five times as fast, as fast as it goes",
+        help=tell("of --live: as in real time (default), five times as fast, as fast as it goes"),
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="default: below graded/")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the result here as well")
-    parser.add_argument("--executable", metavar="NAME", help="which console script to start")
+    parser.add_argument("--out", type=Path, metavar="DIR", help=tell("default: below graded/"))
+    parser.add_argument(
+        "--json", type=Path, metavar="FILE", help=tell("write the result here as well")
+    )
+    parser.add_argument("--executable", metavar="NAME", help=tell("which console script to start"))
     parser.add_argument(
         "--isolation",
         choices=LEVELS,
         metavar="LEVEL",
-        help=f"refuse to run the submission confined less well: {', '.join(LEVELS)} (the best "
-        "that this system allows is always taken)",
+        help=tell(
+            "refuse to run the submission confined less well: {levels} (the best "
+            "that this system allows is always taken)",
+            levels=", ".join(LEVELS),
+        ),
     )
     parser.add_argument(
-        "--fail-under", type=points, metavar="POINTS", help="exit 1 below this score"
+        "--fail-under", type=points, metavar="POINTS", help=tell("exit 1 below this score")
     )
 
 
@@ -70,7 +83,9 @@ def points(text: str) -> float:
     """A number of points from the command line."""
     value = float(text)
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a number of points, found {text}")
+        raise argparse.ArgumentTypeError(
+            tell("expected a number of points, found {text}", text=text)
+        )
     return value
 
 

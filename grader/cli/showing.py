@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
+from grader.language.telling import tell
 from grader.reports import Report, terminal
 from grader.text import for_terminal
 
@@ -19,7 +20,7 @@ def show(report: Report, page: Path | None) -> None:
     try:
         terminal.show(report, console)
         if page is not None:
-            where = Text(for_terminal(f"The page with picture and plots: {page}"))
+            where = Text(for_terminal(tell("The page with picture and plots: {page}", page=page)))
             console.print(where, highlight=False, soft_wrap=True)
     except BrokenPipeError:  # rich before 13.8 leaves it to us
         console.on_broken_pipe()

@@ -9,6 +9,8 @@ from grader import files
 from grader.cli import error_file
 from grader.cli.place import Place, find
 from grader.errors import UsageError
+from grader.language.phrase import say
+from grader.language.telling import tell
 from grader.recording.folder import load_all
 from grader.recording.recording import Recordings
 from grader.reports import Report, playback
@@ -28,29 +30,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "recording",
         type=Path,
-        help="the folder of a result, the result in it, or a recording anywhere else",
+        help=tell("the folder of a result, the result in it, or a recording anywhere else"),
     )
     parser.add_argument(
         "--compare",
         type=Path,
         metavar="OTHER",
-        help="another one, as a last attempt: both ways in one window, how far apart, and the "
-        "first input that differs",
+        help=tell(
+            "another one, as a last attempt: both ways in one window, how far "
+            "apart, and the first input that differs"
+        ),
     )
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help=f"default: {NAME} beside the result"
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help=tell("default: {name} beside the result", name=NAME),
     )
     parser.add_argument(
-        "--no-open", action="store_true", help="do not show the page in a browser, only write it"
+        "--no-open",
+        action="store_true",
+        help=tell("do not show the page in a browser, only write it"),
     )
     who = parser.add_mutually_exclusive_group()
     who.add_argument(
         "--after-due",
         action="store_true",
-        help="what students see when the exercise is over; default: what they see before",
+        help=tell("what students see when the exercise is over; default: what they see before"),
     )
     who.add_argument(
-        "--whole", action="store_true", help="for teachers: also what the exercise hides"
+        "--whole", action="store_true", help=tell("for teachers: also what the exercise hides")
     )
 
 
@@ -72,7 +81,7 @@ def main(args: argparse.Namespace) -> int:
         files.put(page, content.encode("utf-8"))
     else:
         files.write(page, content)
-    print(for_terminal(f"The page that plays it: {page}"))
+    print(for_terminal(tell("The page that plays it: {page}", page=page)))
     if not args.no_open and page.is_file():
         browser.show(page.resolve().as_uri())
     return 0
@@ -89,8 +98,16 @@ def _check_is_no_part(out: Path, args: argparse.Namespace) -> None:
 def _not_played(place: Place, recordings: Recordings) -> str:
     scene = recordings.nominal.scene
     page = place.folder / PAGE
-    instead = f"look at {page}" if page.is_file() else f"{PAGE} beside its result shows it"
-    return f"a recording of the scene {scene!r} cannot be played; {instead}"
+    instead = (
+        say("look at {page}", page=page)
+        if page.is_file()
+        else say("{page} beside its result shows it", page=PAGE)
+    )
+    return say(
+        "a recording of the scene {scene!r} cannot be played; {instead}",
+        scene=scene,
+        instead=instead,
+    )
 
 
 def _other(given: Path, recordings: Recordings, seen: View) -> Playback:
@@ -98,8 +115,12 @@ def _other(given: Path, recordings: Recordings, seen: View) -> Playback:
     other = load_all(place.recording)
     if other.nominal.scene != recordings.nominal.scene:
         raise UsageError(
-            f"cannot compare recordings of the scenes {recordings.nominal.scene!r} and "
-            f"{other.nominal.scene!r}; give two of one scene"
+            say(
+                "cannot compare recordings of the scenes {scene!r} and {other!r}; give"
+                " two of one scene",
+                scene=recordings.nominal.scene,
+                other=other.nominal.scene,
+            )
         )
     return _playback(place, other, seen, None)
 

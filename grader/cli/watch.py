@@ -15,6 +15,7 @@ from watchdog.observers.api import BaseObserver
 from watchdog.observers.polling import PollingObserver
 
 from grader.errors import UsageError
+from grader.language.phrase import say
 
 #: Files whose change can change a verdict. What the grader writes has other names.
 SUFFIXES = (".py", ".cfg", ".toml", ".xml", ".zip")
@@ -40,7 +41,13 @@ def each_save(submission: Path, out: Path | None = None) -> Iterator[None]:
     is_folder = submission.is_dir()
     folder = (submission if is_folder else submission.parent).absolute()
     if not folder.is_dir():
-        raise UsageError(f"cannot watch {submission}: {folder} does not exist")
+        raise UsageError(
+            say(
+                "cannot watch {submission}: {folder} does not exist",
+                submission=submission,
+                folder=folder,
+            )
+        )
     saves = Saves(folder, None if is_folder else submission.name, out and out.absolute())
     observer = _watching(saves, folder, is_folder)
     try:

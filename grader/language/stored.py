@@ -107,7 +107,7 @@ def _inner(value: Any) -> Any:
     if isinstance(value, str):
         return str(value)
     value = value.item() if hasattr(value, "item") else value  # numpy's numbers are none of JSON's
-    return value if math.isfinite(value) else str(value)
+    return value if isinstance(value, int | float) and math.isfinite(value) else str(value)
 
 
 def _restore(value: Any, made: Mapping[str, Phrase]) -> Any:

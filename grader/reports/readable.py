@@ -9,7 +9,7 @@ from grader import text
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Verdict
 from grader.language.phrase import say
-from grader.language.telling import told
+from grader.language.telling import tell, told
 from grader.result.result import Result, RunSummary
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.

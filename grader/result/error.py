@@ -11,8 +11,9 @@ from typing import Any, Self
 
 from grader import files
 from grader.errors import GraderError, Whose
+from grader.language import stored
 from grader.result import json_file
-from grader.text import plain
+from grader.text import plain_phrase
 
 #: What the schemas of all versions begin with.
 FAMILY = "turtlesim-grader/error/"
@@ -37,15 +38,17 @@ class ErrorResult:
     @classmethod
     def of(cls, error: GraderError, max_score: float | None) -> Self:
         """What an exception says."""
-        return cls(error.whose, plain(error.message), max_score)
+        return cls(error.whose, plain_phrase(error.message), max_score)
 
     def to_json(self) -> dict[str, Any]:
         """The error as its file holds it."""
+        phrases = stored.phrases_in(self)
         return {
             "schema": SCHEMA,
             "whose": self.whose,
             "message": self.message,
             "max_score": self.max_score,
+            **({"phrases": phrases} if phrases else {}),
         }
 
     @classmethod
@@ -56,7 +59,8 @@ class ErrorResult:
             ValueError: it does not follow the schema.
         """
         json_file.validate(data, "error", SCHEMA)
-        return cls(data["whose"], data["message"], data["max_score"])
+        found = cls(data["whose"], data["message"], data["max_score"])
+        return stored.restored(found, data.get("phrases", {}))
 
     def write(self, path: Path) -> None:
         """Write the error file.
