@@ -121,7 +121,8 @@ def _parser(words: Sequence[str]) -> error_file.Parser:
     asked = next((word for word in words if not word.startswith("-")), None)
     parser = error_file.Parser(prog="grader", description=tell("Grade the turtlesim challenge."))
     known = _versions() if "--version" in words else ""
-    parser.add_argument("--version", action="version", version=known)
+    shows = tell("show program's version number and exit")
+    parser.add_argument("--version", action="version", version=known, help=shows)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, summary in VERBS.items():
         verb = verbs.add_parser(name, help=told(summary), description=told(summary))

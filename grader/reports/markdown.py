@@ -83,7 +83,7 @@ def _table(report: Report) -> str:
         late = tell("handed in late")
         rows.append(f"| | {late} | -{wording.points(report.deducted)} | |")
     total = f"{wording.points(report.score)} / {wording.points(report.max_score)}"
-    rows.append(f"| | **{tell('total')}** | **{total}** | |")
+    rows.append("| | **" + tell("total") + f"** | **{total}** | |")
     return "\n".join(rows)
 
 
@@ -97,7 +97,8 @@ def _seen(report: Report, verdict: Verdict) -> str:
     if verdict.evidence:
         lines += ["", *(f"- {_quote(str(point))}" for point in report.points_of(verdict))]
     if help_ := report.help_for(verdict):
-        lines += ["", f"**{tell('Look at:')}** {_quote(help_)}"]
+        look_at = tell("Look at:")
+        lines += ["", f"**{look_at}** {_quote(help_)}"]
     return "\n".join(lines)
 
 
@@ -131,6 +132,6 @@ def _output(report: Report) -> str:
     longest = max((len(run) for run in re.findall(r"`+", output)), default=0)
     fence = "`" * max(3, longest + 1)
     return (
-        f"<details><summary>{tell('What the node printed')}</summary>\n\n"
+        "<details><summary>" + tell("What the node printed") + "</summary>\n\n"
         f"{fence}text\n{output}\n{fence}\n\n</details>"
     )

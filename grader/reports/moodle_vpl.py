@@ -12,7 +12,7 @@ from grader.reports.wording import score_text, title_of, word
 
 def render(report: Report) -> str:
     """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
-    lines = ["<|--", f"-{tell('What to do')}", _quote(report.first_line)]
+    lines = ["<|--", "-" + tell("What to do"), _quote(report.first_line)]
     lines += map(_quote, report.advice)
     lines += [
         tell("Also: {said}", said=_quote(said))

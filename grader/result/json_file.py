@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from grader import strict_json
 from grader.errors import UsageError
+from grader.language.phrase import say
 
 if TYPE_CHECKING:
     import jsonschema
@@ -57,9 +58,11 @@ def read(path: Path) -> Any:
         # utf-8-sig: some editors put a mark at the start
         return strict_json.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
-        raise UsageError(f"cannot read the result {path}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot read the result {path}: {why}", path=path, why=error.strerror)
+        ) from None
     except (ValueError, RecursionError) as error:
-        raise UsageError(f"{path} is not JSON: {error}") from None
+        raise UsageError(say("{path} is not JSON: {why}", path=path, why=str(error))) from None
 
 
 def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
