@@ -15,6 +15,7 @@ from grader.batch.gradebook.write import write as write_gradebook
 from grader.batch.page import html
 from grader.batch.similar import look
 from grader.exercise.loading import Exercise
+from grader.language.telling import tell
 from grader.result.visible import View
 
 PAGE = "index.html"
@@ -40,6 +41,6 @@ def write(
         UsageError: one of them cannot be written.
     """
     look.write(entries, exercise, out)
-    links = {"Look at these together": look.PAGE, "Gradebook": CSV}
+    links = {tell("Look at these together"): look.PAGE, tell("Gradebook"): CSV}
     files.put(out / PAGE, html.render(entries, exercise, links).encode("utf-8"))
     return write_gradebook(out, entries, Options(exercise.title, view, assignment))

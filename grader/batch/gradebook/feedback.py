@@ -14,9 +14,13 @@ from dataclasses import dataclass, replace
 from grader import text
 from grader.batch.entry import Entry
 from grader.batch.gradebook.grade import LONGEST, Grade, out_of
+from grader.language.catalogue import LANGUAGES
+from grader.language.phrase import say
+from grader.language.telling import tell, told
 from grader.recording.recording import Recording
 from grader.reports import ErrorReport, Report, render
 from grader.reports.beside import Beside
+from grader.reports.wording import points
 from grader.result.error import ErrorResult
 from grader.result.result import RunSummary
 from grader.result.visible import View
@@ -24,7 +28,7 @@ from grader.result.visible import View
 #: How ROS's log writes the time of a line; and an address in memory, as Python writes it.
 _LOGGED_AT, _ADDRESS = re.compile(r"\[\d{9,11}\.\d{9}\]"), re.compile(r"\b0x[0-9a-f]{8,16}\b")
 #: What a comment begins with, so that it is known as ours when it comes back.
-MARK = "Graded automatically:"
+MARK = say("Graded automatically:")
 
 
 @dataclass(frozen=True)
@@ -50,21 +54,29 @@ class Feedback:
         entry, late = grade.entry, grade.late_deduction
         if grade.final is None:
             return ""
-        said = f"{MARK} {out_of(grade.final, entry.max_score)} points"
+        said = {"mark": told(MARK), "points": out_of(grade.final, entry.max_score)}
+        said["first"] = self._first(entry)
         if late:
-            said += f" ({text.points(grade.score or 0)} less {text.points(late)} for being late)"
-        return text.clip(text.one_line(text.plain(f"{said}. {self._first(entry)}")), LONGEST)
+            sentence = tell(
+                "{mark} {points} points ({score} less {late} for being late). {first}",
+                score=points(grade.score or 0),
+                late=points(late),
+                **said,
+            )
+        else:
+            sentence = tell("{mark} {points} points. {first}", **said)
+        return text.clip(text.one_line(text.plain(sentence)), LONGEST)
 
     def _first(self, entry: Entry) -> str:
         if not has_feedback(entry):
-            return entry.message or "Nothing was handed in."
+            return told(entry.message) or tell("Nothing was handed in.")
         report = self._report(entry)
         return report.message if isinstance(report, ErrorReport) else report.headline
 
     def _report(self, entry: Entry) -> Report | ErrorReport:
         if entry.result is None:
-            told = ErrorResult("submission", entry.message, entry.max_score)
-            return ErrorReport(told, entry.folder)
+            error = ErrorResult("submission", entry.message, entry.max_score)
+            return ErrorReport(error, entry.folder)
         result = entry.result
         shown = replace(
             result,
@@ -87,6 +99,11 @@ class _WithoutRecordings(Beside):
     def output(self) -> str:
         """Without what is another one each time: when a line was logged, where an object lay."""
         return _ADDRESS.sub("0x...", _LOGGED_AT.sub("[...]", super().output))
+
+
+def is_ours(comment: str) -> bool:
+    """Whether a comment is one of these, in any language."""
+    return any(told(MARK, language) in comment for language in LANGUAGES)
 
 
 def has_feedback(entry: Entry) -> bool:

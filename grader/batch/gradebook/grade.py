@@ -10,7 +10,8 @@ from grader.batch.entry import Entry
 from grader.batch.find.joining import UNCLEAR
 from grader.batch.gradebook import known
 from grader.batch.hand_in import Person
-from grader.text import points
+from grader.language.telling import tell
+from grader.reports.wording import points
 
 #: The longest text in a cell [characters].
 LONGEST = 300
@@ -110,4 +111,4 @@ def decimal(value: float | None) -> str:
 
 def out_of(value: float, of: float) -> str:
     """Points for people: '12.5 of 30'."""
-    return f"{points(value)} of {points(of)}"
+    return tell("{score} of {max_score}", score=points(value), max_score=points(of))

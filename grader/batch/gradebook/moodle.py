@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from grader import text
 from grader.batch.gradebook import known
 from grader.batch.gradebook.cells import cell, table
-from grader.batch.gradebook.feedback import MARK, Feedback, has_feedback
+from grader.batch.gradebook.feedback import Feedback, has_feedback, is_ours
 from grader.batch.gradebook.grade import Grade, decimal
 
 #: Those that Moodle 3 and 4 write in English. It looks for Identifier, Grade, Last modified (grade)
@@ -107,7 +107,7 @@ def _worksheet_row(grade: Grade, feedback: Feedback) -> list[str]:
 def _comment(grade: Grade, feedback: Feedback) -> str:
     """Moodle takes a comment for HTML; one that is not ours stays as it is."""
     there = known.column(grade.person, ("Feedback comments",))
-    if there and MARK not in there:
+    if there and not is_ours(there):
         return cell(text.one_line(there))
     return cell(html.escape(feedback.sentence(grade), quote=False))
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from grader import text
 from grader.batch.page.kinds import kind_of
 from grader.batch.page.students import STATES, Student
+from grader.language.phrase import say
+from grader.language.telling import told
 from grader.reports.wording import title_of
 
 #: More kinds than this, of first causes and of a check, are told together.
@@ -16,7 +18,7 @@ MOST_CAUSES, MOST_KINDS = 24, 8
 #: More students than this are only counted.
 MOST_LINKS = 400
 _TEXT_LIMIT = 400
-RARER = "rarer kinds"
+RARER = say("rarer kinds")
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ def to_mend_first(students: Iterable[Student]) -> list[Cluster]:
 def of_check(students: Iterable[Student], check: str) -> list[Cluster]:
     """Why points of a check were lost."""
     said = [
-        Said(student, title_of(verdict), verdict.rationale, _diagnosed(student))
+        Said(student, told(title_of(verdict)), told(verdict.rationale), _diagnosed(student))
         for student in students
         if (verdict := student.verdicts.get(check)) is not None and not verdict.passed
     ]
@@ -70,16 +72,16 @@ def _first_of(student: Student) -> Said | None:
     result = student.entry.result
     if result is None:
         state = student.entry.state
-        return Said(student, STATES.get(state, state), student.entry.message)
+        return Said(student, told(STATES.get(state, state)), told(student.entry.message))
     found = result.diagnosis
     if found is not None and not found.check:
-        return Said(student, found.key.replace("_", " "), found.cause)
+        return Said(student, found.key.replace("_", " "), told(found.cause))
     lost = [verdict for verdict in result.verdicts if not verdict.passed]
     if not lost:
         return None
     costliest = max(lost, key=lambda verdict: verdict.max_score - verdict.score)
     verdict = costliest if found is None else student.verdicts.get(found.check, costliest)
-    return Said(student, title_of(verdict), verdict.rationale)
+    return Said(student, told(title_of(verdict)), told(verdict.rationale))
 
 
 def _diagnosed(student: Student) -> str:
@@ -96,7 +98,7 @@ def _clusters(said: Sequence[Said], most: int) -> list[Cluster]:
     ordered = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0]))
     shown = [_cluster(heading, kind, alike) for (heading, kind), alike in ordered[:most]]
     rest = [each for _, alike in ordered[most:] for each in alike]
-    return [*shown, _cluster(RARER, "", rest)] if rest else shown
+    return [*shown, _cluster(told(RARER), "", rest)] if rest else shown
 
 
 def _cluster(heading: str, kind: str, alike: Sequence[Said]) -> Cluster:

@@ -16,17 +16,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from grader.exercise.verdict import Verdict
+from grader.language.phrase import say
+from grader.language.telling import tell
 from grader.result.result import Result
 
 BINS = 10
 #: Below so many, a correlation says nothing.
 LEAST = 10
 _WORDS = (
-    (0.4, "separates strong from weak very well"),
-    (0.3, "separates strong from weak well"),
-    (0.2, "separates strong from weak a little"),
-    (0.0, "hardly separates strong from weak"),
-    (-1.0, "the weak do better here than the strong: look at what it asks for"),
+    (0.4, say("separates strong from weak very well")),
+    (0.3, say("separates strong from weak well")),
+    (0.2, say("separates strong from weak a little")),
+    (0.0, say("hardly separates strong from weak")),
+    (-1.0, say("the weak do better here than the strong: look at what it asks for")),
 )
 _EASY, _HARD = 0.85, 0.3
 
@@ -94,22 +96,22 @@ class Item:
     def parts(self) -> tuple[tuple[str, str, int], ...]:
         """The four counts with a class of the style sheet and a word."""
         return (
-            ("passed", "passed", self.passed),
-            ("partial", "partly", self.partial),
-            ("failed", "failed", self.failed),
-            ("not_judged", "not judged", self.not_judged),
+            ("passed", tell("passed"), self.passed),
+            ("partial", tell("partly"), self.partial),
+            ("failed", tell("failed"), self.failed),
+            ("not_judged", tell("not judged"), self.not_judged),
         )
 
     @property
     def words(self) -> str:
         """What the figures mean."""
-        ease = (
-            "Easy" if self.difficulty >= _EASY else "Hard" if self.difficulty < _HARD else "Medium"
-        )
-        if self.discrimination is None:
-            return f"{ease}; {self.why_not}."
-        rounded = round(self.discrimination, 2)
-        return f"{ease}; {next(words for least, words in _WORDS if rounded >= least)}."
+        ease = tell("Easy") if self.difficulty >= _EASY else tell("Medium")
+        ease = tell("Hard") if self.difficulty < _HARD else ease
+        separates = self.why_not
+        if self.discrimination is not None:
+            rounded = round(self.discrimination, 2)
+            separates = next(words for least, words in _WORDS if rounded >= least)
+        return tell("{ease}; {separates}.", ease=ease, separates=separates)
 
 
 def distribution(scores: Sequence[float], max_score: float) -> Distribution | None:
@@ -173,9 +175,9 @@ def _item(asked: Sequence[tuple[Verdict, Mapping[str, Verdict]]]) -> Item:
 def _discrimination(scores: list[float], rest: list[float]) -> tuple[float | None, str]:
     """The correlation; or None and why there is none."""
     if len(scores) < LEAST:
-        return None, f"fewer than {LEAST} are too few to tell whom it separates"
+        return None, say("fewer than {least} are too few to tell whom it separates", least=LEAST)
     if len(set(scores)) == 1:
-        return None, "all have the same points here, so it separates nobody"
+        return None, say("all have the same points here, so it separates nobody")
     if len(set(rest)) == 1:
-        return None, "all have the same points elsewhere, so there is nothing to compare with"
+        return None, say("all have the same points elsewhere, so there is nothing to compare with")
     return statistics.correlation(scores, rest), ""

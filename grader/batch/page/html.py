@@ -20,6 +20,7 @@ from grader.batch.page import clusters, figures
 from grader.batch.page.students import STATES, Student, evenly, students
 from grader.batch.page.thumb import EDGE_PX, UNITS, Thumb
 from grader.exercise.loading import Exercise
+from grader.language.telling import tell, told
 from grader.reports.page import templating
 from grader.scenes import load_scene
 
@@ -57,13 +58,29 @@ def render(
         nothing_to_mend=sum(all(v.passed for v in s.verdicts.values()) for s in judged),
         lost={item.check: clusters.of_check(judged, item.check) for item in items},
         drawn=_drawn(rows),
+        words=_script_words(),
     )
 
 
-def _states(everybody: Sequence[Student]) -> list[tuple[str, int]]:
-    """How many have no result, and why."""
+def _states(everybody: Sequence[Student]) -> list[tuple[str, int, bool]]:
+    """How many have no result, why, and whether that is the grader's doing."""
     counted = Counter(student.entry.state for student in everybody)
-    return [(words, counted[state]) for state, words in STATES.items() if counted[state]]
+    return [
+        (told(words), counted[state], state == "failed")
+        for state, words in STATES.items()
+        if counted[state]
+    ]
+
+
+def _script_words() -> dict[str, str]:
+    """What the page's script writes; `#` stands for what comes there."""
+    return {
+        "found": tell("{done} of {total}", done="#", total="#"),
+        "ascending": tell("Sorted by {column}, ascending", column="#"),
+        "descending": tell("Sorted by {column}, descending", column="#"),
+        "points": tell(": {points} points", points="#"),
+        "student": tell("Student {number}", number="#"),
+    }
 
 
 def _drawn(rows: Sequence[Student]) -> list[Student]:

@@ -15,15 +15,18 @@ from grader import text
 from grader.batch.entry import SUBMISSIONS, Entry, State
 from grader.batch.page.thumb import Thumb
 from grader.exercise.verdict import Verdict
+from grader.language.phrase import say
+from grader.language.telling import tell, told
+from grader.reports import wording
 from grader.result.handed_in import HandedIn
 from grader.result.result import PAGE
 
 _NAME_LIMIT, _WORD_LIMIT = 80, 40
 #: What is told of those without a result.
 STATES: Final[Mapping[State, str]] = {
-    "unusable": "cannot be started",
-    "nothing": "nothing handed in",
-    "failed": "the grader failed",
+    "unusable": say("cannot be started"),
+    "nothing": say("nothing handed in"),
+    "failed": say("the grader failed"),
 }
 _GAP = "…"
 
@@ -68,8 +71,9 @@ class Student:
         """How its run ended, or why there was none."""
         result = self.entry.result
         if result is None:
-            return STATES.get(self.entry.state, self.entry.state)
-        return text.clip(text.plain(result.run.outcome), _WORD_LIMIT).replace("_", " ")
+            return told(STATES.get(self.entry.state, self.entry.state))
+        outcome = text.clip(text.plain(result.run.outcome), _WORD_LIMIT).replace("_", " ")
+        return wording.outcome(outcome)
 
     @property
     def at(self) -> datetime | None:
@@ -89,13 +93,16 @@ class Student:
     @property
     def late(self) -> str:
         """The same in words, and what it cost; '' where it was in time."""
-        told = self._handed_in
-        if told is None or told.late_s <= 0:
+        found = self._handed_in
+        if found is None or found.late_s <= 0:
             return ""
-        minutes = max(int(told.late_s // 60), 1)
+        minutes = max(int(found.late_s // 60), 1)
         days, hours = divmod(minutes // 60, 24)
-        length = f"{days} d {hours} h" if days else f"{hours} h {minutes % 60} min"
-        return f"{length}, −{text.points(told.deducted)}" if told.deducted else length
+        if days:
+            length = tell("{days} d {hours} h", days=days, hours=hours)
+        else:
+            length = tell("{hours} h {minutes} min", hours=hours, minutes=minutes % 60)
+        return f"{length}, −{wording.points(found.deducted)}" if found.deducted else length
 
     @property
     def _handed_in(self) -> HandedIn | None:
@@ -104,8 +111,8 @@ class Student:
     def without_names(self, sentence: str) -> str:
         """A sentence in which neither the name nor an id of this student stands."""
         people = self.entry.hand_in.people
-        told = [self.entry.id, self.name, *(person.id for person in people)]
-        words = {word for name in told for word in re.split(r"[\W_]+", name) if len(word) > 2}
+        names = [self.entry.id, self.name, *(person.id for person in people)]
+        words = {word for name in names for word in re.split(r"[\W_]+", name) if len(word) > 2}
         for word in sorted(words, key=lambda word: (-len(word), word)):
             sentence = re.sub(rf"(?<!\w){re.escape(word)}(?!\w)", _GAP, sentence, flags=re.I)
         return sentence
@@ -132,8 +139,8 @@ def evenly(chosen: Sequence[Student], most: int) -> list[Student]:
 
 
 def _ids(entry: Entry) -> str:
-    told = ", ".join(person.id for person in entry.hand_in.people) or entry.id
-    return _safe(told) or entry.id
+    names = ", ".join(person.id for person in entry.hand_in.people) or entry.id
+    return _safe(names) or entry.id
 
 
 def _safe(name: str) -> str:

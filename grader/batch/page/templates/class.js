@@ -3,6 +3,7 @@
 (() => {
   const all = (selector, root = document) => [...root.querySelectorAll(selector)];
   const by = (id) => document.getElementById(id);
+  const words = JSON.parse(by("words").textContent);
   document.documentElement.classList.add("script");
 
   const body = by("class").tBodies[0];
@@ -32,12 +33,12 @@
       if (path) path.classList.toggle("out", !found);
     }
     if (chosen && !matching.has(chosen)) forget();
-    by("found").textContent = `${matching.size} of ${rows.length}`;
+    by("found").textContent = words.found.replace("#", matching.size).replace("#", rows.length);
   }
 
   // Sorting: by what is seen, or what a cell says instead; of equals, by the name that is seen.
   const heads = all("thead th", by("class"));
-  const collator = new Intl.Collator("en", { numeric: true, sensitivity: "base" });
+  const collator = new Intl.Collator(document.documentElement.lang, { numeric: true, sensitivity: "base" });
   let sorted = { column: 0, descending: false };
 
   function value(element, column) {
@@ -70,8 +71,8 @@
       // first the most points, the latest, but names from A on
       const again = sorted.column === column;
       sort(column, again ? !sorted.descending : head.dataset.kind === "number");
-      const how = sorted.descending ? "descending" : "ascending";
-      by("sorted").textContent = `Sorted by ${button.textContent.trim()}, ${how}`;
+      const how = sorted.descending ? words.descending : words.ascending;
+      by("sorted").textContent = how.replace("#", button.textContent.trim());
     });
   });
 
@@ -101,7 +102,7 @@
     const name = document.createElement(from.hasAttribute("href") ? "a" : "span");
     if (from.hasAttribute("href")) name.href = from.getAttribute("href");
     name.textContent = from.querySelector("bdi").textContent;
-    say.replaceChildren(name, `: ${from.querySelector("b").textContent} points`);
+    say.replaceChildren(name, words.points.replace("#", from.querySelector("b").textContent));
   }
 
   for (const kind of ["pointerover", "focusin"]) {
@@ -184,7 +185,7 @@
     by("hide").setAttribute("aria-pressed", String(hide));
     for (const [element, text] of told) {
       const { name, id } = element.dataset;
-      element.textContent = hide ? (name ? `Student ${name}` : id) : text;
+      element.textContent = hide ? (name ? words.student.replace("#", name) : id) : text;
     }
     for (const [link, address] of links) if (hide) rest(link); else wake(link, address);
     for (const element of all(".named")) element.hidden = hide;
