@@ -243,6 +243,10 @@ class Scene(Protocol):
         """What has happened in a run that is finished, as a clause: 'the robot came to rest'."""
 
     @property
+    def the_thing(self) -> str:
+        """What a submission drives, as in a sentence: 'the robot'."""
+
+    @property
     def plane(self) -> Plane:
         """How places become pixels."""
 

@@ -17,7 +17,10 @@ _STEPS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern, re.IGNORECASE), by)
     for pattern, by in (
         # what is quoted: names of fields, variables, files
-        (r"“[^”]*”|«[^»]*»|‘[^’]*’|\"[^\"]*\"|`[^`]*`|(?<!\w)'(?:[^']|(?<=\w)'(?=\w))*'(?!\w)", GAP),
+        (
+            r"“[^”]*”|«[^»]*»|‘[^’]*’|\"[^\"]*\"|`[^`]*`|(?<!\w)'(?:[^']|(?<=\w)'(?=\w))*'(?!\w)",
+            GAP,
+        ),
         (r"[\w./+~-]+\.(?:pyc?|launch|xml|yaml|zip|so)\b", GAP),  # files
         (r"(?<![\w/])/?[a-z_]\w*(?:/\w+)+|(?<![\w/])/[a-z_]\w*", GAP),  # topics, types, folders
         (r"\b0x[0-9a-f]+\b", GAP),

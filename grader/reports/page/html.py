@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import jinja2
@@ -22,7 +22,6 @@ from markupsafe import Markup
 
 from grader import text
 from grader.language.catalogue import spoken
-from grader.language.phrase import say
 from grader.language.telling import in_language, number, tell, told
 from grader.recording.recording import Recording
 from grader.reports import wording
@@ -41,12 +40,6 @@ from grader.scenes import load_scene
 from grader.scenes.scene import Scene
 from grader.scenes.view import Floats, Solid, Table, Tree
 
-#: What scenes are about, as the object of a sentence.
-_THE: Final = {
-    "turtle": say("the turtle"),
-    "robot": say("the robot"),
-    "package": say("the package"),
-}
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
 #: On paper, of what a node printed, so many lines and characters: the last tell how it ended.
@@ -138,7 +131,7 @@ def render(report: Report) -> str:
             },
             to_px=plane.to_px,
             thing=report.scene.thing,
-            the=_the(report.scene),
+            the=report.scene.the_thing,
             words=_script_words(),
             radius=RADIUS_PX,
         )
@@ -169,7 +162,7 @@ def _faulty_runs(report: Report) -> set[int]:
 
 
 def _outcomes(scene: Scene) -> dict[str, str]:
-    the = _the(scene)
+    the = scene.the_thing
     if scene.examiner:
         return {
             "finished": tell("{the_thing} was looked at", the_thing=the),
@@ -186,10 +179,6 @@ def _outcomes(scene: Scene) -> dict[str, str]:
         wording.NOTHING_MOVED: tell("{the_thing} never moved, so the run was ended", the_thing=the),
         "killed": tell("somebody killed the node"),
     }
-
-
-def _the(scene: Scene) -> str:
-    return _THE.get(scene.thing, say("the {thing}", thing=scene.thing))
 
 
 def _script_words() -> dict[str, str]:

@@ -38,6 +38,7 @@ class Package:
     introduction: Final = Introduction((), (), ())
     thing: Final = "package"
     plane: Final = view.PLANE
+    the_thing: Final = say("the package")
     window_is_plane: Final = False
     finished: Final = say("the package was looked at")
     farthest_start_m: Final = 0.0

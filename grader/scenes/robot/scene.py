@@ -46,6 +46,7 @@ class RobotScene:
     examiner: Final = ""
     plane: Final = view.PLANE
     window_is_plane: Final = False
+    the_thing: Final = say("the robot")
     farthest_start_m: Final = 0.0
 
     def wrong_setting(self, setting: str) -> str:

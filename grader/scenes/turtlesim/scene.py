@@ -60,6 +60,7 @@ class Turtlesim:
     finished: Final = say("the turtle came to rest")
     plane: Final = view.PLANE
     window_is_plane: Final = True
+    the_thing: Final = say("the turtle")
     farthest_start_m: Final = starts.FARTHEST_M
 
     def wrong_setting(self, setting: str) -> str:
