@@ -39,7 +39,7 @@ from grader.submission.private_copy import not_handed_in
 
 Progress = Callable[[float], None]
 AnyPath = str | os.PathLike[str]
-REPEATED = "repeated, because the first try failed in the grader"
+REPEATED = say("repeated, because the first try failed in the grader")
 #: So many runs go at once even on less than two cores: each waits now and then.
 LEAST_AT_ONCE = 2
 #: A run by its number, 0 nominal, 1, 2, ... varied, and what was recorded of it.

@@ -10,8 +10,8 @@ from pathlib import Path
 from grader.batch.entry import Entry
 from grader.exercise.loading import Exercise
 from grader.exercise.verdict import Verdict
-from grader.reports.wording import title_of
-from grader.text import count, points
+from grader.language.telling import tell, tell_many, told
+from grader.reports.wording import points, title_of
 
 #: Differences below this come from rounding [points].
 NOTHING = 0.005
@@ -112,21 +112,22 @@ class Regrade:
         """In a line: '7 of 312 change: 2 get more points, 5 get fewer points.'."""
         total = len(self.entries)
         if not self.changes:
-            return f"None of {total} changes."
+            return tell("None of {total} changes.", total=total)
         more = sum(change.points >= NOTHING for change in self.changes)
         less = sum(change.points <= -NOTHING for change in self.changes)
         same = len(self.changes) - more - less
-        told = [
-            f"{number} {what}"
-            for number, what in (
-                (more, "get more points"),
-                (less, "get fewer points"),
-                (same, "keep theirs by other verdicts"),
-            )
-            if number
+        counts = [
+            tell("{number} get more points", number=more) if more else "",
+            tell("{number} get fewer points", number=less) if less else "",
+            tell("{number} keep theirs by other verdicts", number=same) if same else "",
         ]
-        changing = "changes" if len(self.changes) == 1 else "change"
-        return f"{len(self.changes)} of {total} {changing}: {', '.join(told)}."
+        return tell_many(
+            "{n} of {total} changes: {counts}.",
+            "{n} of {total} change: {counts}.",
+            len(self.changes),
+            total=total,
+            counts=", ".join(filter(None, counts)),
+        )
 
     @property
     def more_notes(self) -> list[str]:
@@ -134,16 +135,28 @@ class Regrade:
         found = list(self.notes)
         worth = sorted({entry.max_score for entry in self.entries} - {self.exercise.max_score})
         if worth:
-            before = " or ".join(map(points, worth))
+            before, *more = map(points, worth)
+            for other in more:
+                before = tell("{one} or {other}", one=before, other=other)
+            now = points(self.exercise.max_score)
             found.append(
-                f"The exercise is worth {points(self.exercise.max_score)} points; it was {before}."
+                tell("The exercise is worth {now} points; it was {before}.", now=now, before=before)
             )
         if self.reworded:
-            more = count(len(self.reworded), "more hand-in")
-            found.append(f"Of {more} something else is said, for the same points.")
+            reworded = tell_many(
+                "Of {n:,} more hand-in something else is said, for the same points.",
+                "Of {n:,} more hand-ins something else is said, for the same points.",
+                len(self.reworded),
+            )
+            found.append(reworded)
         unjudged = len(self.entries) - self.judged - len(self.failures)
         if unjudged:
-            found.append(f"{count(unjudged, 'hand-in')} without a run stay as they are.")
+            stay = tell_many(
+                "{n:,} hand-in without a run stay as they are.",
+                "{n:,} hand-ins without a run stay as they are.",
+                unjudged,
+            )
+            found.append(stay)
         return found
 
     @cached_property
@@ -173,8 +186,14 @@ def compared(before: Entry, after: Entry) -> Change | None:
     # what is deducted from the score, e.g. for being late
     taken = [_deducted(entry) for entry in (before, after)]
     if abs(taken[1] - taken[0]) >= NOTHING:
-        why = f"{points(taken[1])} points are deducted from the score, not {points(taken[0])}"
-        late = Difference("", "Handed in late", None, None, round(taken[0] - taken[1], 2), why)
+        why = tell(
+            "{now} points are deducted from the score, not {before}",
+            now=points(taken[1]),
+            before=points(taken[0]),
+        )
+        late = Difference(
+            "", tell("Handed in late"), None, None, round(taken[0] - taken[1], 2), why
+        )
         differences = (*differences, late)
     return Change(before, after, differences) if differences else None
 
@@ -208,13 +227,17 @@ def _said(verdict: Verdict) -> tuple[object, ...]:
 
 def _why(was: Verdict | None, is_: Verdict | None) -> str:
     if is_ is None:
-        return "It is no longer asked for."
+        return tell("It is no longer asked for.")
     if was is None:
-        return f"It was not asked for before. {is_.rationale}"
+        return tell("It was not asked for before. {rationale}", rationale=is_.rationale)
     if (was.status, was.rationale) == (is_.status, is_.rationale):
-        worth = f"worth {points(is_.max_score)} points, not {points(was.max_score)}"
-        return f"It is {worth}. {is_.rationale}"
-    return is_.rationale
+        return tell(
+            "It is worth {now} points, not {before}. {rationale}",
+            now=points(is_.max_score),
+            before=points(was.max_score),
+            rationale=is_.rationale,
+        )
+    return told(is_.rationale)
 
 
 def _verdicts(entry: Entry) -> tuple[Verdict, ...]:

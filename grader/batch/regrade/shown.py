@@ -10,8 +10,9 @@ from rich.text import Text
 
 from grader.batch.entry import Entry
 from grader.batch.regrade.changes import Change, Difference, OfCheck, Regrade
-from grader.reports.wording import word
-from grader.text import clip, count, for_terminal, one_line, points
+from grader.language.telling import tell, tell_many, told
+from grader.reports.wording import points, word
+from grader.text import clip, for_terminal, one_line
 
 #: More hand-ins are in the table and on the page only.
 MOST = 40
@@ -23,7 +24,7 @@ def show(found: Regrade, console: Console) -> None:
     """Print it."""
     console.print(_text(found.headline, "bold"), soft_wrap=True)
     for note in found.more_notes:
-        console.print(_text(f"Note: {note}"), soft_wrap=True)
+        console.print(_text(tell("Note: {flag}", flag=note)), soft_wrap=True)
     if found.changes:
         console.print()
         console.print(_checks(found))
@@ -31,7 +32,12 @@ def show(found: Regrade, console: Console) -> None:
         console.print(_people(found))
         rest = len(found.changes) - MOST
         if rest > 0:
-            console.print(_text(f"… and {count(rest, 'more hand-in')}: see the table or the page."))
+            more = tell_many(
+                "… and {n:,} more hand-in: see the table or the page.",
+                "… and {n:,} more hand-ins: see the table or the page.",
+                rest,
+            )
+            console.print(_text(more))
     _failures(found, console)
 
 
@@ -42,30 +48,40 @@ def signed(value: float) -> str:
 
 def verdicts(each: Difference) -> str:
     """What was said of a check and what is: 'passed → failed'; '' where it is the same."""
-    told = ["new" if each.before is None else word(each.before)]
-    told.append("gone" if each.after is None else word(each.after))
-    return "" if told[0] == told[1] else " → ".join(told)
+    said = [tell("new") if each.before is None else word(each.before)]
+    said.append(tell("gone") if each.after is None else word(each.after))
+    return "" if said[0] == said[1] else " → ".join(said)
 
 
 def _checks(found: Regrade) -> Table:
-    table = _table("check", "more", "fewer", "in all")
+    table = _table(tell("check"), tell("more"), tell("fewer"), tell("in all"))
     for each in found.of_checks:
         table.add_row(_name(each), str(each.gain), str(each.lose), signed(each.points))
     return table
 
 
 def _name(each: OfCheck) -> Text:
-    name = _text(each.title, "bold")
+    name = _text(told(each.title), "bold")
     return Text.assemble(name, _text(f" ({each.check})", "dim")) if each.check else name
 
 
 def _people(found: Regrade) -> Table:
-    table = _table("hand-in", "before", "after", "change", "check and why", last="left")
+    table = _table(*_headings(), last="left")
     for change in found.changes[:MOST]:
         told = [_told(each) for each in change.differences]
         points_now = (_score(change.before), _score(change.after), signed(change.points))
         table.add_row(_who(change), *points_now, Text("\n").join(told))
     return table
+
+
+def _headings() -> tuple[str, ...]:
+    return (
+        tell("hand-in"),
+        tell("before"),
+        tell("after"),
+        tell("change"),
+        tell("check and why"),
+    )
 
 
 def _table(first: str, *others: str, last: str = "right") -> Table:
@@ -99,11 +115,20 @@ def _failures(found: Regrade, console: Console) -> None:
     said = Counter(failure.why for failure in found.failures)
     for why, number in said.most_common(_MOST_WHYS):
         first = next(failure.entry.id for failure in found.failures if failure.why == why)
-        others = f" and {number - 1} others" if number > 1 else ""
-        text = f"Not judged again, and left as it is: {first}{others}: {clip(one_line(why), 300)}"
+        if number > 1:
+            first = tell("{first} and {more} others", first=first, more=number - 1)
+        text = tell(
+            "Not judged again, and left as it is: {who}: {why}",
+            who=first,
+            why=clip(one_line(why), 300),
+        )
         console.print(_text(text, "red"), soft_wrap=True)
     if len(said) > _MOST_WHYS:
-        console.print(_text(f"… for {len(said) - _MOST_WHYS} other reasons: see the table.", "red"))
+        console.print(_text(_more_reasons(len(said) - _MOST_WHYS), "red"))
+
+
+def _more_reasons(more: int) -> str:
+    return tell("… for {more} other reasons: see the table.", more=more)
 
 
 def _text(value: str, style: str = "") -> Text:

@@ -11,7 +11,7 @@ from grader.batch.entry import Entry
 from grader.batch.regrade.changes import Change, Difference, Regrade
 from grader.exercise.verdict import Verdict
 from grader.reports.csv import cell
-from grader.reports.wording import word
+from grader.reports.wording import WORDS
 from grader.text import clip, number
 
 HEADER = (
@@ -49,7 +49,7 @@ def _who(entry: Entry) -> list[str]:
 
 def _check(each: Difference) -> list[Any]:
     old, new = (_score(verdict) for verdict in (each.before, each.after))
-    verdicts = [word(v) if v else "" for v in (each.before, each.after)]
+    verdicts = [str(WORDS[v.status]) if v else "" for v in (each.before, each.after)]
     return [cell(each.check or each.title), old, new, number(each.points), *verdicts]
 
 

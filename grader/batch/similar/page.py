@@ -9,9 +9,10 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
-from grader import text
 from grader.batch.similar import compare, fingerprints
 from grader.batch.similar.shown import Class, percent, person, shown
+from grader.language.catalogue import spoken
+from grader.language.telling import tell, tell_many
 from grader.reports.page.compiled import BesideTheTemplates
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -54,7 +55,9 @@ def _environment() -> jinja2.Environment:
     style = of_reports.read_text(encoding="utf-8")
     style += (_TEMPLATES / "similar.css").read_text(encoding="utf-8")
     environment.globals.update(
-        counted=text.count,
+        spoken=spoken,
+        tell=tell,
+        tell_many=tell_many,
         percent=percent,
         style=Markup(style),
         length=fingerprints.LENGTH,

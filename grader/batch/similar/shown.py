@@ -12,6 +12,8 @@ from grader.batch.similar.pair import Likeness, Look, Pair
 from grader.batch.similar.passages import Line, Passage, Place, lines, passages
 from grader.batch.similar.signature import Signature
 from grader.batch.similar.sources import SOURCE, kept
+from grader.language.phrase import say
+from grader.language.telling import number, tell, tell_many
 
 #: Pairs that are shown with their sources, and the lines of all these together.
 MOST_SHOWN: Final = 300
@@ -78,9 +80,9 @@ class Shown:
     passages: tuple[Passage, ...]
 
 
-def person(found: Class, number: int) -> Person:
+def person(found: Class, who: int) -> Person:
     """Whose a hand-in is."""
-    entry = found.entries[number]
+    entry = found.entries[who]
     name = text.clip(text.one_line(text.plain(entry.hand_in.name)), _LONGEST_NAME)
     report = f"submissions/{entry.id}/report.html" if entry.result is not None else ""
     return Person(found.numbers[entry.id], entry.id, name, report)
@@ -106,14 +108,14 @@ def _passages(found: Class, pair: Pair) -> list[Passage]:
     return passages(one, other, found.given, found.look.source_index)
 
 
-def _side(found: Class, number: int, places: list[Place], is_shown: bool) -> Side:
-    signature = found.signatures[number]
-    whose = person(found, number)
+def _side(found: Class, who: int, places: list[Place], is_shown: bool) -> Side:
+    signature = found.signatures[who]
+    whose = person(found, who)
     if signature is None or not is_shown:
         return Side(whose, {})
     names = [file.name for file in signature.files]
     try:
-        files = kept(found.entries[number].folder / SOURCE)
+        files = kept(found.entries[who].folder / SOURCE)
     except OSError:
         files = []
     return Side(whose, lines(names, files, places))
@@ -121,53 +123,75 @@ def _side(found: Class, number: int, places: list[Place], is_shown: bool) -> Sid
 
 def _headline(pair: Pair) -> str:
     if pair.same_content:
-        return "the same files, byte for byte"
+        return tell("the same files, byte for byte")
     if pair.source is not None:
-        return f"{percent(pair.source.share)} of the sources alike"
-    return "the same behaviour"
+        return tell("{share} of the sources alike", share=percent(pair.source.share))
+    return tell("the same behaviour")
 
 
 def _facts(look: Look, size: int, pair: Pair) -> Iterator[Fact]:
     if pair.same_content:
-        yield Fact("What was handed in", "The Python files are the same, byte for byte.", "")
+        same = tell("The Python files are the same, byte for byte.")
+        yield Fact(tell("What was handed in"), same, "")
     if pair.source is not None:
         like = pair.source
-        how = (
-            f"{percent(like.share)} of the shorter one, {percent(like.share_of_both)} of the "
-            f"longer one, by weight: {text.count(like.count, 'fingerprint')} in common beside what "
-            "everybody was given."
+        how = tell_many(
+            "{shorter} of the shorter one, {longer} of the longer one, by weight: {n:,} "
+            "fingerprint in common beside what everybody was given.",
+            "{shorter} of the shorter one, {longer} of the longer one, by weight: {n:,} "
+            "fingerprints in common beside what everybody was given.",
+            like.count,
+            shorter=percent(like.share),
+            longer=percent(like.share_of_both),
         )
-        yield Fact("Sources", how, _usual(look, like))
-    same = f"{percent(pair.equal_commands)} of them are equal, tick by tick"
-    until = f"the first {pair.equal_ticks:,} ticks are the same"
-    usual = _hands(size, pair.commands.hands, "send such commands") if pair.commands else ""
-    yield Fact("Commands", f"{same}; {until}.", usual or "As a whole they are not alike.")
+        yield Fact(tell("Sources"), how, _usual(look, like))
+    how = tell(
+        "{share} of them are equal, tick by tick; the first {ticks:,} ticks are the same.",
+        share=percent(pair.equal_commands),
+        ticks=pair.equal_ticks,
+    )
+    usual = tell("As a whole they are not alike.")
+    if pair.commands:
+        usual = _hands(size, pair.commands.hands, say("send such commands"))
+    yield Fact(tell("Commands"), how, usual)
     if pair.path_mm is not None:
-        how = f"{pair.path_mm / 1000:.3f} m apart, as a mean along the way."
-        yield Fact("Way", how, _hands(size, pair.path_hands, "went as near one of the two"))
+        how = tell("{m:.3f} m apart, as a mean along the way.", m=pair.path_mm / 1000)
+        usual = _hands(size, pair.path_hands, say("went as near one of the two"))
+        yield Fact(tell("Way"), how, usual)
 
 
 def _hands(size: int, hands: int, what: str) -> str:
     if hands <= 2:
-        return f"Of {size:,} hand-ins no others {what}."
-    return f"Of {size:,} hand-ins {hands:,} {what}, these two among them."
+        return tell("Of {size:,} hand-ins no others {what}.", size=size, what=what)
+    return tell(
+        "Of {size:,} hand-ins {hands:,} {what}, these two among them.",
+        size=size,
+        hands=hands,
+        what=what,
+    )
 
 
 def _usual(look: Look, like: Likeness) -> str:
-    said = _of_all(look, like.pairs, "as similar or more")
+    said = _of_all(look, like.pairs)
     if like.pairs == 1:
         return said
     if not like.outside:
-        return f"{said} All of them are in this group."
-    return f"{said} {like.outside:,} of them are outside of this group."
+        return tell("{said} All of them are in this group.", said=said)
+    return tell(
+        "{said} {outside:,} of them are outside of this group.", said=said, outside=like.outside
+    )
 
 
-def _of_all(look: Look, pairs: int, how: str) -> str:
+def _of_all(look: Look, pairs: int) -> str:
+    total = look.pairs_in_all
     if pairs <= 1:
-        return f"Of {look.pairs_in_all:,} pairs in this class no other is {how}."
-    return (
-        f"Of {look.pairs_in_all:,} pairs in this class {pairs:,} are {how}, this one among them "
-        f"({percent(pairs / look.pairs_in_all, 2)})."
+        return tell("Of {total:,} pairs in this class no other is as similar or more.", total=total)
+    return tell(
+        "Of {total:,} pairs in this class {pairs:,} are as similar or more, this one among them "
+        "({share}).",
+        total=total,
+        pairs=pairs,
+        share=percent(pairs / total, 2),
     )
 
 
@@ -175,5 +199,7 @@ def percent(share: float, digits: int = 0) -> str:
     """A share as people write it; what is not all of it is never 100 %."""
     value = f"{100 * share:.{digits}f}"
     if float(value) >= 100 and share < 1:
-        return "more than 99 %"
-    return f"less than {10**-digits:g} %" if share and not float(value) else f"{value} %"
+        return tell("more than {share} %", share="99")
+    if share and not float(value):
+        return tell("less than {share} %", share=number(f"{10**-digits:g}"))
+    return tell("{share} %", share=number(value))

@@ -15,7 +15,7 @@ function filter() {
     row.hidden = !(side && texts[n].includes(wanted));
     number += row.hidden ? 0 : 1;
   });
-  shown.textContent = `${number} of ${rows.length}`;
+  shown.textContent = shown.dataset.words.replace("#", number).replace("#", rows.length);
 }
 
 if (words && which) {
