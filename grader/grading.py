@@ -22,7 +22,6 @@ from grader.diagnosis.diagnose import diagnose
 from grader.errors import GraderFailure, UsageError
 from grader.exercise import DEFAULT, check, early
 from grader.exercise.loading import Exercise, load_exercise
-from grader.language.phrase import say
 from grader.recording import folder as recording_folder
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings
@@ -39,7 +38,7 @@ from grader.submission.private_copy import not_handed_in
 
 Progress = Callable[[float], None]
 AnyPath = str | os.PathLike[str]
-REPEATED = say("repeated, because the first try failed in the grader")
+REPEATED = "repeated, because the first try failed in the grader"
 #: So many runs go at once even on less than two cores: each waits now and then.
 LEAST_AT_ONCE = 2
 #: A run by its number, 0 nominal, 1, 2, ... varied, and what was recorded of it.
@@ -327,15 +326,9 @@ def _record(
     progress: Progress | None,
 ) -> Recordings:
     if time not in RUNNERS:
-        raise UsageError(
-            say(
-                "time: expected one of {runners}, found {time!r}",
-                runners=", ".join(RUNNERS),
-                time=time,
-            )
-        )
+        raise UsageError(f"time: expected one of {', '.join(RUNNERS)}, found {time!r}")
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
-        raise UsageError(say("seed: expected a whole number, found {seed!r}", seed=seed))
+        raise UsageError(f"seed: expected a whole number, found {seed!r}")
     return run_all(submission, exercise, runner(exercise, time), seed=seed, progress=progress)
 
 

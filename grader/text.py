@@ -32,7 +32,8 @@ def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str
     Args:
         keep: those of them that may stay.
     """
-    return _itself(text, _controls_but(keep).sub(lambda _: sign, text))
+    shown, found = _controls_but(keep).subn(lambda _: sign, text)
+    return shown if found else text  # itself: a phrase stays one
 
 
 @cache

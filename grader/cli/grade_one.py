@@ -23,7 +23,8 @@ from grader import files, grading
 from grader.cli import error_file, progress
 from grader.exercise.loading import Exercise, load_exercise
 from grader.grading import Finished
-from grader.language import telling
+from grader.language.phrase import say
+from grader.language.telling import told
 from grader.recording import folder
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
@@ -81,7 +82,8 @@ def _run_and_judge(
     """Run a submission, judge it, and keep its recordings; `held` holds what is written to."""
     messages = Console(stderr=True, highlight=False)
     messages.print(
-        Text(for_terminal(telling.tell("Found: {found}", found=submission.found))), soft_wrap=True
+        Text(for_terminal(told(say("Found: {found}", found=submission.found)))),
+        soft_wrap=True,
     )
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
     if live is not None:
@@ -106,7 +108,7 @@ def _run_and_judge(
     at_once = None if live is None else 1
     with folder.saving(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
         with (
-            progress.shown(messages, telling.tell("running")) as show,
+            progress.shown(messages, told(say("running"))) as show,
             grading.start(submission, plans, runner, show, origin, at_once) as runs,
         ):
             if cores.share() > len(plans):
@@ -120,10 +122,10 @@ def _run_and_judge(
 
 def _how(time: str, is_started: bool) -> str:
     if not is_started:
-        return telling.tell("Looking at it, and starting nothing ...")
+        return told(say("Looking at it, and starting nothing ..."))
     if time == "virtual":
-        return telling.tell("Running it beside a simulator, in virtual time ...")
-    return telling.tell("Running it beside a simulator, in real time ...")
+        return told(say("Running it beside a simulator, in virtual time ..."))
+    return told(say("Running it beside a simulator, in real time ..."))
 
 
 def _kept(

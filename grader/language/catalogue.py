@@ -6,11 +6,11 @@ sentences in the code and compiles what has been translated; docs/languages.md s
 
 from __future__ import annotations
 
+import copy
 import gettext
 import os
 import re
 from collections.abc import Mapping
-from copy import copy
 from functools import cache
 from importlib.resources import as_file, files
 from typing import Final
@@ -64,13 +64,13 @@ def catalogue(language: str) -> gettext.NullTranslations:
 
 
 def knows(language: str, key: str, many: str = "") -> bool:
-    """Whether a catalogue has a sentence, and be it the same as in English: '{seconds:.1f} s'."""
+    """Whether a catalogue has a sentence; one that reads as in English counts, too."""
     found = _with_holes(language)
-    return bool(key) and bool(found.ngettext(key, many, 2) if many else found.gettext(key))
+    return bool(key) and bool(found.ngettext(key, many, 1) if many else found.gettext(key))
 
 
-class _Hole(gettext.NullTranslations):
-    """What is not there, as ''."""
+class _Holes(gettext.NullTranslations):
+    """Answers for what a catalogue does not have."""
 
     def gettext(self, message: str) -> str:
         return ""
@@ -81,6 +81,6 @@ class _Hole(gettext.NullTranslations):
 
 @cache
 def _with_holes(language: str) -> gettext.NullTranslations:
-    found = copy(catalogue(language))
-    found.add_fallback(_Hole())
+    found = copy.copy(catalogue(language))
+    found.add_fallback(_Holes())
     return found

@@ -143,13 +143,13 @@ def fill(key: str, values: Mapping[str, Any], write: Callable[[Any, str], str] =
     return "".join(made)
 
 
+def _kept(phrase: Phrase, text: str) -> str:
+    return phrase if len(text) == len(phrase) else text
+
+
 def like(row: list[Any] | tuple[Any, ...], items: list[Any]) -> Any:
     """A row of the same kind with other items."""
     return type(row)(*items) if hasattr(row, "_fields") else type(row)(items)
-
-
-def _kept(phrase: Phrase, text: str) -> str:
-    return phrase if len(text) == len(phrase) else text
 
 
 def _as_beginning(clause: str) -> str:

@@ -40,21 +40,17 @@ def told(text: str, language: str = "") -> str:
         return catalogue(language).gettext(text) if text else text
     if language in text.words:
         return text.words[language]
-    try:
-        return _told(text, language)
-    except (ValueError, TypeError, LookupError, ArithmeticError):
-        return str(text)  # of a file that somebody has changed: values that are not the key's
-
-
-def _told(text: Phrase, language: str) -> str:
     if text.parts:
         return _close_up("".join(told(part, language) for part in text.parts))
     if not knows(language, text.key, text.many):
         return str(text)
-    found, many = catalogue(language), text.many
-    n = int(text.values["n"]) if many else 0
-    key = found.ngettext(text.key, many, n) if many else found.gettext(text.key)
-    return fill(key, text.values, lambda value, form: _written(value, form, language))
+    found = catalogue(language)
+    try:
+        n = int(text.values.get("n", 0)) if text.many else 0
+        key = found.ngettext(text.key, text.many, n) if text.many else found.gettext(text.key)
+        return fill(key, text.values, lambda value, form: _written(value, form, language))
+    except (ValueError, TypeError, LookupError, ArithmeticError):
+        return str(text)  # of a file that somebody has changed: values that are not the key's
 
 
 def in_language(value: Any, language: str = "") -> Any:
