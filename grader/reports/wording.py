@@ -44,6 +44,15 @@ def word(verdict: Verdict) -> str:
     return told(WORDS[verdict.status])
 
 
+def so_many(status: str, count: int) -> str:
+    """How many verdicts are of a kind: '6 passed'."""
+    if status == "passed":
+        return tell_many("{n} passed", "{n} passed", count)
+    if status == "failed":
+        return tell_many("{n} failed", "{n} failed", count)
+    return tell_many("{n} not judged", "{n} not judged", count)
+
+
 def outcome(key: str) -> str:
     """How a run ended, for people."""
     return told(OUTCOMES.get(key, key))

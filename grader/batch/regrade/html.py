@@ -11,7 +11,7 @@ import jinja2
 from grader.batch.entry import SUBMISSIONS
 from grader.batch.regrade.changes import Regrade
 from grader.batch.regrade.shown import signed, verdicts
-from grader.language.telling import in_language
+from grader.language.telling import in_language, told
 from grader.reports.page import templating
 from grader.result.result import PAGE
 from grader.text import clip, one_line, plain, plain_all
@@ -32,7 +32,7 @@ def render(found: Regrade, to_class: str = "") -> str:
         .get_template("regrade.html")
         .render(
             found=found,
-            title=plain(found.exercise.title),
+            title=plain(told(found.exercise.title)),
             checks=plain_all(in_language(found.of_checks)),
             link=lambda id: (
                 f"{to_class}/{SUBMISSIONS}/{quote(id, safe='')}/{PAGE}" if to_class else ""

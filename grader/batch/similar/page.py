@@ -12,7 +12,7 @@ from markupsafe import Markup
 from grader.batch.similar import compare, fingerprints
 from grader.batch.similar.shown import Class, percent, person, shown
 from grader.language.catalogue import spoken
-from grader.language.telling import tell, tell_many
+from grader.language.telling import tell, tell_many, told
 from grader.reports.page.compiled import BesideTheTemplates
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -29,7 +29,7 @@ def render(found: Class, exercise: str) -> str:
         _environment()
         .get_template("similar.html")
         .render(
-            exercise=exercise,
+            exercise=told(exercise),
             look=look,
             size=len(found.entries),
             pairs=list(shown(found)),

@@ -210,6 +210,7 @@ def _environment() -> jinja2.Environment:
         place=text.place,
         word=wording.word,
         run_name=_name,
+        so_many=wording.so_many,
         clock=wording.clock,
         outcome_word=wording.outcome,
         points=wording.points,
