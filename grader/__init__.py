@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     )
     from grader.exercise.check import Checks, Tolerances
     from grader.exercise.driven_path import DrivenPath
-    from grader.exercise.loading import Exercise, load_exercise
+    from grader.exercise.exercise import Exercise
+    from grader.exercise.loading import load_exercise
     from grader.exercise.verdict import Evidence, Expected, Finding, Verdict
     from grader.grading import grade, judge, load_recordings, record, save_recordings
     from grader.recording.recording import Recording, Recordings
@@ -33,7 +34,8 @@ if TYPE_CHECKING:
 _PUBLIC = {
     "grader.grading": ("grade", "judge", "load_recordings", "record", "save_recordings"),
     "grader.submission.opening": ("open_submission",),
-    "grader.exercise.loading": ("Exercise", "load_exercise"),
+    "grader.exercise.exercise": ("Exercise",),
+    "grader.exercise.loading": ("load_exercise",),
     "grader.exercise.check": ("Checks", "Tolerances"),
     "grader.exercise.driven_path": ("DrivenPath",),
     "grader.exercise.verdict": ("Evidence", "Expected", "Finding", "Verdict"),

@@ -21,7 +21,8 @@ from grader import content, versions
 from grader.diagnosis.diagnose import diagnose
 from grader.errors import GraderFailure, UsageError
 from grader.exercise import DEFAULT, check, early
-from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from grader.recording import folder as recording_folder
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings

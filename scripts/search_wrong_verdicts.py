@@ -25,7 +25,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from grader.exercise.check import judge  # noqa: E402
-from grader.exercise.loading import Exercise, load_exercise  # noqa: E402
+from grader.exercise.exercise import Exercise  # noqa: E402
+from grader.exercise.loading import load_exercise  # noqa: E402
 from grader.recording.recording import Recordings  # noqa: E402
 from grader.testing import drive, pen, twist  # noqa: E402
 from turtlesim_py.world.arena import Arena  # noqa: E402

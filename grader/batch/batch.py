@@ -14,7 +14,7 @@ from grader.batch.hand_in import HandIn
 from grader.batch.store import STUDENTS, Store
 from grader.batch.task import Answer, Task
 from grader.errors import UsageError
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.recording.recording import Clock
 
 #: Does tasks, in any order; `grader.batch.pool.work` with a number of jobs, or a cluster.

@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from grader import files, versions
 from grader.errors import UsageError
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.recording.recording import Clock
 from grader.result import json_file
 

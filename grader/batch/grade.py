@@ -21,7 +21,8 @@ from grader.batch.similar import signature, sources
 from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
 from grader.batch.task import Task
 from grader.errors import SubmissionError, UsageError
-from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
 from grader.reports import Report, render
 from grader.result import json_file

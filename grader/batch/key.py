@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 
 from grader import content, versions
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.recording.recording import Clock
 from grader.submission.folder import MAX_ENTRIES, is_junk
 

@@ -12,7 +12,7 @@ from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
 from grader.batch.store import RUN, SHARED, STUDENTS, Store
 from grader.errors import UsageError
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.text import count
 
 

@@ -14,7 +14,7 @@ from grader.batch.gradebook.write import CSV, Options
 from grader.batch.gradebook.write import write as write_gradebook
 from grader.batch.page import html
 from grader.batch.similar import look
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.language.telling import tell
 from grader.result.visible import View
 

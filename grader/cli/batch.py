@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
     from grader.batch.find import Found
     from grader.batch.store import Store
-    from grader.exercise.loading import Exercise
+    from grader.exercise.exercise import Exercise
     from grader.result.visible import View
 
 JUDGED, GRADER_FAILED = 0, 3

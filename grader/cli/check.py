@@ -14,7 +14,9 @@ from grader.cli.place import Place, find
 from grader.cli.run import points
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.exercise.loading import Exercise, load_exercise, names
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
+from grader.exercise.places import names
 from grader.language.phrase import say
 from grader.language.telling import tell
 from grader.recording.folder import WINDOW_PICTURE, load_all

@@ -21,7 +21,8 @@ from rich.text import Text
 
 from grader import files, grading
 from grader.cli import error_file, progress
-from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from grader.grading import Finished
 from grader.language.phrase import say
 from grader.language.telling import told

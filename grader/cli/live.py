@@ -20,7 +20,7 @@ from rich.text import Text
 from grader import system
 from grader import text as texts
 from grader.errors import UsageError
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.language.phrase import Phrase, say
 from grader.language.telling import tell
 from grader.recording.recording import Clock

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from grader.exercise.sheet import Start, sheet
 from grader.language.phrase import say
 from grader.language.telling import tell

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from grader.exercise.check import Check
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.language import telling
 from grader.language.phrase import joined, say
 from grader.language.telling import tell

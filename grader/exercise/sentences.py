@@ -120,7 +120,7 @@ def not_followed(origin: Provenance | None, conditions: Mapping[str, float]) -> 
 
     Args:
         origin: the nominal recording's; None where it does not tell.
-        conditions: see `grader.exercise.loading.Exercise`.
+        conditions: see `grader.exercise.exercise.Exercise`.
     """
     told = {} if origin is None else origin.conditions
     then = {**_OFF, **told} if told else {}

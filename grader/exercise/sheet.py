@@ -17,8 +17,8 @@ import yaml
 
 from grader.exercise import rubric
 from grader.exercise.check import Check
+from grader.exercise.exercise import Exercise
 from grader.exercise.late import LatePolicy
-from grader.exercise.loading import Exercise
 from grader.exercise.places import DESCRIPTION
 from grader.language.catalogue import spoken
 from grader.language.phrase import chained, joined, say

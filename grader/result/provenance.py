@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Self
 
 from grader import versions
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Recordings
 
@@ -19,7 +19,7 @@ class Judged:
     Attributes:
         date: as `grader.recording.provenance.now` writes it.
         grader: its version.
-        exercise_sha256: see `grader.exercise.loading.Exercise`.
+        exercise_sha256: see `grader.exercise.exercise.Exercise`.
     """
 
     date: str

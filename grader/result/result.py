@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from grader import files
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
 from grader.language import stored

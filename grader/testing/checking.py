@@ -8,7 +8,8 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from grader.diagnosis.diagnose import diagnose
-from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from grader.grading import AnyPath, run_all, runner
 from grader.recording.recording import Recordings
 from grader.scratch import make_folder

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Final
 
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.recording.recording import Recordings
 from grader.scenes.turtlesim.driving import Controller, pen, twist
 from grader.scenes.turtlesim.trace import FIRST_TURTLE

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.exercise.asking import Asked, NoFinding
 from grader.exercise.check import judge_by
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.exercise.places import describe
 from grader.exercise.verdict import Evidence, Finding, Verdict
 from grader.limited import LimitHit

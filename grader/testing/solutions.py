@@ -39,7 +39,7 @@ from typing import Any, Literal
 
 from grader.errors import ExerciseError
 from grader.exercise import places
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.exercise.yaml_file import Keys, Mistake, read_yaml
 from grader.testing.changes import MADE, Change, changed, lay_out, read
 

@@ -19,7 +19,7 @@ from grader.batch.entry import Entry
 from grader.batch.page import clusters, figures
 from grader.batch.page.students import STATES, Student, evenly, students
 from grader.batch.page.thumb import EDGE_PX, UNITS, Thumb
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.language.telling import tell, told
 from grader.reports.page import templating
 from grader.scenes import load_scene

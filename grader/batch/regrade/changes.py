@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from grader.batch.entry import Entry
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.exercise.verdict import Verdict
 from grader.language.telling import tell, tell_many, told
 from grader.reports.wording import points, title_of

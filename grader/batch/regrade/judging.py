@@ -15,7 +15,8 @@ from grader.batch.regrade.changes import Change, Failure, Regrade, compared, is_
 from grader.batch.store import STUDENTS, Store
 from grader.batch.task import Answer, Task
 from grader.errors import UsageError
-from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from grader.exercise.sentences import not_followed
 from grader.removal import remove
 

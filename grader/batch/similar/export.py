@@ -28,7 +28,7 @@ from grader.batch.entry import Entry
 from grader.batch.similar import known
 from grader.batch.similar.sources import SOURCE, File, kept
 from grader.errors import UsageError
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 
 FOLDER: Final = "export"
 JPLAG, DOLOS = "jplag", "dolos.zip"

@@ -15,7 +15,7 @@ from grader.batch.similar import fingerprints
 from grader.batch.similar.sources import File
 from grader.batch.similar.syntax import units
 from grader.errors import ExerciseError
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 from grader.submission.python_source import parse
 from grader.testing.solutions import FILE_NAME, read_solutions
 

@@ -20,7 +20,7 @@ from grader.batch.similar.compare import compare
 from grader.batch.similar.pair import HandedIn, Look, Pair
 from grader.batch.similar.shown import Class
 from grader.batch.similar.signature import Signature
-from grader.exercise.loading import Exercise
+from grader.exercise.exercise import Exercise
 
 PAGE: Final = "similar.html"
 LINES: Final = "similar.jsonl"

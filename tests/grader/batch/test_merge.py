@@ -15,7 +15,8 @@ from grader.batch.entry import SUBMISSIONS, entries
 from grader.batch.merge import merge
 from grader.batch.store import Store
 from grader.errors import UsageError
-from grader.exercise.loading import Exercise, load_exercise
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
 from tests.grader.batch.classes import Class, told
 
 PARTS = ("1/2", "2/2")

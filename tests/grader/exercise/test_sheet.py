@@ -6,7 +6,8 @@ import pytest
 import yaml
 
 from grader.errors import ExerciseError
-from grader.exercise.loading import load_exercise, names
+from grader.exercise.loading import load_exercise
+from grader.exercise.places import names
 from grader.exercise.rubric import in_force
 from grader.exercise.sheet import Start, sheet
 from grader.scenes import load_scene

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from grader.exercise.loading import load_exercise, names
+from grader.exercise.loading import load_exercise
+from grader.exercise.places import names
 from grader.recording.recording import Recordings
 from grader.testing import drive
 from grader.testing.oddities import odd_recordings

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from grader.errors import ExerciseError
-from grader.exercise.loading import load_exercise, names
+from grader.exercise.loading import load_exercise
+from grader.exercise.places import names
 from grader.testing.solutions import read_solutions
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import MUTANTS

@@ -1,0 +1,138 @@
+"""What an exercise is, when it has been loaded."""
+
+from __future__ import annotations
+
+import hashlib
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, TypedDict
+
+from grader.exercise.check import Checks
+from grader.exercise.late import LatePolicy
+from grader.exercise.verdict import Visible
+from grader.scenes import load_scene
+from grader.scenes.scene import Limits, Start
+
+#: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
+LOOKS = "looks_at_package"
+#: ... and, of `varied_runs`, whether they start elsewhere for each student.
+PER_STUDENT = "per_student"
+
+
+class Opening(TypedDict, total=False):
+    """Arguments of `grader.submission.opening.open_submission`."""
+
+    is_started: bool
+    usual: str
+
+
+@dataclass(frozen=True)
+class VariedRuns:
+    """Further runs that start elsewhere: how many, and how far from the centre [m].
+
+    Attributes:
+        per_student: whether they start elsewhere for each student of a class.
+    """
+
+    count: int = 0
+    seed: int = 0
+    nearest_m: float = 0.0
+    farthest_m: float = 0.0
+    per_student: bool = False
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """What is asked and how it is weighed.
+
+    Attributes:
+        name: as `--exercise` takes it, and as a result names it.
+        title: what a student reads; as the task a phrase, which may have words of other languages.
+        task: what is to be done, in Markdown; '' where the title says it all.
+        limits: when a run ends; `NO_LIMITS` where nothing is started.
+        varied: further runs that start elsewhere.
+        points: check name -> points, in the order of the report.
+        tolerances: what the checks may read; their names are the checks' own business.
+        checks: the exercise's check functions.
+        visible: check name -> what students see of it; all of those that are not named.
+        late: what it costs to hand in late; None where nothing is said of that.
+        explained: tolerance -> language -> what it is, for the sheet.
+        scene: the name of what runs beside the submission.
+        setting: the text of the file that it is set up with; '' for none.
+        looks_at_package: whether the package around what is started is looked at as well.
+        program: what is started of several that were handed in; '' for the usual one.
+        folder: where its files are.
+        starter: the folder that `grader new` copies; None where there is none.
+        sha256: of all that it judges by: the values of exercise.yaml, as they are in force, the
+            setting, and the Python files beside it.
+    """
+
+    name: str
+    title: str
+    limits: Limits
+    varied: VariedRuns
+    points: Mapping[str, float]
+    tolerances: Mapping[str, Any]
+    checks: Checks
+    scene: str = "turtlesim"
+    setting: str = ""
+    looks_at_package: bool = False
+    program: str = ""
+    folder: Path = Path()
+    starter: Path | None = None
+    sha256: str = ""
+    task: str = ""
+    visible: Mapping[str, Visible] = field(default_factory=dict)
+    late: LatePolicy | None = None
+    explained: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    @property
+    def is_started(self) -> bool:
+        """Whether something of a submission is started; else it is only looked at."""
+        return not load_scene(self.scene).examiner
+
+    @property
+    def opening(self) -> Opening:
+        """How a submission to it is opened."""
+        opening: Opening = {"is_started": self.is_started}
+        if self.program:
+            opening["usual"] = self.program
+        return opening
+
+    @property
+    def conditions(self) -> dict[str, float]:
+        """What only a run can follow: a recording that was made with other values keeps them."""
+        if not self.is_started:
+            return {}
+        parts = {"limits": asdict(self.limits), "varied_runs": asdict(self.varied)}
+        if parts["varied_runs"].pop(PER_STUDENT):
+            parts["varied_runs"][PER_STUDENT] = 1
+        looks = {LOOKS: 1.0} if self.looks_at_package else {}
+        each = {f"{part}.{key}": v for part, values in parts.items() for key, v in values.items()}
+        return {**each, **looks}
+
+    @property
+    def max_score(self) -> float:
+        """The sum of all points."""
+        return round(sum(self.points.values()), 2)
+
+    def seed_for(self, student_id: str) -> int | None:
+        """What chooses where a student's varied runs start; None: they start as everybody's.
+
+        It is made of the exercise's own seed and the student's id, and of nothing else: the same
+        each time, on any machine, however a file system writes the letters of the id.
+        """
+        if not self.varied.per_student:
+            return None
+        told = f"{self.varied.seed} {unicodedata.normalize('NFC', student_id)}"
+        digest = hashlib.sha256(told.encode("utf-8", "surrogatepass")).digest()
+        return int.from_bytes(digest[:4], "big")
+
+    def starts(self, seed: int | None = None) -> list[Start]:
+        """Where the varied runs start; None takes the exercise's own seed. See `seed_for`."""
+        varied = self.varied
+        used = varied.seed if seed is None else seed
+        scene = load_scene(self.scene)
+        return scene.starts(varied.count, used, varied.nearest_m, varied.farthest_m)
