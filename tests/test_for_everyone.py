@@ -11,10 +11,13 @@ import pytest
 
 from grader.batch.entry import entries
 from grader.batch.page import html as class_page
+from grader.batch.regrade import html as regrade_page
+from grader.batch.regrade.changes import Failure, Regrade, compared
 from grader.batch.similar import look
 from grader.exercise.loading import load_exercise
-from grader.reports import Report
+from grader.reports import ErrorReport, Report
 from grader.reports.page import html
+from grader.result.error import ErrorResult
 from grader.scenes.robot.driving import drive as drive_robot
 from tests.browser import needs_browser, obstacles, open_browser
 from tests.grader.batch.page.classes import entry, result
@@ -72,6 +75,29 @@ def page_of_what_is_alike(folder) -> str:
     return (folder / look.PAGE).read_text(encoding="utf-8")
 
 
+def page_of_a_regrade(folder) -> str:
+    before = [entry(id, result({"moves": 10.0}), name=id.title()) for id in ("zoe17", "bob18")]
+    after = [entry(id, result({"moves": 4.0}, "Too slow."), name=id.title()) for id in ("zoe17",)]
+    change = compared(before[0], after[0])
+    assert change is not None
+    challenge = load_exercise("turtlesim_challenge")
+    failure = Failure(before[1], "its recording is damaged")
+    found = Regrade(
+        *(folder, challenge, "changed.yaml", tuple(before)),
+        (change,),
+        (),
+        (failure,),
+        1,
+        ("A note.",),
+    )
+    return regrade_page.render(found, "../..")
+
+
+def page_without_a_result(folder) -> str:
+    error = ErrorResult("submission", "Found no .py file; hand in one.", 100)
+    return html.render_error(ErrorReport(error, folder))
+
+
 @pytest.fixture(scope="module")
 def browser():
     with open_browser() as opened:
@@ -87,6 +113,8 @@ def browser():
         report_of_a_package,
         page_of_a_class,
         page_of_what_is_alike,
+        page_of_a_regrade,
+        page_without_a_result,
     ],
     ids=lambda made: made.__name__,
 )
