@@ -23,7 +23,7 @@ from grader.errors import GraderFailure, UsageError
 from grader.exercise import DEFAULT, check, early
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.recording import folder as recording_folder
+from grader.recording import reading, saving
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
@@ -156,7 +156,7 @@ def load_recordings(folder: AnyPath) -> Recordings:
     Raises:
         RecordingError: there are none that can be judged.
     """
-    return recording_folder.load_all(Path(folder))
+    return reading.load_all(Path(folder))
 
 
 def save_recordings(recordings: Recordings, folder: AnyPath) -> None:
@@ -165,7 +165,7 @@ def save_recordings(recordings: Recordings, folder: AnyPath) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    recording_folder.save_all(recordings, Path(folder))
+    saving.save_all(recordings, Path(folder))
 
 
 def run_all(

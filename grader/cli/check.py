@@ -19,8 +19,9 @@ from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
 from grader.language.phrase import say
 from grader.language.telling import tell
-from grader.recording.folder import WINDOW_PICTURE, load_all
+from grader.recording.folder import WINDOW_PICTURE
 from grader.recording.provenance import Provenance
+from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.reports import Report
 from grader.result.result import FAMILY, PAGE, RESULT, Result

@@ -26,7 +26,7 @@ from grader.exercise.loading import load_exercise
 from grader.grading import Finished
 from grader.language.phrase import say
 from grader.language.telling import told
-from grader.recording import folder
+from grader.recording import saving
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
 from grader.run.processes import cores
@@ -107,7 +107,7 @@ def _run_and_judge(
 
     runner = grading.runner(exercise, args.time, live)
     at_once = None if live is None else 1
-    with folder.saving(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
+    with saving.into(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
         with (
             progress.shown(messages, told(say("running"))) as show,
             grading.start(submission, plans, runner, show, origin, at_once) as runs,
@@ -130,7 +130,7 @@ def _how(time: str, is_started: bool) -> str:
 
 
 def _kept(
-    runs: Iterable[Finished], count: int, unsaved: folder.Unsaved, tell: Callable[[Recording], None]
+    runs: Iterable[Finished], count: int, unsaved: saving.Unsaved, tell: Callable[[Recording], None]
 ) -> Iterator[Finished]:
     """Do with each run what can be done before the others are over."""
     from grader.reports.page import html

@@ -11,7 +11,7 @@ from grader.cli.place import Place, find
 from grader.errors import UsageError
 from grader.language.phrase import say
 from grader.language.telling import tell
-from grader.recording.folder import load_all
+from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.reports import Report, playback
 from grader.result.result import ARTIFACTS, PAGE, RESULT

@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from grader.errors import RecordingError
-from grader.recording import folder as storage
+from grader.recording import folder, reading
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import Result
 from grader.text import plain_all
@@ -40,7 +40,7 @@ class Beside:
     def scene(self) -> str:
         """The name of what ran beside the submission; the first there was, where nothing tells."""
         base = self._artifact("recording")
-        return storage.FIRST_SCENE if base is None else storage.scene_of(base)
+        return folder.FIRST_SCENE if base is None else reading.scene_of(base)
 
     @cached_property
     def recordings(self) -> Mapping[int, Recording | str]:
@@ -51,7 +51,7 @@ class Beside:
         loaded: dict[int, Recording | str] = {}
         for run in range(self._runs):
             try:
-                loaded[run] = storage.load(base / f"varied_{run}" if run else base)
+                loaded[run] = reading.load(base / f"varied_{run}" if run else base)
             except RecordingError as error:
                 loaded[run] = error.message
         return loaded

@@ -17,7 +17,7 @@ from grader import files, grading
 from grader.cli import main
 from grader.cli.grade_one import grade, out_of
 from grader.errors import GraderFailure, UsageError
-from grader.recording import folder
+from grader.recording import reading
 from grader.reports.page import html
 from tests.grader.driving import Spiral, drive
 
@@ -96,7 +96,7 @@ def test_without_watch_there_is_one_table(call, in_turn, capsys):
 
 def test_recordings_are_complete_and_in_order_whichever_run_ends_first(call, in_turn, tmp_path):
     assert grade(call()) == 0
-    loaded = folder.load_all(tmp_path / "out" / "recording")
+    loaded = reading.load_all(tmp_path / "out" / "recording")
     starts = [recording.start for recording in loaded]
     assert starts[0] is None
     assert starts[1:] == list(grading.load_exercise("turtlesim_challenge").starts())

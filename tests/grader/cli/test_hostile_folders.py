@@ -11,7 +11,7 @@ import pytest
 from grader import files, grading
 from grader.cli import main
 from grader.errors import UsageError
-from grader.recording import folder
+from grader.recording import reading
 from tests.grader.driving import Spiral, drive
 
 MINE = "mine, and no student's\n"
@@ -91,7 +91,7 @@ def test_no_recording_is_written_through_a_link(repository, secret, name):
     link.symlink_to(secret.parent, target_is_directory=True)
     assert main(["run", "node.py", "--out", "graded"]) == 0
     assert [path.name for path in secret.parent.iterdir()] == [secret.name]
-    assert len(folder.load_all(repository / "graded" / "recording").varied) == 2
+    assert len(reading.load_all(repository / "graded" / "recording").varied) == 2
 
 
 @pytest.mark.parametrize("words", [["--out", "graded"], []])

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from grader.cli import main
-from grader.recording import folder as storage
+from grader.recording import saving
 from grader.recording.recording import Recordings
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
@@ -69,7 +69,7 @@ def test_what_students_do_not_see_is_in_no_page_of_theirs(graded):
 
 
 def test_a_recording_without_a_result_is_played_without_verdicts(tmp_path, drawn):
-    storage.save_all(Recordings(drawn), tmp_path / "mine")
+    saving.save_all(Recordings(drawn), tmp_path / "mine")
     assert main(["view", str(tmp_path / "mine"), "--no-open", "--out", str(tmp_path / "p")]) == 0
     data = shown(tmp_path / "p")
     assert (data["title"], data["judged"]) == ("mine", [])
@@ -78,7 +78,7 @@ def test_a_recording_without_a_result_is_played_without_verdicts(tmp_path, drawn
 
 def test_two_are_compared(graded, tmp_path):
     other = drive(Spiral(), ticks=20)
-    storage.save_all(Recordings(other), tmp_path / "other")
+    saving.save_all(Recordings(other), tmp_path / "other")
     assert main(["view", str(graded), "--no-open", "--compare", str(tmp_path / "other")]) == 0
     compared = shown(graded / "view.html")["other"]
     assert [run["last"] for run in compared["runs"]] == [20]

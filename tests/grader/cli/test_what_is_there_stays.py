@@ -7,7 +7,7 @@ import json
 import pytest
 
 from grader.cli import main
-from grader.recording import folder as storage
+from grader.recording import saving
 from grader.recording.recording import Recordings
 from grader.result.result import Result
 from tests.grader.driving import Spiral, drive
@@ -28,7 +28,7 @@ def here(tmp_path, monkeypatch):
     (tmp_path / "rr.json").write_text(json.dumps(samples.result()))
     error = {"schema": "turtlesim-grader/error/v1", "whose": "call", "message": "", "max_score": 1}
     (tmp_path / "error.json").write_text(json.dumps(error))
-    storage.save_all(Recordings(drive(Spiral(), ticks=10)), tmp_path / "recording")
+    saving.save_all(Recordings(drive(Spiral(), ticks=10)), tmp_path / "recording")
     return tmp_path
 
 

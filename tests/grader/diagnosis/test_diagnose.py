@@ -12,8 +12,9 @@ from grader.diagnosis.diagnose import diagnose
 from grader.diagnosis.diagnosis import CHECK
 from grader.exercise.verdict import Evidence, Verdict
 from grader.recording.conduct import Conduct, Place, Raised, SlipKind, Slow, Stop
-from grader.recording.folder import load_all, save_all
+from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
+from grader.recording.saving import save_all
 from grader.text import one_line
 from tests.grader.diagnosis.cases import LINE, run_of, said
 

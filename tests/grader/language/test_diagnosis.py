@@ -10,7 +10,7 @@ from grader.diagnosis.diagnose import diagnose
 from grader.errors import SubmissionError
 from grader.language.phrase import Phrase, say
 from grader.language.telling import told
-from grader.recording import folder, remarks
+from grader.recording import reading, remarks, saving
 from grader.recording.recording import Recordings
 from grader.run import finish, static, virtual_time
 from grader.run.lockstep.faults import failed
@@ -79,7 +79,7 @@ def test_a_refusal_comes_out_of_the_readers_process_as_a_phrase(tmp_path):
 
 def test_notes_on_a_submission_are_phrases_in_a_recording_that_was_saved(tmp_path):
     note = say("other programs were not started: {names}", names="a.py, b.py")
-    folder.save_all(Recordings(run_of(flags=(note, "somebody else's"))), tmp_path)
-    (first, second) = folder.load_all(tmp_path).nominal.run.flags
+    saving.save_all(Recordings(run_of(flags=(note, "somebody else's"))), tmp_path)
+    (first, second) = reading.load_all(tmp_path).nominal.run.flags
     assert isinstance(first, Phrase)
     assert (first.key, second) == (note.key, "somebody else's")

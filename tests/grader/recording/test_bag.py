@@ -15,8 +15,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from grader.recording import bag
-from grader.recording import folder as storage
+from grader.recording import bag, saving
 from grader.recording.recording import Recording
 from grader.recording.rosbag2_writer import Rosbag2Writer
 from grader.scenes import load_scene
@@ -62,7 +61,7 @@ def recorded() -> Recording:
 @pytest.fixture(scope="module")
 def folder(recorded, tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("bag") / "recording"
-    storage.save(recorded, folder)
+    saving.save(recorded, folder)
     return folder
 
 

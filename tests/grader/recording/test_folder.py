@@ -15,9 +15,9 @@ from rosbags.typesys import Stores, get_typestore
 
 from grader import cli
 from grader.errors import RecordingError
-from grader.recording import bag
-from grader.recording import folder as storage
+from grader.recording import bag, reading, saving
 from grader.recording.conduct import Conduct, End, Place, Stop
+from grader.recording.folder import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA, sha256_of
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.package.trace import PackageTrace
@@ -42,7 +42,7 @@ def recorded() -> Recording:
 
 @pytest.fixture
 def folder(recorded, tmp_path):
-    storage.save(recorded, tmp_path / "recording")
+    saving.save(recorded, tmp_path / "recording")
     return tmp_path / "recording"
 
 
@@ -68,27 +68,27 @@ def change(path: Path, **values) -> None:
 
 def test_two_saves_of_a_recording_are_the_same_byte_for_byte(recorded, tmp_path):
     for name in ("one", "two"):
-        storage.save_all(Recordings(recorded, (recorded,)), tmp_path / name)
+        saving.save_all(Recordings(recorded, (recorded,)), tmp_path / name)
     assert contents(tmp_path / "one") == contents(tmp_path / "two")
 
 
 def test_equal_runs_make_equal_files(recorded, folder, tmp_path):
     again = replace(drive(Spiral(), ticks=600), conduct=CONDUCT, package=PACKAGE)
-    storage.save(again, tmp_path / "again")
+    saving.save(again, tmp_path / "again")
     assert contents(tmp_path / "again") == contents(folder)
 
 
 def test_a_loaded_recording_saves_as_the_same_files(folder, tmp_path):
-    storage.save(storage.load(folder), tmp_path / "again")
+    saving.save(reading.load(folder), tmp_path / "again")
     assert contents(tmp_path / "again") == contents(folder)
 
 
 def test_what_differs_between_equal_runs_stands_apart(recorded, folder, tmp_path):
     other = replace(recorded, run=replace(recorded.run, wall_s=12.5, isolation="ROS domain 77"))
-    storage.save(other, tmp_path / "other")
+    saving.save(other, tmp_path / "other")
     ours, theirs = contents(folder), contents(tmp_path / "other")
     assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
-    assert storage.load(tmp_path / "other").run == other.run
+    assert reading.load(tmp_path / "other").run == other.run
 
 
 PROVENANCE = Provenance(
@@ -107,11 +107,11 @@ PROVENANCE = Provenance(
 
 
 def test_where_it_comes_from_is_a_circumstance_and_comes_back(recorded, folder, tmp_path):
-    storage.save(replace(recorded, provenance=PROVENANCE), tmp_path / "other")
+    saving.save(replace(recorded, provenance=PROVENANCE), tmp_path / "other")
     ours, theirs = contents(folder), contents(tmp_path / "other")
     assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
-    assert storage.load(tmp_path / "other").provenance == PROVENANCE
-    assert storage.load(folder).provenance is None
+    assert reading.load(tmp_path / "other").provenance == PROVENANCE
+    assert reading.load(folder).provenance is None
 
 
 @pytest.mark.parametrize(
@@ -124,13 +124,13 @@ def test_a_damaged_origin_is_refused(recorded, folder, change):
 
 def test_a_recording_can_do_without_its_circumstances(recorded, folder):
     (folder / CIRCUMSTANCES).unlink()
-    assert storage.load(folder).run == recorded.run
+    assert reading.load(folder).run == recorded.run
 
 
 def test_pictures_and_scenario_are_copies_that_nobody_reads(recorded, folder):
     for name in ("path.png", "window.png", "scenario.json"):
         (folder / name).unlink()
-    assert (storage.load(folder).trace.canvas == recorded.trace.canvas).all()
+    assert (reading.load(folder).trace.canvas == recorded.trace.canvas).all()
 
 
 # Whole or not at all --------------------------------------------------------------------------
@@ -139,12 +139,12 @@ def test_pictures_and_scenario_are_copies_that_nobody_reads(recorded, folder):
 def test_the_metadata_comes_last(recorded, folder, monkeypatch):
     rename, moved = Path.replace, []
     monkeypatch.setattr(Path, "replace", lambda a, b: moved.append(b.name) or rename(a, b))
-    storage.save(recorded, folder)
+    saving.save(recorded, folder)
     assert moved[-1] == "metadata.yaml"
 
 
 # a turtle's window is its plan
-@pytest.mark.parametrize("stop_at", [name for name in storage.FILES if name != "plan.png"])
+@pytest.mark.parametrize("stop_at", [name for name in FILES if name != "plan.png"])
 def test_a_save_that_is_cut_off_leaves_no_recording(recorded, tmp_path, monkeypatch, stop_at):
     rename = Path.replace
 
@@ -155,10 +155,10 @@ def test_a_save_that_is_cut_off_leaves_no_recording(recorded, tmp_path, monkeypa
 
     monkeypatch.setattr(Path, "replace", cut_off)
     with pytest.raises(OSError, match="no space left"):
-        storage.save_all(Recordings(recorded, (recorded,)), tmp_path)
+        saving.save_all(Recordings(recorded, (recorded,)), tmp_path)
     with pytest.raises(RecordingError):
-        storage.load_all(tmp_path)
-    assert not (tmp_path / storage.UNFINISHED).exists()
+        reading.load_all(tmp_path)
+    assert not (tmp_path / saving.UNFINISHED).exists()
 
 
 def test_an_older_recording_stays_whole_until_the_new_one_is_written(recorded, folder, monkeypatch):
@@ -169,25 +169,25 @@ def test_an_older_recording_stays_whole_until_the_new_one_is_written(recorded, f
 
     monkeypatch.setattr(bag, "write", disk_full)
     with pytest.raises(OSError, match="no space left"):
-        storage.save(recorded, folder)
+        saving.save(recorded, folder)
     assert contents(folder) == before
 
 
 def test_nothing_of_an_older_one_changes_before_the_new_ones_are_put_in_place(recorded, tmp_path):
-    storage.save_all(Recordings(recorded, (recorded,) * 2), tmp_path)
+    saving.save_all(Recordings(recorded, (recorded,) * 2), tmp_path)
     before = contents(tmp_path)
     newer = drive(Spiral(), ticks=50)
-    with storage.saving(tmp_path, 1) as unsaved:
+    with saving.into(tmp_path, 1) as unsaved:
         for number in (1, 0):  # as they come
             unsaved.write(number, newer)
         outside = {path: data for path, data in contents(tmp_path).items() if path in before}
         assert outside == before
         unsaved.put()
-    assert [r.run.ticks for r in storage.load_all(tmp_path)] == [newer.run.ticks] * 2
+    assert [r.run.ticks for r in reading.load_all(tmp_path)] == [newer.run.ticks] * 2
 
 
 def test_what_is_never_put_in_place_leaves_nothing(recorded, tmp_path):
-    with pytest.raises(KeyboardInterrupt), storage.saving(tmp_path / "new", 0) as unsaved:
+    with pytest.raises(KeyboardInterrupt), saving.into(tmp_path / "new", 0) as unsaved:
         unsaved.write(0, recorded)
         raise KeyboardInterrupt
     assert not (tmp_path / "new").exists()
@@ -195,17 +195,17 @@ def test_what_is_never_put_in_place_leaves_nothing(recorded, tmp_path):
 
 def test_what_a_killed_save_left_behind_goes_with_the_next(recorded, folder):
     before = contents(folder)
-    (folder / storage.UNFINISHED / "recording").mkdir(parents=True)
-    (folder / storage.UNFINISHED / "recording" / "metadata.yaml").write_text("half of it")
-    storage.save(recorded, folder)
+    (folder / saving.UNFINISHED / "recording").mkdir(parents=True)
+    (folder / saving.UNFINISHED / "recording" / "metadata.yaml").write_text("half of it")
+    saving.save(recorded, folder)
     assert contents(folder) == before
 
 
 def test_a_new_recording_replaces_an_older_one_and_nothing_else(recorded, tmp_path):
-    storage.save_all(Recordings(drive(Spiral(), ticks=100), (recorded,) * 3), tmp_path)
+    saving.save_all(Recordings(drive(Spiral(), ticks=100), (recorded,) * 3), tmp_path)
     (tmp_path / "notes.txt").write_text("mine")
-    storage.save_all(Recordings(recorded, (recorded,)), tmp_path)
-    loaded = storage.load_all(tmp_path)
+    saving.save_all(Recordings(recorded, (recorded,)), tmp_path)
+    loaded = reading.load_all(tmp_path)
     assert loaded.nominal.run == recorded.run
     assert len(loaded.varied) == 1
     assert (tmp_path / "notes.txt").read_text() == "mine"
@@ -217,7 +217,7 @@ def test_a_new_recording_replaces_an_older_one_and_nothing_else(recorded, tmp_pa
 def refused(folder: Path) -> str:
     """The text of the error, which the command line prints with exit code 2."""
     with pytest.raises(RecordingError) as error:
-        storage.load_all(folder)
+        reading.load_all(folder)
     assert cli.main(["check", str(folder)]) == cli.UNUSABLE
     return str(error.value)
 
@@ -246,7 +246,7 @@ def test_a_missing_file_is_named(folder, name):
 def test_garbage_is_an_error_and_no_traceback(folder, name, content):
     (folder / name).write_bytes(content)
     if (name, content) == (CIRCUMSTANCES, b"{}"):
-        storage.load(folder)
+        reading.load(folder)
     else:
         refused(folder)
 
@@ -274,9 +274,9 @@ def test_a_damaged_bag_whose_digest_fits_is_an_error_or_harmless(folder, place):
     start = len(whole) * place // 100
     whole[start : start + 9] = b"\xff" * 9
     path.write_bytes(whole)
-    change(folder / "run.json", bag_sha256=storage._sha256(path))
+    change(folder / "run.json", bag_sha256=sha256_of(path))
     try:
-        storage.load(folder)
+        reading.load(folder)
     except RecordingError as error:
         assert str(folder) in str(error)
 
@@ -285,7 +285,7 @@ def test_the_version_is_checked(folder):
     change(folder / "run.json", schema="turtlesim-grader/recording/v99")
     text = refused(folder)
     assert "recording/v99" in text
-    assert storage.SCHEMA in text
+    assert SCHEMA in text
 
 
 @pytest.mark.parametrize(
@@ -341,11 +341,11 @@ def test_a_scene_that_is_not_known_is_named(folder):
 
 def test_the_usual_scene_may_be_named(recorded, folder):
     change(folder / "run.json", scene="turtlesim")
-    assert storage.load(folder).scene == recorded.scene == "turtlesim"
+    assert reading.load(folder).scene == recorded.scene == "turtlesim"
 
 
 def test_a_lost_varied_run_is_named(recorded, tmp_path):
-    storage.save_all(Recordings(recorded, (recorded, recorded)), tmp_path)
+    saving.save_all(Recordings(recorded, (recorded, recorded)), tmp_path)
     (tmp_path / "varied_2").rename(tmp_path / "elsewhere")
     assert "varied_2 is missing" in refused(tmp_path)
 
@@ -370,7 +370,7 @@ def test_a_bag_of_the_right_name_with_other_messages_is_an_error(folder, tmp_pat
     foreign_bag(other, StoragePlugin.MCAP, "/turtlesim/events", "std_msgs/msg/String", text)
     for name in ("recording.mcap", "metadata.yaml"):
         (other / name).replace(folder / name)
-    change(folder / "run.json", bag_sha256=storage._sha256(folder / "recording.mcap"))
+    change(folder / "run.json", bag_sha256=sha256_of(folder / "recording.mcap"))
     assert "holds no recording" in refused(folder)
 
 
@@ -392,16 +392,16 @@ def test_a_bag_that_unpacks_to_more_than_there_is_room_for_is_refused(
     recorded, tmp_path, monkeypatch
 ):
     bomb = replace(recorded.trace, logs=(Log(1, "INFO", "bomb", "a" * 2**27),))
-    storage.save(replace(recorded, trace=bomb), tmp_path)
-    assert (tmp_path / storage.BAG).stat().st_size < 2**20
-    brief = replace(storage.READING, memory_bytes=2**26)
-    monkeypatch.setattr(storage, "READING", brief)
+    saving.save(replace(recorded, trace=bomb), tmp_path)
+    assert (tmp_path / BAG).stat().st_size < 2**20
+    brief = replace(reading.READING, memory_bytes=2**26)
+    monkeypatch.setattr(reading, "READING", brief)
     with pytest.raises(RecordingError, match=r"cannot .*read.*[Mm]emory"):
-        storage.load(tmp_path)
+        reading.load(tmp_path)
 
 
 def test_a_reader_that_comes_to_no_end_is_told(folder, monkeypatch):
-    monkeypatch.setattr(storage, "READING", replace(storage.READING, cpu_s=0.3))
+    monkeypatch.setattr(reading, "READING", replace(reading.READING, cpu_s=0.3))
 
     def read(*_):
         while True:
@@ -409,25 +409,25 @@ def test_a_reader_that_comes_to_no_end_is_told(folder, monkeypatch):
 
     monkeypatch.setattr(bag, "read", read)
     with pytest.raises(RecordingError, match="reading it did not come to an end in"):
-        storage.load(folder)
+        reading.load(folder)
 
 
-@pytest.mark.parametrize("name", storage.SIZES)
+@pytest.mark.parametrize("name", reading.SIZES)
 def test_a_file_that_is_larger_than_any_recording_s_is_not_read(folder, name):
     with (folder / name).open("r+b") as file:
-        file.truncate(storage.SIZES[name] + 1)  # a hole: it takes no room
+        file.truncate(reading.SIZES[name] + 1)  # a hole: it takes no room
     with pytest.raises(RecordingError, match=f"{name} has .* bytes; expected"):
-        storage.load(folder)
+        reading.load(folder)
 
 
-@pytest.mark.parametrize("name", [storage.OUTPUT, storage.RUN, storage.CIRCUMSTANCES_FILE])
+@pytest.mark.parametrize("name", [OUTPUT, RUN, CIRCUMSTANCES_FILE])
 def test_a_file_that_leads_out_of_the_recording_is_not_read(folder, tmp_path, name):
     secret = tmp_path / "secret"
     secret.write_bytes((folder / name).read_bytes())
     (folder / name).unlink()
     (folder / name).symlink_to(secret)
     with pytest.raises(RecordingError, match="it leads somewhere else"):
-        storage.load(folder)
+        reading.load(folder)
 
 
 def pen_of(**values):
@@ -447,9 +447,9 @@ HOSTILE = {
 def test_an_input_that_cannot_have_come_is_refused(recorded, tmp_path, event):
     trace = replace(recorded.trace, events=(*recorded.trace.events, event))
     run = replace(recorded.run, trace_sha256=trace.sha256())
-    storage.save(replace(recorded, trace=trace, run=run), tmp_path)
+    saving.save(replace(recorded, trace=trace, run=run), tmp_path)
     with pytest.raises(RecordingError, match="holds no recording"):
-        storage.load(tmp_path)
+        reading.load(tmp_path)
 
 
 @pytest.mark.parametrize("ticks", [(5, 5), (0, 1), (600, 601)])
@@ -458,9 +458,9 @@ def test_a_way_with_impossible_ticks_is_refused(recorded, tmp_path, ticks):
     rows[:, 0] = ticks
     trace = replace(recorded.trace, trajectories={"turtle1": Trajectory.of_rows(rows)})
     run = replace(recorded.run, trace_sha256=trace.sha256())
-    storage.save(replace(recorded, trace=trace, run=run), tmp_path)
+    saving.save(replace(recorded, trace=trace, run=run), tmp_path)
     with pytest.raises(RecordingError, match="ticks"):
-        storage.load(tmp_path)
+        reading.load(tmp_path)
 
 
 def test_an_input_that_is_nested_without_measure_is_refused(recorded, tmp_path, monkeypatch):
@@ -473,35 +473,35 @@ def test_an_input_that_is_nested_without_measure_is_refused(recorded, tmp_path, 
         "grader.scenes.turtlesim.messages.json.dumps",
         lambda words, **how: real(words, **how).replace(f'"value": "{name}"', f'"value": {deep}'),
     )
-    storage.save(replace(recorded, trace=trace), tmp_path)
+    saving.save(replace(recorded, trace=trace), tmp_path)
     monkeypatch.undo()
     with pytest.raises(RecordingError):
-        storage.load(tmp_path)
+        reading.load(tmp_path)
 
 
 # What the process told of itself --------------------------------------------------------------
 
 
 def test_what_the_process_told_comes_back(folder):
-    assert storage.load(folder).conduct == CONDUCT
+    assert reading.load(folder).conduct == CONDUCT
 
 
 def test_a_recording_of_which_nothing_was_told_has_no_file_for_it(recorded, folder):
-    storage.save(replace(recorded, conduct=Conduct()), folder)
+    saving.save(replace(recorded, conduct=Conduct()), folder)
     assert not (folder / "conduct.json").exists()
-    assert storage.load(folder).conduct == Conduct()
+    assert reading.load(folder).conduct == Conduct()
 
 
 def test_what_was_found_of_a_package_is_read_back_and_nothing_else_taken_for_it(folder):
-    assert storage.load(folder).package == PACKAGE
+    assert reading.load(folder).package == PACKAGE
     change(folder / "package.json", others=[1])
     with pytest.raises(RecordingError, match=r"package\.json is damaged"):
-        storage.load(folder)
+        reading.load(folder)
     (folder / "package.json").unlink()
-    assert storage.load(folder).package is None
+    assert reading.load(folder).package is None
 
 
 def test_a_conduct_of_another_form_is_refused_by_name(folder):
     change(folder / "conduct.json", spun_s="soon")
     with pytest.raises(RecordingError, match=r"conduct\.json is damaged: expected seconds"):
-        storage.load(folder)
+        reading.load(folder)

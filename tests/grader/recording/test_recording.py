@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from grader.recording import folder as storage
+from grader.recording import reading, saving
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
 from grader.run.finish import Ending, record
 from grader.run.plan import Plan
@@ -30,7 +30,7 @@ def recorded() -> Recording:
 
 @pytest.fixture
 def folder(recorded, tmp_path):
-    storage.save(recorded, tmp_path / "recording")
+    saving.save(recorded, tmp_path / "recording")
     return tmp_path / "recording"
 
 
@@ -64,7 +64,7 @@ def crowd(tick, _, arena):
 
 
 def test_a_loaded_recording_equals_the_saved_one(recorded, folder):
-    assert_same(storage.load(folder), recorded)
+    assert_same(reading.load(folder), recorded)
 
 
 def test_every_kind_of_input_survives_in_its_order(tmp_path):
@@ -72,8 +72,8 @@ def test_every_kind_of_input_survives_in_its_order(tmp_path):
     ops = {event.op for event in recorded.trace.events}
     assert ops > {"cmd_vel", "spawn", "kill", "cancel"}
     assert np.isnan(recorded.trace.trajectory("zoë/second").x).any()
-    storage.save(recorded, tmp_path)
-    assert_same(storage.load(tmp_path), recorded)
+    saving.save(recorded, tmp_path)
+    assert_same(reading.load(tmp_path), recorded)
 
 
 def test_the_facts_about_a_run_survive(recorded, tmp_path):
@@ -88,8 +88,8 @@ def test_the_facts_about_a_run_survive(recorded, tmp_path):
         output="one\r\ntwo\rthree\x00\x1b[31m \ud800 é",
     )
     assert all(getattr(run, f.name) != getattr(Run(), f.name) for f in fields(Run))
-    storage.save(changed, tmp_path)
-    assert_same(storage.load(tmp_path), changed)
+    saving.save(changed, tmp_path)
+    assert_same(reading.load(tmp_path), changed)
 
 
 def test_a_recording_without_a_single_tick_survives(recorded, tmp_path):
@@ -101,16 +101,16 @@ def test_a_recording_without_a_single_tick_survives(recorded, tmp_path):
         trajectories={"a": Trajectory.of_rows(np.zeros((0, 9)))},
     )
     empty = replace(recorded, trace=nothing, run=Run(trace_sha256=nothing.sha256()))
-    storage.save(empty, tmp_path)
-    assert_same(storage.load(tmp_path), empty)
+    saving.save(empty, tmp_path)
+    assert_same(reading.load(tmp_path), empty)
 
 
 def test_any_file_of_a_recording_names_it(recorded, folder):
-    assert_same(storage.load(folder / "recording.mcap"), recorded)
+    assert_same(reading.load(folder / "recording.mcap"), recorded)
 
 
 def test_the_hash_depends_on_what_happened_only(recorded, folder):
-    loaded = storage.load(folder)
+    loaded = reading.load(folder)
     ending = Ending("virtual", "crashed", 1, 99.0, "elsewhere", "more output", ("odd",))
     plan = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), seed=7, flags=("odder",))
     again = record(plan, loaded.trace, (), ending)
@@ -131,21 +131,21 @@ def test_inputs_that_came_after_the_last_tick_do_not_spoil_the_scenario(recorded
     trace = recorded.trace
     late = replace(trace.events[-1], tick=trace.ticks + 1)
     late_one = replace(trace, events=(*trace.events, late))
-    storage.save(replace(recorded, trace=late_one), tmp_path)
+    saving.save(replace(recorded, trace=late_one), tmp_path)
     replay(read(tmp_path / "scenario.json"))
 
 
 def test_a_run_that_started_elsewhere_has_no_scenario(recorded, tmp_path):
-    storage.save(recorded, tmp_path)
-    storage.save(replace(recorded, start=Start(1.0, 2.0, 3.0)), tmp_path)
+    saving.save(recorded, tmp_path)
+    saving.save(replace(recorded, start=Start(1.0, 2.0, 3.0)), tmp_path)
     assert not (tmp_path / "scenario.json").exists()
 
 
 def test_varied_runs_come_back_in_their_order(tmp_path):
     recorded = drive(Spiral(), ticks=50)
     varied = tuple(replace(recorded, start=Start(float(n), 0.0, 0.0)) for n in range(11))
-    storage.save_all(Recordings(recorded, varied), tmp_path)
-    loaded = storage.load_all(tmp_path)
+    saving.save_all(Recordings(recorded, varied), tmp_path)
+    loaded = reading.load_all(tmp_path)
     assert_same(loaded.nominal, recorded)
     assert [r.start for r in loaded.varied] == [r.start for r in varied]
 
@@ -175,7 +175,7 @@ def odd_recordings(draw) -> Recording:
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_odd_values_survive_bit_for_bit(tmp_path_factory, odd):
     folder = tmp_path_factory.mktemp("odd")
-    storage.save(odd, folder)
-    loaded = storage.load(folder)
+    saving.save(odd, folder)
+    loaded = reading.load(folder)
     assert_same(loaded, odd)
     assert loaded.trace.sha256() == odd.trace.sha256()

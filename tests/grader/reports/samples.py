@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from grader.recording import folder as storage
+from grader.recording import saving
 from grader.recording.recording import Recording
 from grader.reports import Report
 from grader.reports.beside import Beside
@@ -116,9 +116,9 @@ def graded(
     **more: Any,
 ) -> Path:
     """A result file with a recording, a picture and an output beside it, as `grader run` leaves."""
-    storage.save(recording, folder / "recording")
+    saving.save(recording, folder / "recording")
     for number, other in enumerate(varied, 1):
-        storage.save(other, folder / "recording" / f"varied_{number}")
+        saving.save(other, folder / "recording" / f"varied_{number}")
     (folder / "canvas.png").write_bytes(recording.png["window"])
     (folder / "output.txt").write_bytes(output.encode())
     artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.recording.folder import load, save
+from grader.recording.reading import load
 from grader.recording.recording import Recording, Run
+from grader.recording.saving import save
 from grader.scenes import load_scene
 from grader.scenes.package.trace import (
     MOST_BYTES,

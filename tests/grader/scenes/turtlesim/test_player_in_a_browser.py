@@ -9,7 +9,7 @@ import pytest
 
 from grader.cli import main
 from grader.language.catalogue import ENGLISH, speak
-from grader.recording import folder as storage
+from grader.recording import saving
 from grader.recording.recording import Recordings
 from grader.scenes.scene import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
@@ -74,7 +74,7 @@ def page_file(tmp_path_factory, runs):
         verdict("stops", "failed", 0, evidence=[evidence("too far", 1.28, tick=80, run=1)]),
     ]
     samples.graded(folder / "graded", runs.nominal, *verdicts, varied=runs.varied)
-    storage.save_all(Recordings(drive(Spiral(), ticks=200)), folder / "other")
+    saving.save_all(Recordings(drive(Spiral(), ticks=200)), folder / "other")
     assert main(["view", str(folder / "graded"), "--no-open"]) == 0
     for language in ("en", "fr", "zh"):
         out = folder / "graded" / ("compared.html" if language == "en" else f"{language}.html")

@@ -1,0 +1,200 @@
+"""Writes recordings into their folders: whole, or not at all."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from grader.language import stored
+from grader.language.phrase import Phrase
+from grader.recording import remarks
+from grader.recording.folder import (
+    CIRCUMSTANCES,
+    CIRCUMSTANCES_FILE,
+    CONDUCT,
+    FILES,
+    FIRST_SCENE,
+    METADATA,
+    NAME,
+    OUTPUT,
+    PACKAGE,
+    PACKAGE_SCENE,
+    PHRASES,
+    PROVENANCE,
+    RUN,
+    SCENARIO,
+    SCHEMA,
+    bag,
+    sha256_of,
+    varied_in,
+)
+from grader.recording.recording import Recording, Recordings
+from grader.scenes import load_scene
+
+#: Where the files are written before they come into the folder.
+UNFINISHED = ".unfinished"
+
+
+def save(recording: Recording, folder: Path, varied_runs: int = 0) -> None:
+    """Write a recording into a folder, which is made if need be; an older one is replaced.
+
+    Args:
+        varied_runs: how many varied runs belong to it, so that none gets lost.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    with _unfinished(folder) as place:
+        _write(recording, place / NAME, varied_runs)
+        _put(place / NAME, folder)
+
+
+def save_all(recordings: Recordings, folder: Path) -> None:
+    """Write a nominal recording and its varied ones; see `save`."""
+    with into(folder, len(recordings.varied)) as unsaved:
+        for number, recording in enumerate(recordings):
+            unsaved.write(number, recording)
+        unsaved.put()
+
+
+class Unsaved:
+    """Recordings on their way into a folder: written one by one, put there all at once.
+
+    Args:
+        place: where they are written before.
+        folder: where they come.
+        varied_runs: how many varied ones there will be.
+    """
+
+    def __init__(self, place: Path, folder: Path, varied_runs: int) -> None:
+        self._place = place
+        self._folder = folder
+        self._varied_runs = varied_runs
+
+    def write(self, number: int, recording: Recording) -> None:
+        """Write a recording: 0 the nominal one, 1, 2, ... varied ones, in any order."""
+        _write(recording, self._of(number), 0 if number else self._varied_runs)
+
+    def put(self) -> None:
+        """Put all of them in place of older ones, of which none is left."""
+        _withdraw(self._folder)  # comes back as the last file of all
+        for number in range(1, self._varied_runs + 1):
+            into = self._folder / f"varied_{number}"
+            if into.is_symlink():
+                into.unlink()
+            _put(self._of(number), into)
+        for number in varied_in(self._folder):
+            older = self._folder / f"varied_{number}"
+            if number > self._varied_runs and not older.is_symlink() and (older / RUN).exists():
+                shutil.rmtree(older)
+        _put(self._of(0), self._folder)
+
+    def _of(self, number: int) -> Path:
+        return self._place / str(number) / NAME
+
+
+@contextmanager
+def into(folder: Path, varied_runs: int) -> Iterator[Unsaved]:
+    """Write recordings as they come; nothing of an older one changes before `Unsaved.put`.
+
+    Raises:
+        OSError: they cannot be written; also from `Unsaved`.
+    """
+    with _unfinished(folder) as place:
+        yield Unsaved(place, folder, varied_runs)
+
+
+@contextmanager
+def _unfinished(folder: Path) -> Iterator[Path]:
+    """A place for files that come into the folder later; what is still there then goes."""
+    is_new = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    place = folder / UNFINISHED
+    _clear(place)
+    place.mkdir()
+    try:
+        yield place
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+        if is_new:
+            with suppress(OSError):  # it holds what was put there
+                folder.rmdir()
+
+
+def _clear(place: Path) -> None:
+    """Remove what is left of a save that was cut off; of a link, which none of ours is, the link.
+
+    Raises:
+        OSError: it cannot be removed.
+    """
+    if place.is_symlink() or (place.exists() and not place.is_dir()):
+        place.unlink()
+    elif place.exists():
+        shutil.rmtree(place)
+
+
+def _put(made: Path, folder: Path) -> None:
+    """Move the files of a recording to where they belong, metadata.yaml last."""
+    folder.mkdir(parents=True, exist_ok=True)
+    _withdraw(folder)
+    for name in FILES:
+        if (made / name).exists():
+            (made / name).replace(folder / name)
+        else:
+            (folder / name).unlink(missing_ok=True)
+
+
+def _unknown(flags: Iterable[str]) -> list[str]:
+    """Those that would not be known again by their English texts: what they are made of is kept."""
+    return [flag for flag in flags if not isinstance(remarks.phrase(str(flag)), Phrase)]
+
+
+def _withdraw(folder: Path) -> None:
+    (folder / METADATA).unlink(missing_ok=True)
+
+
+def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
+    scene = load_scene(recording.scene)
+    mcap = bag().write(recording.trace, scene, folder)
+    run = asdict(recording.run)
+    circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
+    if phrases := stored.phrases_in(_unknown(recording.run.flags)):
+        circumstances[PHRASES] = phrases
+    if recording.provenance is not None:
+        circumstances[PROVENANCE] = recording.provenance.to_json()
+    if not recording.run.interfaces:
+        del run["interfaces"]
+    facts = {
+        "schema": SCHEMA,
+        "bag_sha256": sha256_of(mcap),
+        "varied_runs": varied_runs,
+        "start": asdict(recording.start) if recording.start else None,
+        "topics": [asdict(topic) for topic in recording.topics],
+        "run": run,
+    }
+    if recording.scene != FIRST_SCENE:
+        facts["scene"] = recording.scene
+    _write_json(folder / RUN, facts)
+    _write_json(folder / CIRCUMSTANCES_FILE, circumstances)
+    # Bytes: a student's line ends stay as they are.
+    (folder / OUTPUT).write_bytes(recording.output.encode("utf-8", "surrogatepass"))
+    if recording.conduct.is_told:
+        _write_json(folder / CONDUCT, recording.conduct.to_json())
+    if recording.package is not None:
+        told = load_scene(PACKAGE_SCENE).encode(recording.package)
+        (folder / PACKAGE).write_bytes(told + b"\n")
+    for name, png in recording.png.items():
+        (folder / f"{name}.png").write_bytes(png)
+    # a scenario begins in the usual place
+    if recording.start is None and (inputs := scene.scenario(recording.trace)):
+        scenario = {"name": NAME, "description": "a graded run", **inputs}
+        _write_json(folder / SCENARIO, scenario, indent=None)
+
+
+def _write_json(path: Path, data: dict[str, Any], indent: int | None = 2) -> None:
+    path.write_text(json.dumps(data, indent=indent) + "\n", encoding="utf-8")
