@@ -265,6 +265,7 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
         *(str(controlled.fileno()), f"/proc/self/fd/{recording}"),
         *(Plan(Limits(3, 1, 30)).to_json(), str(theirs.fileno()), str(os.getpid()), "-1"),
         json.dumps(asdict(Patience(simulator_cpu_s=20.0, all_asleep_s=2.0, asleep_s=1.0))),
+        "",  # nobody looks on
     ]
     # a pipe that nobody reads would stop it
     log = tempfile.TemporaryFile()  # noqa: SIM115 - its context is below

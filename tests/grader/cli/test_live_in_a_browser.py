@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import re
 
@@ -13,7 +12,7 @@ import pytest
 from tests.browser import english, needs_browser, obstacles, open_browser
 from tests.grader.cli.test_live import QUICK
 from tests.programs import DEADLINE_S, Program
-from tests.turtlesim_py.live.test_in_a_browser import PIXELS
+from tests.turtlesim_py.live.test_in_a_browser import PIXELS, pixels_of
 
 pytestmark = needs_browser
 
@@ -42,10 +41,10 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
         titles = page.locator("#checks strong").all_inner_texts()
         assert titles == [verdict["title"] for verdict in result["verdicts"]]
         page.evaluate("new Promise(requestAnimationFrame)")  # what has come is drawn
-        pixels = np.frombuffer(base64.b64decode(page.evaluate(PIXELS)), np.uint8)
+        pixels = pixels_of(page.evaluate(f"({PIXELS})()"))
         with PIL.Image.open(out / "canvas.png") as picture:
             expected = np.asarray(picture.convert("RGB"))
-        assert np.array_equal(pixels.reshape(500, 500, 4)[..., :3], expected)
+        assert np.array_equal(pixels[..., :3], expected)
         for what in ("#controls", "#keys", "#graph"):  # nothing that would drive
             assert page.locator(what).is_hidden()
         assert page.evaluate("document.documentElement.scrollWidth") <= width
