@@ -1,5 +1,6 @@
 """What a submission's process may say, and for how long it may say nothing."""
 
+import math
 import os
 import signal
 import socket
@@ -119,7 +120,8 @@ def test_what_the_simulator_spends_on_showing_a_run_is_not_the_submissions_doing
     silence: str,
 ) -> None:
     monkeypatch.setattr(link, "CPU_LOOK_S", 0.0)
-    heard = StudentLink(ends[0], os.getpid(), Patience(simulator_cpu_s=30.0))
+    # of this process, whose pid stands for the submission's, nothing is limited
+    heard = StudentLink(ends[0], os.getpid(), Patience(run_cpu_s=math.inf, simulator_cpu_s=30.0))
     heard.excused_cpu_s = excused_cpu_s
     before_s = time.process_time()
     monkeypatch.setattr(time, "process_time", lambda: before_s + 50.0)
