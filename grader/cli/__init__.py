@@ -11,6 +11,7 @@ import sys
 import traceback
 from argparse import Namespace
 from collections.abc import Sequence
+from io import TextIOWrapper
 from typing import Any
 
 # numpy's worker threads would spin a while after its import, and have nothing to do here
@@ -51,6 +52,9 @@ JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb; the exit code is the return value."""
+    for stream in (sys.stdout, sys.stderr):  # a terminal may lack what a language is written in
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         return _main(sys.argv[1:] if argv is None else argv)
     except KeyboardInterrupt:  # before a verb was at work

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from itertools import zip_longest
 
 from grader.language.catalogue import LANGUAGES, of_environment, speak
 from grader.language.phrase import say, say_many
@@ -38,10 +39,11 @@ def choose(words: Sequence[str]) -> None:
     It is looked for before the call is parsed: what is wrong with the call is said in it as well.
     """
     _argparse_too()
-    for word, after in zip(words, [*words[1:], ""], strict=True):
+    for word, after in zip_longest(words, words[1:], fillvalue=""):
         name, _, value = word.partition("=")
         language = value or after
-        if name == OPTION and language in LANGUAGES:
+        is_meant = len(name) > 3 and OPTION.startswith(name)  # argparse takes '--la', too
+        if is_meant and language in LANGUAGES:
             return speak(language)
     return speak(of_environment())
 

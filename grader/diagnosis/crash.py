@@ -130,7 +130,7 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
     if "'float'" in what:
         return say("a float"), say(
             "Write {whole}.0 instead of {whole}, and float(...) around what may be an int.",
-            whole=number or "2",
+            whole=number if number and "." not in number else "2",
         )
     if "'int'" in what:
         number = number or "255.0"

@@ -44,13 +44,11 @@ def speak(language: str) -> None:
 
 def of_environment(environment: Mapping[str, str] = os.environ) -> str:
     """What the user's locale asks for; English where that is none of ours."""
-    for name in _VARIABLES:
-        for wanted in environment.get(name, "").split(":"):
-            code = re.split("[-_.@]", wanted)[0].lower()
-            if code in LANGUAGES:
-                return code
-            if code in ("c", "posix"):
-                return ENGLISH
+    first = next((found for name in _VARIABLES if (found := environment.get(name))), "")
+    for wanted in first.split(":"):  # LANGUAGE may name several
+        code = re.split("[-_.@]", wanted)[0].lower()
+        if code in LANGUAGES:
+            return code
     return ENGLISH
 
 

@@ -14,6 +14,13 @@ from grader.language.phrase import Phrase, like
 
 #: Phrases in phrases: none that a check makes is deeper.
 _DEEPEST = 12
+#: Phrases, texts and numbers in all: a usual result has some hundred.
+_MOST = 20_000
+#: Fields that hold sentences. Others hold names, which stay as they are in every language.
+SENTENCES = frozenset(
+    ("title", "rationale", "help", "note", "text", "curve", "cause", "flags", "message", "notes")
+)
+_KEYS = frozenset(("text", "key", "many", "words", "values", "parts"))
 T = TypeVar("T")
 
 
@@ -32,7 +39,14 @@ def restored(value: T, phrases: Mapping[str, Any]) -> T:
     """
     if not phrases:
         return value
-    made = {text: phrase(text, data) for text, data in phrases.items()}
+    try:
+        if not isinstance(phrases, Mapping):
+            raise ValueError("expected sentences with what they are made of")
+        if _size(phrases) > _MOST:
+            raise ValueError(f"expected at most {_MOST} values in all")
+        made = {text: phrase(text, data) for text, data in phrases.items()}
+    except ValueError as error:
+        raise ValueError(f"is damaged: its phrases: {error}") from None
     return cast(T, _restore(value, made))
 
 
@@ -44,6 +58,8 @@ def phrase(text: str, data: Any, depth: int = 0) -> Phrase:
     """
     if not isinstance(data, dict) or depth > _DEEPEST:
         raise ValueError("expected a phrase: a key with values, or parts")
+    if ("key" in data) == ("parts" in data) or data.keys() - _KEYS:
+        raise ValueError(f"expected a phrase: a key with values, or parts; found {data!r:.80}")
     listed, named = data.get("parts", []), data.get("values", {})
     if not isinstance(listed, list) or not isinstance(named, dict):
         raise ValueError("expected a list of parts, or values by their names")
@@ -110,14 +126,29 @@ def _inner(value: Any) -> Any:
     return value if isinstance(value, int | float) and math.isfinite(value) else str(value)
 
 
-def _restore(value: Any, made: Mapping[str, Phrase]) -> Any:
+def _size(phrases: Mapping[str, Any]) -> int:
+    """How many values there are in all, as far as that matters."""
+    count, waiting = 0, [phrases]
+    while waiting and count <= _MOST:
+        value: Any = waiting.pop()
+        count += 1
+        if isinstance(value, Mapping):
+            waiting += value.values()
+        elif isinstance(value, list):
+            waiting += value
+    return count
+
+
+def _restore(value: Any, made: Mapping[str, Phrase], is_sentence: bool = True) -> Any:
     if isinstance(value, str):
-        return made.get(value, value)
+        return made.get(value, value) if is_sentence else value
     if isinstance(value, Mapping):
-        return {key: _restore(item, made) for key, item in value.items()}
+        return {key: _restore(item, made, is_sentence) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return like(value, [_restore(item, made) for item in value])
+        return like(value, [_restore(item, made, is_sentence) for item in value])
     if is_dataclass(value) and not isinstance(value, type):
-        names = [field.name for field in fields(value)]
-        return replace(value, **{name: _restore(getattr(value, name), made) for name in names})
+        of = {field.name: getattr(value, field.name) for field in fields(value)}
+        return replace(
+            value, **{name: _restore(item, made, name in SENTENCES) for name, item in of.items()}
+        )
     return value

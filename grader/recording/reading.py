@@ -186,9 +186,7 @@ def _facts(folder: Path) -> dict[str, Any]:
     try:
         facts["run"]["flags"] = stored.restored(tuple(facts["run"]["flags"]), phrases)
     except (ValueError, TypeError, AttributeError) as wrong:
-        raise RecordingError(
-            say("{path} is damaged: {error}", path=str(path), error=str(wrong))
-        ) from None
+        raise RecordingError(say("{path} {error}", path=str(path), error=str(wrong))) from None
     return facts
 
 

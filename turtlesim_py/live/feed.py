@@ -153,7 +153,8 @@ class Feed:
         if isinstance(notice, Event):
             self._calls.append(to_json(notice))
         elif isinstance(notice, LogLine):
-            self._calls.append({"op": "log", "severity": notice.severity, "text": notice.text})
+            said = {"op": "log", "severity": notice.severity, "text": notice.text}
+            self._calls.append({**said, "tick": self._arena.ticks})
         del self._calls[:-MOST_CALLS]
 
 

@@ -11,6 +11,8 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from importlib.machinery import PathFinder
+from pathlib import Path
 from typing import Any, NamedTuple
 
 #: 'geometry_msgs/msg/Twist', or as ROS 1 and rosbridge write it, 'geometry_msgs/Twist'.
@@ -56,10 +58,19 @@ def find(name: str, kind: str) -> Any:
     match = _TYPE.fullmatch(name)
     if match is None or match[2] not in (None, kind):
         raise NoSuchType(f"{name!r:.80} is no type; expected one like 'geometry_msgs/{kind}/Name'")
+    if not _is_of_interfaces(match[1], kind):
+        raise NoSuchType(f"the type {name!r:.80} is not installed here")
     try:
         return getattr(import_module(f"{match[1]}.{kind}"), match[3])
     except (ImportError, AttributeError):
         raise NoSuchType(f"the type {name!r:.80} is not installed here") from None
+
+
+def _is_of_interfaces(package: str, kind: str) -> bool:
+    """Whether a package has a folder of such types: another one would be imported for its name."""
+    found = PathFinder.find_spec(package)
+    places = found.submodule_search_locations if found is not None else None
+    return any((Path(place) / kind / "__init__.py").is_file() for place in places or ())
 
 
 def fields_of(message_type: Any) -> list[Field]:

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Awaitable, Callable, Mapping
+import re
+from collections.abc import Awaitable, Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
@@ -28,6 +29,10 @@ MOST_OPEN = 32
 FRAMES_PER_S, FRAMES_AT_ONCE = 200.0, 400.0
 #: The topic that only viewers have: what becomes of the arena.
 LIVE = "/turtlesim_live"
+#: A viewer may ask for a message a day, and no less.
+LONGEST_PAUSE_MS = 86_400_000
+#: What may stand for half a character.
+_MAYBE_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 
 
 class Refused(ValueError):
@@ -63,7 +68,7 @@ class Session:
     now: Callable[[], float]
     _publishers: dict[str, Any] = field(default_factory=dict)
     _subscriptions: dict[str, Any] = field(default_factory=dict)
-    _tasks: dict[str, asyncio.Task[None]] = field(default_factory=dict)
+    _tasks: dict[str, set[asyncio.Task[None]]] = field(default_factory=dict)
     _number: int = 0
     _allowed: float = FRAMES_AT_ONCE
     _heard_at: float = 0.0
@@ -75,13 +80,15 @@ class Session:
             self._count()
             said = _object(frame)
             await self._follow(said)
-        except _REFUSALS as error:
-            self._complain(str(error), said)
+        except (
+            Exception
+        ) as error:  # rclpy refuses in many ways, and a stranger's frame ends nothing
+            self._complain(_why(error), said)
 
     async def close(self) -> None:
         """Give back everything that the viewer had."""
         self.watch(False)
-        for task in self._tasks.values():
+        for task in [each for tasks in self._tasks.values() for each in tasks]:
             task.cancel()
         publishers, self._publishers = self._publishers, {}
         subscriptions, self._subscriptions = self._subscriptions, {}
@@ -177,8 +184,8 @@ class Session:
             else:
                 values = await self.host.graph().call(service, kind, args)
             self.send(answer | {"values": values, "result": True})
-        except _REFUSALS as error:
-            self.send(answer | {"values": str(error), "result": False})
+        except Exception as error:
+            self.send(answer | {"values": _why(error), "result": False})
 
     async def _send_goal(self, said: Mapping[str, Any]) -> None:
         goal = (_text(said, "action"), _text(said, "action_type"), said.get("args", {}))
@@ -196,12 +203,11 @@ class Session:
         try:
             values, status = await self.host.graph().send_goal(action, kind, args, feedback)
             self.send(answer | {"values": values, "status": status, "result": status == 4})
-        except _REFUSALS as error:
-            self.send(answer | {"values": str(error), "status": 6, "result": False})
+        except Exception as error:
+            self.send(answer | {"values": _why(error), "status": 6, "result": False})
 
     async def _cancel_goal(self, said: Mapping[str, Any]) -> None:
-        task = self._tasks.get(f"send_action_goal {said.get('id')}")
-        if task is not None:
+        for task in self._tasks.get(f"send_action_goal {said.get('id')}", ()):
             task.cancel()
 
     def _begin(self, said: Mapping[str, Any], work: Any) -> None:
@@ -209,14 +215,22 @@ class Session:
         self._number += 1
         name = f"{said['op']} {said.get('id', self._number)}"
         try:
-            self._check_room(self._tasks)
+            self._check_room([task for tasks in self._tasks.values() for task in tasks])
         except Refused:
             work.close()
             raise
-        task = self._tasks[name] = asyncio.get_running_loop().create_task(work)
-        task.add_done_callback(lambda _: self._tasks.pop(name, None))
+        task = asyncio.get_running_loop().create_task(work)
+        of_name = self._tasks.setdefault(name, set())  # several may have one id
+        of_name.add(task)
 
-    def _check_room(self, there: Mapping[str, Any]) -> None:
+        def forget(_: object) -> None:
+            of_name.discard(task)
+            if not of_name:
+                self._tasks.pop(name, None)
+
+        task.add_done_callback(forget)
+
+    def _check_room(self, there: Collection[Any]) -> None:
         if len(there) >= MOST_OPEN:
             raise Refused(f"a viewer may have {MOST_OPEN} at once")
 
@@ -242,12 +256,23 @@ def _object(frame: str | bytes) -> dict[str, Any]:
     if not isinstance(frame, str):
         raise Refused("expected JSON as text, found bytes")
     try:
-        said = json.loads(frame)
+        said = json.loads(frame, parse_constant=_refuse)
+        if _MAYBE_HALF.search(frame):
+            json.dumps(said, ensure_ascii=False).encode()  # half a character is no text
     except (ValueError, RecursionError):
         raise Refused(f"expected JSON, found {frame!r:.60}") from None
     if not isinstance(said, dict):
         raise Refused(f"expected a JSON object, found {frame!r:.60}")
     return said
+
+
+def _refuse(constant: str) -> Any:
+    raise ValueError(f"{constant} is no JSON")
+
+
+def _why(error: Exception) -> str:
+    """What is answered to who has asked for what cannot be done."""
+    return str(error) if isinstance(error, _REFUSALS) else f"{type(error).__name__}: {error!s:.200}"
 
 
 def _text(said: Mapping[str, Any], key: str, default: str | None = None) -> str:
@@ -261,9 +286,10 @@ def _text(said: Mapping[str, Any], key: str, default: str | None = None) -> str:
 
 def _pause_s(said: Mapping[str, Any]) -> float:
     pause_ms = said.get("throttle_rate", 0)
-    if isinstance(pause_ms, bool) or not isinstance(pause_ms, int | float) or not pause_ms >= 0:
+    is_number = isinstance(pause_ms, int | float) and not isinstance(pause_ms, bool)
+    if not is_number or not 0 <= pause_ms <= LONGEST_PAUSE_MS:
         raise Refused(f"throttle_rate: expected milliseconds, found {pause_ms!r:.60}")
-    return pause_ms / 1000.0
+    return float(pause_ms) / 1000.0
 
 
 def _is_rosapi(service: str) -> bool:

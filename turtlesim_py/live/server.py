@@ -44,6 +44,8 @@ MOST_WAITING: Final = 1_000_000
 MOST_VIEWERS: Final = 100
 #: How often to see whether somebody slow has caught up [s].
 RETRY_S: Final = 0.25
+#: All of the arena, which is much to send, is sent to a viewer so often at most [s].
+WHOLE_EVERY_S: Final = 0.25
 #: How long to wait for this thread to begin or end [s].
 PATIENCE_S: Final = 10.0
 
@@ -88,6 +90,7 @@ class _Viewer:
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
         self.is_behind = False
+        self.next_whole_at = 0.0
 
     @property
     def is_slow(self) -> bool:
@@ -215,8 +218,12 @@ class LiveServer(Generic[_Source]):
 
     def _on_request(self, connection: ServerConnection, request: Request) -> Response | None:
         headers = {name.lower(): value for name, value in request.headers.raw_items()}
+        try:
+            path = urlsplit(request.path).path
+        except ValueError:  # as //[x]
+            return _response(404, "Not Found", b"There is no such page.", "text/plain")
         # behind a proxy the page may lie below a prefix that is handed on, or not
-        name = urlsplit(request.path).path.rpartition("/")[2] or "index.html"
+        name = path.rpartition("/")[2] or "index.html"
         is_viewer = "upgrade" in headers.get("connection", "").lower()
         # the page's own parts are no secret, and are asked for without what the address says
         if is_viewer or name == "index.html":
@@ -236,10 +243,18 @@ class LiveServer(Generic[_Source]):
 
     def _watch(self, viewer: _Viewer, watches: bool) -> None:
         """Begin or end to tell a viewer of the arena."""
+        if viewer in self._watching and watches:
+            return  # all of the arena is much to send: he has it
         if watches:
             self._watching.add(viewer)
             viewer.is_behind = True
-            self.feed.ask(viewer)
+            now = self._loop.time()
+            pause = viewer.next_whole_at - now  # who comes and goes all the time has to wait
+            viewer.next_whole_at = max(viewer.next_whole_at, now) + WHOLE_EVERY_S
+            if pause > 0:
+                self._loop.call_later(pause, self._catch_up, viewer)
+            else:
+                self.feed.ask(viewer)
         else:
             self._watching.discard(viewer)
         self.feed.is_watched = bool(self._watching)

@@ -295,7 +295,9 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
     """Let the clock that the node follows move the turtles until it is stopped."""
     name = node.get_fully_qualified_name()
     node.get_logger().info(
-        f"This turtlesim shows no window. To see it: ros2 run rqt_image_view rqt_image_view "
+        f"This turtlesim shows no window, but a page: {node.live.address}"
+        if node.live is not None
+        else f"This turtlesim shows no window. To see it: ros2 run rqt_image_view rqt_image_view "
         f"{name}/image, or as a file: ros2 service call {name}/save_canvas std_srvs/srv/Trigger"
     )
     # What exists now stays: no search through it in the middle of a tick

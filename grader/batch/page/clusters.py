@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from grader import text
 from grader.batch.page.kinds import kind_of
 from grader.batch.page.students import STATES, Student
-from grader.language.phrase import say
+from grader.language.phrase import marked, say
 from grader.language.telling import told
 from grader.reports.wording import title_of
 
@@ -19,6 +20,34 @@ MOST_CAUSES, MOST_KINDS = 24, 8
 MOST_LINKS = 400
 _TEXT_LIMIT = 400
 RARER = say("rarer kinds")
+#: What diagnoses are called, for the catalogues.
+_KEYS: Final = (
+    marked("called at once"),
+    marked("crashed"),
+    marked("does nothing"),
+    marked("ended by caught"),
+    marked("ended itself"),
+    marked("endless loop"),
+    marked("ends early"),
+    marked("has unfit qos"),
+    marked("hears once"),
+    marked("hides errors"),
+    marked("killed"),
+    marked("makes timers"),
+    marked("never awaits"),
+    marked("never spins"),
+    marked("not importable"),
+    marked("publishes without waiting"),
+    marked("slow callback"),
+    marked("spins in loop"),
+    marked("stays in init"),
+    marked("stuck in call"),
+    marked("stuck in callback"),
+    marked("unreadable"),
+    marked("waits for timer"),
+    marked("waits in vain"),
+    marked("wrong value"),
+)
 
 
 @dataclass(frozen=True)
@@ -68,6 +97,11 @@ def of_check(students: Iterable[Student], check: str) -> list[Cluster]:
     return _clusters(said, MOST_KINDS)
 
 
+def _called(key: str) -> str:
+    """A diagnosis in a word or two."""
+    return told(key.replace("_", " "))
+
+
 def _first_of(student: Student) -> Said | None:
     result = student.entry.result
     if result is None:
@@ -75,7 +109,7 @@ def _first_of(student: Student) -> Said | None:
         return Said(student, told(STATES.get(state, state)), told(student.entry.message))
     found = result.diagnosis
     if found is not None and not found.check:
-        return Said(student, found.key.replace("_", " "), told(found.cause))
+        return Said(student, _called(found.key), told(found.cause))
     lost = [verdict for verdict in result.verdicts if not verdict.passed]
     if not lost:
         return None
@@ -87,7 +121,7 @@ def _first_of(student: Student) -> Said | None:
 def _diagnosed(student: Student) -> str:
     result = student.entry.result
     found = None if result is None else result.diagnosis
-    return "" if found is None or found.check else found.key.replace("_", " ")
+    return "" if found is None or found.check else _called(found.key)
 
 
 def _clusters(said: Sequence[Said], most: int) -> list[Cluster]:

@@ -21,7 +21,7 @@ from tests.grader.reports import samples
 @dataclass(frozen=True)
 class Told:
     text: str
-    more: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 SAID = Told(
@@ -32,11 +32,11 @@ SAID = Told(
 
 def test_they_come_back_as_they_were():
     stored = json.loads(json.dumps(phrases_in(SAID)))
-    texts = Told(str(SAID.text), tuple(map(str, SAID.more)))
+    texts = Told(str(SAID.text), tuple(map(str, SAID.notes)))
     back = restored(texts, stored)
     assert back == SAID
     assert phrases_in(back) == phrases_in(SAID)
-    assert [type(each) for each in back.more] == [Phrase, Phrase, str]
+    assert [type(each) for each in back.notes] == [Phrase, Phrase, str]
 
 
 def test_numbers_of_numpy_and_what_is_no_number_of_json_are_stored():
@@ -91,6 +91,20 @@ def file_with(tmp_path, data):
 def test_a_result_file_with_such_a_one_cannot_be_used_and_a_sentence_says_so(tmp_path, data):
     with pytest.raises(UsageError, match=r"result\.json"):
         Result.read(file_with(tmp_path, data))
+
+
+@pytest.mark.parametrize("data", [deep(300), {"parts": ["x"] * 30_000}])
+def test_one_that_has_no_end_is_refused_at_once(tmp_path, data):
+    with pytest.raises(UsageError, match="is damaged: its phrases: expected"):
+        Result.read(file_with(tmp_path, data))
+
+
+def test_a_name_that_reads_as_a_sentence_stays_a_name():
+    verdict = samples.result()["verdicts"][0]
+    told = samples.result(phrases={verdict["status"]: {"key": "x", "words": {"fr": "ROULE"}}})
+    speak("fr")
+    assert Result.from_json(told).verdicts[0].status == verdict["status"]
+    assert type(Result.from_json(told).verdicts[0].status) is str
 
 
 KNOWN = "at {time_s:.2f} s, at {place}"

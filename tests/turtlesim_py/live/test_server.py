@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import math
+import socket
 
 import pytest
 from geometry_msgs.msg import Twist
@@ -14,6 +15,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from tests.programs import Program
 from tests.turtlesim_py.live.conftest import Page
+from turtlesim_py.live.rosbridge import MOST_OPEN
 
 TWIST = "geometry_msgs/msg/Twist"
 ANYTHING = st.recursive(
@@ -120,6 +122,18 @@ def test_what_there_is_can_be_asked_for(page):
         ('{"op": "publish", "topic": "not a name", "type": "std_msgs/String"}', "not a name"),
         ('{"op": "subscribe", "topic": "/a", "type": "os/path"}', "is not installed here"),
         ('{"op": "subscribe", "topic": "/a", "type": "../x"}', "is no type"),
+        (
+            '{"op": "subscribe", "topic": "/seen/turtle1/pose", "throttle_rate": 1%s}'
+            % ("0" * 400),
+            "milliseconds",
+        ),
+        ('{"op": "subscribe", "topic": "/\\ud800", "type": "std_msgs/String"}', "expected JSON"),
+        (
+            '{"op": "subscribe", "topic": "/seen/turtle1/pose", "type": "std_msgs/String"}',
+            "RCLError",
+        ),
+        ('{"op": "subscribe", "topic": "~/x{y}", "type": "std_msgs/String"}', ""),
+        ('{"op": "call_service", "service": "/x", "id": NaN}', "expected JSON"),
         ('{"op": "subscribe", "topic": "/seen/turtle1/pose", "throttle_rate": -1}', "milliseconds"),
         (
             '{"op": "publish", "topic": "/seen/turtle1/cmd_vel", "msg": {"linear": {"x": "a"}}}',
@@ -171,6 +185,41 @@ def test_whatever_a_viewer_sends_the_simulator_goes_on(page):
 
         send()
         rests(viewer)
+
+
+def test_calls_with_one_id_count_as_many(page):
+    with page.viewer() as viewer:
+        for _ in range(MOST_OPEN + 1):
+            viewer.say(op="call_service", service="/nobody/serves", type="std_srvs/Empty", id="one")
+        said = viewer.until(lambda frame: frame["op"] == "status")
+        assert said["msg"] == f"a viewer may have {MOST_OPEN} at once"
+
+
+def test_no_package_is_imported_that_has_no_such_types(page):
+    with page.viewer() as viewer:
+        type_ = {"type": "this/msg/X"}
+        said = viewer.ask(op="call_service", service="/rosapi/message_details", args=type_, id=1)
+        assert not said["result"]
+        assert "not installed" in said["values"]
+    assert "Zen of Python" not in page.program.text()
+
+
+def test_who_watches_already_is_not_sent_all_of_the_arena_again(page):
+    with page.viewer() as viewer:
+        for _ in range(5):
+            viewer.say(op="subscribe", topic="/turtlesim_live")
+        viewer.until(lambda frame: "whole" in frame.get("msg", {}))
+        viewer.say(op="call_service", service="/rosapi/topics", id="then")
+        frames = []
+        viewer.until(lambda frame: frames.append(frame) or frame.get("id") == "then")
+        assert not [frame for frame in frames if "whole" in frame.get("msg", {})]
+
+
+@pytest.mark.parametrize("path", ["//[x]/index.html", "http://[/x"])
+def test_an_address_that_is_none_is_not_found(page, path):
+    with socket.create_connection(("127.0.0.1", page.port)) as asking:
+        asking.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+        assert asking.makefile("rb").readline().startswith(b"HTTP/1.1 404")
 
 
 def test_a_flood_and_a_frame_that_is_huge_are_refused_and_others_notice_nothing(page):

@@ -16,6 +16,9 @@ const color = (form) => {
   return { r: value >> 16, g: value >> 8 & 255, b: value & 255 };
 };
 
+/** What needs a turtle: without one it would wait for a service, and be done to the next one. */
+const OF_A_TURTLE = '.pad, [data-form]:not([data-form="spawn"]):not([data-form="background"])';
+
 export class Controls {
   constructor(bridge, element) {
     this.bridge = bridge;
@@ -69,6 +72,7 @@ export class Controls {
     if ([...select.options].map((option) => option.value).join() === names.join()) return;
     const chosen = select.value;
     select.replaceChildren(...names.map((name) => new Option(name, name, false, name === chosen)));
+    for (const part of this.element("controls").querySelectorAll(OF_A_TURTLE)) part.inert = names.length === 0;
     if (!this.element("controls").hidden) this.advertise();
   }
 
@@ -111,7 +115,11 @@ export class Controls {
   turn(theta) {
     const action = this.full(`${this.turtle}/rotate_absolute`);
     this.goal = this.bridge.goal(action, `${this.interfaces}/action/RotateAbsolute`, { theta });
-    this.goal.done.catch((error) => this.answer(heard(error.message), true));
+    this.answer("");
+    this.goal.done.then(
+      () => this.answer(t("{name}: done", { name: "rotate_absolute" })),
+      (error) => this.answer(heard(error.message), true),
+    );
   }
 
   // Services --------------------------------------------------------------------------------------
@@ -120,7 +128,8 @@ export class Controls {
     try {
       const values = await this.bridge.call(this.full(name), args, type);
       const isThere = name === "spawn" && !values.name;
-      this.answer(isThere ? t("There is such a turtle already.") : t("{name}: done", { name }));
+      this.answer(isThere ? t("There is no new turtle: the name is taken, or is none that ROS allows.")
+        : t("{name}: done", { name }), isThere);
     } catch (error) {
       this.fail(name, error);
     }

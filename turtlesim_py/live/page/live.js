@@ -46,6 +46,7 @@ async function take(news) {
     await view.setPaint(news.whole);
     controls.know(about);
     element("graph").hidden = !about.has_graph;
+    if (about.has_graph) explorer.look();
     state();
   }
   if (news.grading) {

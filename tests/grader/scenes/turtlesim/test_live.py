@@ -111,7 +111,8 @@ def test_what_checks_say_is_told_at_once_and_to_those_who_come_later(page, viewe
             "help": "",
         }
     ]
-    viewer.send(json.dumps({"op": "subscribe", "topic": "/turtlesim_live"}))
+    for op in ("unsubscribe", "subscribe"):
+        viewer.send(json.dumps({"op": op, "topic": "/turtlesim_live"}))
     assert heard(viewer)["msg"]["grading"] == told
 
 
