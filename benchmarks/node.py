@@ -215,14 +215,10 @@ def cost_of_page(subscriber: Subscriber) -> Iterator[Row]:
     def share(drive: bool) -> float:
         return cpu_percent(process, lambda: subscriber.spin_for(WINDOW_S, drive))
 
-    def interval(name: str) -> Iterator[Row]:
+    def gaps_ms() -> list[float]:
         subscriber.stamps_ns.clear()
-        subscriber.spin_for(10.0, drive=True)
-        gaps_ms = [(b - a) / 1e6 for a, b in pairwise(subscriber.stamps_ns)]
-        yield Row(
-            f"pose interval, driven, {name}, mean", "ms", [statistics.mean(gaps_ms)], digits=4
-        )
-        yield Row("... standard deviation", "ms", [statistics.stdev(gaps_ms)], digits=2)
+        subscriber.spin_for(5.0, drive=True)
+        return [(b - a) / 1e6 for a, b in pairwise(subscriber.stamps_ns)]
 
     with simulator("--ros-args", "-p", f"view_port:={port}") as process:
         subscriber.stamps_ns.clear()
@@ -237,12 +233,21 @@ def cost_of_page(subscriber: Subscriber) -> Iterator[Row]:
                 looked_at.append(share(drive=False))
         yield Row("CPU, idle, page that nobody looks at", "%", alone)
         yield Row("CPU, idle, 1 viewer", "%", looked_at)
-        yield from interval("no viewer")
         with viewers(port, 1):
             yield Row("CPU, driven, 1 viewer", "%", [share(drive=True) for _ in range(WINDOWS)])
         with viewers(port, 10):
             yield Row("CPU, driven, 10 viewers", "%", [share(drive=True) for _ in range(WINDOWS)])
-            yield from interval("10 viewers")
+        without: list[list[float]] = []
+        with_ten: list[list[float]] = []
+        for _ in range(2 * WINDOWS):  # in turns, too
+            without.append(gaps_ms())
+            with viewers(port, 10):
+                subscriber.spin_for(0.5)
+                with_ten.append(gaps_ms())
+        for name, windows in (("no viewer", without), ("10 viewers", with_ten)):
+            means, spreads = map(statistics.mean, windows), map(statistics.stdev, windows)
+            yield Row(f"pose interval, driven, {name}, mean", "ms", list(means), digits=4)
+            yield Row("... standard deviation", "ms", list(spreads), digits=2)
 
 
 def most_turtles(subscriber: Subscriber) -> Iterator[Row]:
