@@ -1,4 +1,4 @@
-"""What the simulator costs, beside what the original costs: prints a table, in under two minutes.
+"""What the simulator costs, beside what the original costs: prints a table, in about four minutes.
 
     .venv/bin/python benchmarks/node.py
 
