@@ -150,8 +150,8 @@ class Live:
         if self._page is None or not sys.stderr.isatty():
             return
         said = tell("The page stays at {address}; Ctrl-C ends it.", address=self._page.address)
-        Console(stderr=True, highlight=False).print(Text(for_terminal(said)), soft_wrap=True)
-        with suppress(KeyboardInterrupt):
+        with suppress(KeyboardInterrupt):  # from here on: who reads the line may press at once
+            Console(stderr=True, highlight=False).print(Text(for_terminal(said)), soft_wrap=True)
             threading.Event().wait()
 
     def _change(self, grading: Grading | None = None, **known: Any) -> None:

@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 from websockets.sync.client import connect
 
 from grader import grading
@@ -81,6 +82,19 @@ def test_runs_go_one_after_the_other_and_verdicts_are_told_as_they_are_known(
     said = capfd.readouterr().err
     assert re.search(r"The runs are to be seen at http://127.0.0.1:\d+/\?token=\S+\n", said)
     assert "Nobody looks yet; the run begins." in said
+
+
+def test_who_presses_ctrl_c_as_soon_as_it_is_offered_gets_the_code_of_the_score(
+    in_no_time, tmp_path, monkeypatch
+):
+    class Pressed(Console):
+        def print(self, *said, **how):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(live, "Console", Pressed)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    out = str(tmp_path / "out")
+    assert main(["run", str(QUICK), "--live", "--fail-under", "101", "--out", out]) == 1
 
 
 def test_a_port_that_is_taken_is_no_hindrance(in_no_time, tmp_path, capfd, monkeypatch):
