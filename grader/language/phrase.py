@@ -9,10 +9,9 @@ from __future__ import annotations
 import re
 import string
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
 from typing import Any, Self
 
-#: What stands in a sentence's place.
-Value = "str | int | float | Phrase"
 #: How a value may be written: a name, and a format that cannot ask for a page of blanks.
 _NAME = re.compile(r"[a-z_][a-z0-9_]*", re.IGNORECASE)
 _FORMAT = re.compile(r"[+,]?[0-9]{0,2},?(\.[0-9]{1,2})?[a-zA-Z%]?")
@@ -65,7 +64,8 @@ class Phrase(str):
 
     def strip(self, *chars: Any) -> str:
         """The same where there is nothing to strip."""
-        return _kept(self, super().strip(*chars))
+        text = super().strip(*chars)
+        return self if len(text) == len(self) else text
 
 
 def marked(key: str) -> str:
@@ -143,13 +143,24 @@ def fill(key: str, values: Mapping[str, Any], write: Callable[[Any, str], str] =
     return "".join(made)
 
 
-def _kept(phrase: Phrase, text: str) -> str:
-    return phrase if len(text) == len(phrase) else text
+def each_text(value: Any, change: Callable[[str, str], str], field: str = "") -> Any:
+    """A dataclass, row or dictionary with each of its texts changed; keys stay.
 
-
-def like(row: list[Any] | tuple[Any, ...], items: list[Any]) -> Any:
-    """A row of the same kind with other items."""
-    return type(row)(*items) if hasattr(row, "_fields") else type(row)(items)
+    Args:
+        change: makes a text of a text, and of the name of the dataclass's field that holds it: ''
+            where none does.
+    """
+    if isinstance(value, str):
+        return change(value, field)
+    if isinstance(value, Mapping):
+        return {key: each_text(item, change, field) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        items = [each_text(item, change, field) for item in value]
+        return type(value)(*items) if hasattr(value, "_fields") else type(value)(items)
+    if is_dataclass(value) and not isinstance(value, type):
+        of = {each.name: getattr(value, each.name) for each in fields(value)}
+        return replace(value, **{n: each_text(item, change, n) for n, item in of.items()})
+    return value
 
 
 def _as_beginning(clause: str) -> str:

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar, cast
 
-from grader.language.phrase import Phrase, like
+from grader.language.phrase import Phrase, each_text
 
 #: Phrases in phrases: none that a check makes is deeper.
 _DEEPEST = 12
@@ -47,7 +47,11 @@ def restored(value: T, phrases: Mapping[str, Any]) -> T:
         made = {text: phrase(text, data) for text, data in phrases.items()}
     except ValueError as error:
         raise ValueError(f"is damaged: its phrases: {error}") from None
-    return cast(T, _restore(value, made))
+    return cast(T, each_text(value, lambda text, field: _found(text, field, made)))
+
+
+def _found(text: str, field: str, made: Mapping[str, Phrase]) -> str:
+    return made.get(text, text) if not field or field in SENTENCES else text
 
 
 def phrase(text: str, data: Any, depth: int = 0) -> Phrase:
@@ -137,18 +141,3 @@ def _size(phrases: Mapping[str, Any]) -> int:
         elif isinstance(value, list):
             waiting += value
     return count
-
-
-def _restore(value: Any, made: Mapping[str, Phrase], is_sentence: bool = True) -> Any:
-    if isinstance(value, str):
-        return made.get(value, value) if is_sentence else value
-    if isinstance(value, Mapping):
-        return {key: _restore(item, made, is_sentence) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return like(value, [_restore(item, made, is_sentence) for item in value])
-    if is_dataclass(value) and not isinstance(value, type):
-        of = {field.name: getattr(value, field.name) for field in fields(value)}
-        return replace(
-            value, **{name: _restore(item, made, name in SENTENCES) for name, item in of.items()}
-        )
-    return value

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
 from numbers import Real
 from typing import Any
 
 from grader.language.catalogue import ENGLISH, catalogue, knows, spoken
-from grader.language.phrase import Phrase, fill, like, say, say_many
+from grader.language.phrase import Phrase, each_text, fill, say, say_many
 
 _POINT = re.compile(r"(?<=\d)\.(?=\d)")
 _COMMA = re.compile(r"(?<=\d),(?=\d{3})")
@@ -61,16 +59,9 @@ def in_language(value: Any, language: str = "") -> Any:
     language = language or spoken()
     if language == ENGLISH:
         return value
-    if isinstance(value, Phrase):
-        return told(value, language)
-    if isinstance(value, Mapping):
-        return {key: in_language(item, language) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return like(value, [in_language(item, language) for item in value])
-    if is_dataclass(value) and not isinstance(value, type):
-        names = [field.name for field in fields(value)]
-        return replace(value, **{n: in_language(getattr(value, n), language) for n in names})
-    return value
+    return each_text(
+        value, lambda text, _: told(text, language) if isinstance(text, Phrase) else text
+    )
 
 
 def number(text: str, language: str = "") -> str:
