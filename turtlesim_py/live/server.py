@@ -243,9 +243,9 @@ class LiveServer(Generic[_Source]):
 
     def _watch(self, viewer: _Viewer, watches: bool) -> None:
         """Begin or end to tell a viewer of the arena."""
-        if viewer in self._watching and watches:
-            return  # all of the arena is much to send: he has it
-        if watches:
+        if not watches:
+            self._watching.discard(viewer)
+        elif viewer not in self._watching:  # all of the arena is much to send: else he has it
             self._watching.add(viewer)
             viewer.is_behind = True
             now = self._loop.time()
@@ -255,8 +255,6 @@ class LiveServer(Generic[_Source]):
                 self._loop.call_later(pause, self._catch_up, viewer)
             else:
                 self.feed.ask(viewer)
-        else:
-            self._watching.discard(viewer)
         self.feed.is_watched = bool(self._watching)
 
     async def _on_viewer(self, connection: ServerConnection) -> None:

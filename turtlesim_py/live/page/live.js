@@ -21,6 +21,7 @@ let about = null;
 let grading = null;
 let isLost = false;
 let isDue = false;
+let hasLooked = false;
 let calls = [];
 let told = Promise.resolve();
 
@@ -46,7 +47,9 @@ async function take(news) {
     await view.setPaint(news.whole);
     controls.know(about);
     element("graph").hidden = !about.has_graph;
-    if (about.has_graph) explorer.look();
+    // once a connection: who is slow gets all of the picture often
+    if (about.has_graph && !hasLooked) explorer.look();
+    hasLooked = true;
     state();
   }
   if (news.grading) {
@@ -100,7 +103,7 @@ function sayAgain() {
 }
 
 const bridge = new Rosbridge({
-  closed: () => { state(true); controls.rest(); },
+  closed: () => { hasLooked = false; state(true); controls.rest(); },
   status: (text) => controls.answer(heard(text), true),
 });
 const controls = new Controls(bridge, element);
