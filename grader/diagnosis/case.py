@@ -10,7 +10,7 @@ from grader.diagnosis import printed
 from grader.language.phrase import Phrase, joined, say
 from grader.recording.conduct import Conduct, End, EndKind, Place, Raised, Stop
 from grader.recording.recording import Recording, Run
-from grader.scenes import load_scene, load_words
+from grader.scenes import load_scene
 from grader.scenes.scene import Endpoint, EndpointKind
 from grader.text import clip, one_line, plain
 
@@ -93,8 +93,7 @@ class Case:
     @cached_property
     def the_thing(self) -> str:
         """What is driven, with its article: 'the robot'."""
-        the_thing: Phrase = load_words(self.recording.scene).THE_THING
-        return the_thing
+        return load_scene(self.recording.scene).the_thing
 
 
 def told(text: str) -> Phrase:

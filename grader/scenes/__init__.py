@@ -35,7 +35,7 @@ def load_scene(name: str) -> Scene:
 
 
 def load_words(name: str) -> ModuleType:
-    """What a scene's processes say as texts: `THE_THING` and `REMARKS`."""
+    """What a scene's processes say as texts: `REMARKS`."""
     return importlib.import_module(f"{__name__}.{name}.remarked")
 
 

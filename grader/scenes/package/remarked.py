@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from grader.language.phrase import marked, say
+from grader.language.phrase import marked
 
-#: What is driven, with the article that a language needs.
-THE_THING = say("the package")
 #: Remarks on a run; see `grader.recording.remarks`.
 REMARKS = (
     marked("looking at the package took more than {seconds} s"),

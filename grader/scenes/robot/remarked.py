@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from grader.language.phrase import marked, say
+from grader.language.phrase import marked
 
-#: What is driven, with the article that a language needs.
-THE_THING = say("the robot")
 #: Remarks on a run; see `grader.recording.remarks`.
 REMARKS = (marked("of the node's messages the first {number}, or {megabytes} MB, were taken"),)

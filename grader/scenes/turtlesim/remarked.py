@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from grader.language.phrase import marked, say
+from grader.language.phrase import marked
 
-#: What is driven, with the article that a language needs.
-THE_THING = say("the turtle")
 #: Remarks on a run; see `grader.recording.remarks`.
 REMARKS = (
     marked("what the node sent after its first {number} messages was not taken"),

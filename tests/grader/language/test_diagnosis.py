@@ -17,7 +17,7 @@ from grader.run.lockstep.faults import failed
 from grader.run.simulator import link, real_time
 from grader.run.simulator.virtual_time import VAIN
 from grader.run.student.refusal import _OTHER_PROCESS
-from grader.scenes import NAMES, load_words
+from grader.scenes import NAMES, load_scene, load_words
 from grader.submission.opening import open_submission
 from tests.grader.diagnosis.cases import run_of
 from tests.grader.diagnosis.test_rules import CAUSES
@@ -54,9 +54,10 @@ def test_what_another_process_remarks_is_known_again(remark, language):
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("scene", NAMES)
 def test_each_scene_says_what_is_driven_and_what_it_refuses(scene, language):
-    words = load_words(scene)
-    assert holes(words.THE_THING, language) == []
-    assert [hole for key in words.REMARKS for hole in holes(Phrase(key, key), language)] == []
+    assert holes(load_scene(scene).the_thing, language) == []
+    assert [
+        hole for key in load_words(scene).REMARKS for hole in holes(Phrase(key, key), language)
+    ] == []
 
 
 def test_a_remark_that_is_no_sentence_of_ours_stays_a_text():
