@@ -11,9 +11,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from grader.errors import UsageError
+from grader import files
 from grader.exercise.loading import load_exercise
-from grader.language.phrase import say
 from grader.language.telling import tell, told
 from grader.testing.checking import Progress, check_exercise
 from grader.testing.examination import Examination
@@ -57,18 +56,9 @@ def main(args: argparse.Namespace) -> int:
         (args.markdown, examination.to_markdown()),
     ):
         if path is not None:
-            _write(path, text)
+            files.write(path, text)
     _print(examination, Console(highlight=False))
     return int(not examination.is_fine)
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {strerror}", path=path, strerror=error.strerror)
-        ) from None
 
 
 def _print(examination: Examination, console: Console) -> None:

@@ -127,7 +127,7 @@ def _append(path: Path, content: str) -> None:
             file.write(content)
     except OSError as error:
         raise UsageError(
-            say("cannot write {path}: {strerror}", path=path, strerror=error.strerror)
+            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
         ) from None
 
 

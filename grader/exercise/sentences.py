@@ -68,11 +68,6 @@ def last_error(output: str) -> str:
     return without_controls(f"{error.rstrip('.')} {place}", "?")
 
 
-def counted(number: int, one: str, many: str = "") -> str:
-    """So many of something: '1 entry', '2 entries'; `many` is the plural, `one` with an s if ''."""
-    return f"{number} {one if number == 1 else many or one + 's'}"
-
-
 def error_first(recordings: Recordings, finding: Finding) -> Finding:
     """A finding of a run that an error ended: its facts, and the error as what to mend first.
 

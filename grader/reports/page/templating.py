@@ -35,7 +35,6 @@ def environment(script: Path, *styles: Path) -> jinja2.Environment:
     code = script.read_text(encoding="utf-8")
     made.filters.update(points=text.points, clip=text.clip)
     made.globals.update(
-        counted=text.count,
         tell=tell,
         tell_many=tell_many,
         told=told,
