@@ -1,10 +1,11 @@
-"""Shows a page in a browser, where there is one."""
+"""Shows a page in a browser, where there is one, and says how else it is reached."""
 
 from __future__ import annotations
 
 import os
 import sys
 import webbrowser
+from urllib.parse import urlsplit
 
 
 def show(address: str) -> bool:
@@ -19,3 +20,19 @@ def has_browser() -> bool:
     if os.name == "nt" or sys.platform == "darwin":
         return True
     return any(os.environ.get(name) for name in ("BROWSER", "DISPLAY", "WAYLAND_DISPLAY"))
+
+
+def tunnel(address: str) -> str:
+    """What to type where one sits, so that a page of this machine opens there; '' if nothing.
+
+    Only who has come by ssh needs it. ssh sets SSH_CONNECTION to the addresses and ports of both
+    ends, the other's first.
+    """
+    page = urlsplit(address)
+    ends = os.environ.get("SSH_CONNECTION", "").split()
+    if page.hostname != "127.0.0.1" or len(ends) != 4:
+        return ""
+    user = os.environ.get("USER") or os.environ.get("LOGNAME") or "you"
+    machine, port = ends[2:]
+    own_port = "" if port == "22" else f"-p {port} "
+    return f"ssh {own_port}-L {page.port}:127.0.0.1:{page.port} {user}@{machine}"

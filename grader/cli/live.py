@@ -92,6 +92,9 @@ class Live:
         address = self._page.address
         said = tell("The runs are to be seen at {address}", address=address)
         messages.print(Text(for_terminal(said)), soft_wrap=True)
+        if tunnel := browser.tunnel(address):
+            said = tell("To see it where you are, type there: {command}", command=tunnel)
+            messages.print(Text(for_terminal(said)), soft_wrap=True)
         browser.show(address)
         wait = tell("Waiting for somebody to look, {most_s:g} s at most ...", most_s=PATIENCE_S)
         messages.print(wait)

@@ -48,11 +48,17 @@ def _show(simulator: node.TurtlesimNode, stopped: Callable[[], bool]) -> None:
         print(
             f"\nThe turtles: {page.address}\n"
             f"Through a forwarded port, add to its address: {page.forwarded_address}\n"
+            f"{_by_ssh(page.address)}"
             "Ctrl-C ends it.\n",
             flush=True,
         )
         browser.show(page.address)
     node.simulate(simulator, stopped)
+
+
+def _by_ssh(address: str) -> str:
+    tunnel = browser.tunnel(address)
+    return f"To see it where you are, type there: {tunnel}\n" if tunnel else ""
 
 
 if __name__ == "__main__":

@@ -10,12 +10,12 @@ from grader.language.telling import tell
 from grader.scenes.by_hand import command
 
 _BESIDE = """\
-    turtlesim_node
+    turtlesim
     {command}
 """
 _WITH_ROS2 = """\
     colcon build && . install/setup.bash
-    ros2 run turtlesim_py turtlesim_node
+    ros2 run turtlesim_py turtlesim
     ros2 run {package} {name}
 """
 
@@ -44,7 +44,12 @@ def _seen() -> Iterator[str]:
             "over time. It needs nothing but a browser."
         ),
         tell(
-            "`turtlesim_node` opens no window. While it goes, `ros2 run rqt_image_view "
+            "`turtlesim` prints the address of a page, on which the turtle draws while your node "
+            "drives it. `grader run` with `--live` shows a grading there, and `grader view` plays "
+            "it again, tick by tick, with the line of your code behind each command."
+        ),
+        tell(
+            "`turtlesim_node` is the same without a page. With `ros2`, `ros2 run rqt_image_view "
             "rqt_image_view /turtlesim/image` shows the picture, and `ros2 service call "
             "/turtlesim/save_canvas std_srvs/srv/Trigger` writes it as a PNG file."
         ),

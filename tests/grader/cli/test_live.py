@@ -97,6 +97,15 @@ def test_who_presses_ctrl_c_as_soon_as_it_is_offered_gets_the_code_of_the_score(
     assert main(["run", str(QUICK), "--live", "--fail-under", "101", "--out", out]) == 1
 
 
+def test_who_has_come_by_ssh_is_told_how_to_see_it(in_no_time, tmp_path, monkeypatch, capfd):
+    monkeypatch.setenv("SSH_CONNECTION", "10.0.0.7 50122 192.0.2.4 22")
+    assert main(["run", str(QUICK), "--live", "--out", str(tmp_path / "out")]) == 0
+    said = capfd.readouterr().err
+    assert re.search(
+        r"where you are, type there: ssh -L (\d+):127\.0\.0\.1:\1 \S+@192\.0\.2\.4\n", said
+    )
+
+
 def test_a_port_that_is_taken_is_no_hindrance(in_no_time, tmp_path, capfd, monkeypatch):
     first = live.load_live("turtlesim")(0)
     monkeypatch.setattr(live, "USUAL_PORT", int(first.address.split(":")[2].split("/")[0]))

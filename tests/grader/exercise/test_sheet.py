@@ -27,7 +27,7 @@ ASKED = {
     "robot": ("joint_states", "`odom` to `axis`", "radians"),
 }
 TRIED = {
-    "turtlesim": ("    turtlesim_node\n    python3 -m pkg.node\n", "save_canvas"),
+    "turtlesim": ("    turtlesim\n    python3 -m pkg.node\n", "save_canvas"),
     "robot": ("    python3 -m pkg.node\n", "rviz2"),
 }
 
