@@ -268,6 +268,15 @@ def test_nothing_moves_by_itself_where_less_motion_is_asked_for(visit):
     assert moving(page) == 0
 
 
+def test_which_run_is_shown_is_seen_where_the_reader_chooses_the_colours(visit):
+    page = visit("#tick=120", forced_colors="active")
+    colour = "each => getComputedStyle(each).backgroundColor"
+    shown, other = (
+        page.locator(f"button[aria-pressed={is_it}]").first for is_it in ("true", "false")
+    )
+    assert shown.evaluate(colour) != other.evaluate(colour)
+
+
 #: What the report says, which has tests of its own.
 OF_THE_REPORT = "title, header, #runs, #outcome, #checks, #compared-with, #canvas"
 
