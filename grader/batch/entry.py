@@ -75,7 +75,7 @@ class Entry:
         """
         own = {name: getattr(self, name) for name in OWN}
         data = {"schema": SCHEMA, **own, "hand_in": self.hand_in.to_json()}
-        if phrases := stored.phrases_in(self.message):
+        if phrases := stored.phrases_in((self.message, self.hand_in.problem)):
             data["phrases"] = phrases
         files.put(self.folder / ENTRY, json_file.text(data).encode("utf-8"))
 
@@ -97,8 +97,10 @@ class Entry:
             raise ValueError(f"is no entry of a class: expected the schema {SCHEMA}")
         try:
             own = {name: data[name] for name in OWN}
-            own["message"] = stored.restored(own["message"], data.get("phrases", {}))
-            return cls(hand_in=HandIn.from_json(data["hand_in"]), **own)
+            hand_in = HandIn.from_json(data["hand_in"])
+            told = (own["message"], hand_in.problem)
+            own["message"], problem = stored.restored(told, data.get("phrases", {}))
+            return cls(hand_in=replace(hand_in, problem=problem), **own)
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(f"is damaged: {error}") from None
 

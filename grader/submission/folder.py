@@ -219,9 +219,10 @@ def copy(top: Path, into: Path) -> None:
 def shown(name: str | PurePath) -> Phrase:
     """A name of a student's in a message: in one line, and not longer than anybody reads.
 
-    It is the same in any language.
+    It is the same in any language; what is a phrase already, and fit to be shown, stays one.
     """
-    return Phrase(clip_inside(without_controls(str(name), "?"), MAX_SHOWN))
+    text = clip_inside(without_controls(str(name), "?"), MAX_SHOWN)
+    return name if isinstance(name, Phrase) and name == text else Phrase(text)
 
 
 def listed(names: Iterable[str], limit: int = 10) -> str:

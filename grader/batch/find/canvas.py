@@ -17,10 +17,11 @@ from typing import Final, NamedTuple
 
 from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
 from grader.batch.hand_in import Person
+from grader.language.phrase import say
 from grader.submission.folder import is_junk, listed
 from grader.submission.unpacking import is_archive
 
-LAYOUT: Final = "what Canvas's “Download Submissions” makes"
+LAYOUT: Final = say("what Canvas's “Download Submissions” makes")
 _NAME: Final = re.compile(
     r"(?:(?P<late>LATE)_)?(?:anon_(?P<code>[A-Za-z0-9]+)|"
     r"(?P<name>.+?)(?:_(?P<late_too>LATE))?_(?P<user>\d+))"
@@ -29,7 +30,7 @@ _NAME: Final = re.compile(
 )
 #: `node-2.tar.gz`: the same file handed in again, for the second time.
 _AGAIN: Final = re.compile(r"(?P<stem>.+)-(?P<times>[1-9]\d?)(?P<ending>(?:\.[A-Za-z0-9]+)+)")
-_ONLY_TEXT: Final = "Only a text or a link was handed in, and no file."
+_ONLY_TEXT: Final = say("Only a text or a link was handed in, and no file.")
 
 
 class _File(NamedTuple):
@@ -79,11 +80,20 @@ def read(items: Sequence[Item]) -> Reading:
         outdated += [file.item.name for file in older]
         attempts.append(_attempt("_".join(whose), people[whose], kept))
     if len({id for id, _ in files}) < len(files):  # names can be chosen so: ann_12
-        notes.append("Some ids stand there with several names; look at these hand-ins yourself.")
+        notes.append(
+            say("Some ids stand there with several names; look at these hand-ins yourself.")
+        )
     if outdated:
-        notes.append(f"Left out, since there is a newer one of this name: {listed(outdated)}.")
+        notes.append(
+            say(
+                "Left out, since there is a newer one of this name: {names}.",
+                names=listed(outdated),
+            )
+        )
     if others:
-        notes.append(f"Left out, since Canvas does not name them so: {listed(others)}.")
+        notes.append(
+            say("Left out, since Canvas does not name them so: {names}.", names=listed(others))
+        )
     return Reading(LAYOUT, attempts, notes)
 
 

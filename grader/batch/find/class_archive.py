@@ -20,6 +20,8 @@ from typing import IO, Final
 
 from grader import limited, strict_json
 from grader.errors import UsageError
+from grader.language import stored
+from grader.language.phrase import say
 from grader.submission import tar_archive, zip_archive
 from grader.submission.archive import DAMAGED
 from grader.submission.archive_members import Budget, ListTooLong, Member
@@ -39,7 +41,15 @@ _UNWRITABLE: Final = (
     *(errno.EINVAL, errno.EILSEQ, errno.ENAMETOOLONG),
     *(errno.ENOTDIR, errno.EISDIR, errno.EEXIST),
 )
-_INSTEAD: Final = "Unpack it yourself, and give the folder."
+#: What may be odd about some of the members.
+_CANNOT_BE_WRITTEN: Final = say("cannot be written here")
+_NO_FILE: Final = say("is encrypted, a link or no ordinary file, and left out")
+_OUTSIDE: Final = say("would be written outside of its folder, and is left out")
+_DAMAGED: Final = say("is damaged, and kept as far as it goes")
+_TOO_LARGE: Final = say(
+    "has more than {size:g} MB, too much for a submission, and is cut", size=MAX_BYTES / 1e6
+)
+_INSTEAD: Final = say("Unpack it yourself, and give the folder.")
 
 
 def unpack(archive: Path, into: Path) -> list[str]:
@@ -54,28 +64,67 @@ def unpack(archive: Path, into: Path) -> list[str]:
     into.mkdir()
     name = shown(archive.name)
     try:
-        said = strict_json.loads(limited.call(lambda: _answer(archive, into), LIMITS).decode())
+        notes, refused = _from_answer(limited.call(lambda: _answer(archive, into), LIMITS))
     except limited.LimitHit as hit:
-        raise UsageError(f"{name} cannot be unpacked: that {hit}. {_INSTEAD}") from None
-    if "refused" in said:
-        raise UsageError(str(said["refused"]))
-    return [str(note) for note in said["notes"]]
+        raise UsageError(
+            say(
+                "{name} cannot be unpacked: that {hit}. {instead}",
+                name=name,
+                hit=hit.args[0],
+                instead=_INSTEAD,
+            )
+        ) from None
+    if refused:
+        raise UsageError(refused)
+    return notes
 
 
 def _answer(archive: Path, into: Path) -> bytes:
     name = shown(archive.name)
     try:
-        return json.dumps({"notes": _Unpacking(name, into).unpack(archive)}).encode()
+        return _to_answer(_Unpacking(name, into).unpack(archive))
     except UsageError as error:
         why = error.message
     except ListTooLong as error:
-        why = f"{name} lists more than any class hands in: {error}. {_INSTEAD}"
+        why = say(
+            "{name} lists more than any class hands in: {error}. {instead}",
+            name=name,
+            error=error.args[0],
+            instead=_INSTEAD,
+        )
     except (*DAMAGED, NotImplementedError, OSError) as error:
-        told = shown(str(error) or "it ends too early")
-        why = f"{name} cannot be unpacked: {told}. Download it again, or unpack it yourself."
+        why = say(
+            "{name} cannot be unpacked: {why}. Download it again, or unpack it yourself.",
+            name=name,
+            why=shown(str(error)) or say("it ends too early"),
+        )
         if isinstance(error, OSError) and error.errno == errno.ENOSPC:
-            why = f"{name} cannot be unpacked: {into} has no space left. {_INSTEAD}"
-    return json.dumps({"refused": why}).encode()
+            why = say(
+                "{name} cannot be unpacked: {folder} has no space left. {instead}",
+                name=name,
+                folder=into,
+                instead=_INSTEAD,
+            )
+    return _to_answer(refused=why)
+
+
+def _to_answer(notes: Sequence[str] = (), refused: str = "") -> bytes:
+    said = {"notes": notes, "refused": refused}
+    return json.dumps({**said, "phrases": stored.phrases_in(said)}).encode()
+
+
+def _from_answer(answer: bytes) -> tuple[list[str], str]:
+    """The notes, and why nothing was unpacked.
+
+    Raises:
+        ValueError: it is no answer.
+    """
+    said = strict_json.loads(answer.decode())
+    texts = [said["refused"], *said["notes"]]
+    if not all(isinstance(text, str) for text in texts):
+        raise ValueError(f"expected sentences, found {texts!r:.80}")
+    refused, *notes = stored.restored(texts, said["phrases"])
+    return notes, refused
 
 
 class _Room(Budget):
@@ -87,14 +136,26 @@ class _Room(Budget):
     def take_bytes(self, name: str, count: int) -> None:
         self._bytes_left -= count
         if self._bytes_left < 0:
-            most = f"{MAX_ALL_BYTES / 1e9:g} GB, the limit for a class"
-            raise UsageError(f"{name} unpacks to more than {most}. {_INSTEAD}")
+            raise UsageError(
+                say(
+                    "{name} unpacks to more than {size:g} GB, the limit for a class. {instead}",
+                    name=name,
+                    size=MAX_ALL_BYTES / 1e9,
+                    instead=_INSTEAD,
+                )
+            )
 
     def take_files(self, name: str, count: int) -> None:
         self._files_left -= count
         if self._files_left < 0:
-            most = f"{MAX_FILES:,} files, the limit for a class"
-            raise UsageError(f"{name} holds more than {most}. {_INSTEAD}")
+            raise UsageError(
+                say(
+                    "{name} holds more than {most:,} files, the limit for a class. {instead}",
+                    name=name,
+                    most=MAX_FILES,
+                    instead=_INSTEAD,
+                )
+            )
 
 
 class _Unpacking:
@@ -119,9 +180,14 @@ class _Unpacking:
                 except OSError as error:
                     if error.errno not in _UNWRITABLE:
                         raise
-                    self.odd["cannot be written here"].append(member.name)
+                    self.odd[_CANNOT_BE_WRITTEN].append(member.name)
         return [
-            f"Of what {self.name} holds, some {what}: {listed(names)}."
+            say(
+                "Of what {name} holds, some {what}: {names}.",
+                name=self.name,
+                what=what,
+                names=listed(names),
+            )
             for what, names in self.odd.items()
         ]
 
@@ -133,8 +199,7 @@ class _Unpacking:
             if path is None or not _belongs(path) or not generated.isdisjoint(path.parents):
                 continue
             if member.refusal and not member.is_folder:
-                what = "is encrypted, a link or no ordinary file, and left out"
-                self.odd[what].append(member.name)
+                self.odd[_NO_FILE].append(member.name)
             else:
                 yield path, member
 
@@ -143,7 +208,7 @@ class _Unpacking:
         text = member.name.replace("\\", "/")
         path = PurePosixPath(text)
         if path.is_absolute() or ".." in path.parts or re.match("[A-Za-z]:/", text):
-            self.odd["would be written outside of its folder, and is left out"].append(member.name)
+            self.odd[_OUTSIDE].append(member.name)
             return None
         return PurePosixPath(*map(_short, path.parts)) if path.parts else None
 
@@ -160,7 +225,7 @@ class _Unpacking:
                 with member.open() as source:
                     self._copy(member, source, file)
             except (*DAMAGED, NotImplementedError):  # what came out stays: it was handed in
-                self.odd["is damaged, and kept as far as it goes"].append(member.name)
+                self.odd[_DAMAGED].append(member.name)
 
     def _copy(self, member: Member, source: IO[bytes], file: IO[bytes]) -> None:
         left = MAX_FILE_BYTES
@@ -169,8 +234,7 @@ class _Unpacking:
             file.write(chunk)
             left -= len(chunk)
         if not left:
-            what = f"has more than {MAX_BYTES / 1e6:g} MB, too much for a submission, and is cut"
-            self.odd[what].append(member.name)
+            self.odd[_TOO_LARGE].append(member.name)
 
 
 @contextmanager

@@ -14,10 +14,11 @@ from typing import Final
 
 from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
 from grader.batch.find.git_time import LastCommits
+from grader.language.phrase import say
 from grader.scratch import make_folder
 from grader.submission.folder import listed, shown
 
-LAYOUT: Final = "a folder of git repositories"
+LAYOUT: Final = say("a folder of git repositories")
 _MARKS: Final = (".git", ".classroom50.yml")
 
 
@@ -37,13 +38,22 @@ def read(items: Sequence[Item]) -> Reading:
     pairs = zip(repositories, attempts, strict=True)
     notes = []
     if prefix:
-        notes.append(f"All begin with {shown(prefix)}, which is left out of their ids.")
+        notes.append(
+            say(
+                "All begin with {prefix}, which is left out of their ids.",
+                prefix=shown(prefix),
+            )
+        )
     if not commits.can_be_asked:
-        notes.append("There is no git on this machine to say when the last commits were made.")
+        notes.append(say("There is no git on this machine to say when the last commits were made."))
     elif unknown := [item.name for item, each in pairs if each.at is None]:
-        notes.append(f"Nothing says when these were last committed to: {listed(unknown)}.")
+        notes.append(
+            say("Nothing says when these were last committed to: {names}.", names=listed(unknown))
+        )
     if others:
-        notes.append(f"Left out, since they are no repositories: {listed(others)}.")
+        notes.append(
+            say("Left out, since they are no repositories: {names}.", names=listed(others))
+        )
     return Reading(LAYOUT, attempts, notes)
 
 

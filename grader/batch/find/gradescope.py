@@ -17,13 +17,14 @@ import yaml
 from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
 from grader.batch.find.times import read_time
 from grader.batch.hand_in import Person
+from grader.language.phrase import say
 from grader.submission.folder import listed, shown
 
-LAYOUT: Final = "Gradescope's export of submissions"
+LAYOUT: Final = say("Gradescope's export of submissions")
 METADATA: Final = "submission_metadata.yml"
 MAX_METADATA_BYTES: Final = 200_000_000
 _FOLDER: Final = re.compile(r"submission_(?P<number>\d+)")
-_NO_FILES: Final = "Gradescope's export holds no file of this submission."
+_NO_FILES: Final = say("Gradescope's export holds no file of this submission.")
 #: Of a submission; nothing else is looked at.
 _WANTED: Final = ("submitters", "created_at")
 _MAX_DEPTH: Final = 4  # of submissions, submitters, and what is said of one
@@ -50,7 +51,9 @@ def read(items: Sequence[Item]) -> Reading:
         else:
             others.append(name)
     if others:
-        notes.append(f"Left out, since Gradescope does not name them so: {listed(others)}.")
+        notes.append(
+            say("Left out, since Gradescope does not name them so: {names}.", names=listed(others))
+        )
     return Reading(LAYOUT, attempts, notes)
 
 
@@ -87,18 +90,29 @@ def _text(said: object) -> str:
 
 def _metadata(item: Item | None, notes: list[str]) -> dict[str, dict[str, Any]]:
     """What is said of each submission, by the name of its folder."""
-    why = f"there is no {METADATA}"
+    why = say("there is no {file}", file=METADATA)
     if item is not None and item.path.is_file():
         try:
             found = _Texts(item.path).read()
             return {name: said for name, said in found.items() if isinstance(said, dict)}
         except yaml.MarkedYAMLError as error:
             line = error.problem_mark.line + 1 if error.problem_mark else 1
-            why = f"{METADATA} is damaged in line {line} ({shown(error.problem or 'no YAML')})"
+            why = say(
+                "{file} is damaged in line {line} ({what})",
+                file=METADATA,
+                line=str(line),
+                what=shown(error.problem or say("no YAML")),
+            )
+        except _NotRead as error:
+            why = say("{file} cannot be read ({why})", file=METADATA, why=error.args[0])
         except (yaml.YAMLError, ValueError) as error:
-            why = f"{METADATA} cannot be read ({shown(str(error))})"
-    notes.append(f"Names, ids and times are missing, since {why}.")
+            why = say("{file} cannot be read ({why})", file=METADATA, why=shown(str(error)))
+    notes.append(say("Names, ids and times are missing, since {why}.", why=why))
     return {}
+
+
+class _NotRead(Exception):
+    """Why a file is not read, as a phrase."""
 
 
 class _Texts:
@@ -116,17 +130,17 @@ class _Texts:
 
         Raises:
             yaml.YAMLError: it is no YAML.
-            ValueError: it is too large, or something else than a mapping.
+            _NotRead: it is too large, or something else than a mapping.
         """
         if self._path.stat().st_size > MAX_METADATA_BYTES:
-            raise ValueError(f"it has more than {MAX_METADATA_BYTES / 1e6:g} MB")
+            raise _NotRead(say("it has more than {size:g} MB", size=MAX_METADATA_BYTES / 1e6))
         loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
         with self._path.open("rb") as file:
             self._events = yaml.parse(file, Loader=loader)
             for event in self._events:
                 if isinstance(event, yaml.MappingStartEvent):
                     return dict(self._mapping(0))
-        raise ValueError("it is empty")
+        raise _NotRead(say("it is empty"))
 
     def _value(self, event: Any, depth: int) -> Any:
         if isinstance(event, yaml.ScalarEvent):

@@ -10,11 +10,13 @@ from dataclasses import replace
 from grader.batch.find.attempt import Attempt
 from grader.batch.find.roster import Member, Roster, folded
 from grader.batch.hand_in import Person
+from grader.language import phrase
+from grader.language.phrase import say
 from grader.submission.folder import listed, shown
 
-NOTHING = "Nothing was handed in."
+NOTHING = say("Nothing was handed in.")
 #: Of somebody who may be one of those whose hand-ins are nobody's: to be without a grade.
-UNCLEAR = "It is not clear which hand-in, if any, is this person's."
+UNCLEAR = say("It is not clear which hand-in, if any, is this person's.")
 
 
 def joined(
@@ -53,8 +55,13 @@ def joined(
     missing = [member for member in roster.members if member.person.id not in seen]
     notes = [*roster.notes]
     if unknown:
-        told = listed(person.name or person.id for person in unknown)
-        notes.append(f"Not in {shown(roster.name)}, and yet there: {told}.")
+        notes.append(
+            say(
+                "Not in {roster}, and yet there: {names}.",
+                roster=shown(roster.name),
+                names=listed(person.name or person.id for person in unknown),
+            )
+        )
     unclear = _unclear(unknown, missing, index, notes)
     found += [_missing(member, member.person.id in unclear) for member in missing]
     return found, notes
@@ -93,16 +100,23 @@ def _unclear(
         might = index.candidates(person)
         if may_be := [member.person for member in missing if member.person.id in might]:
             found.update(each.id for each in may_be)
-            names = " or ".join(
-                f"{each.name} ({each.id})" if each.name else each.id for each in may_be[:3]
-            )
-            told.append(f"{person.name or person.id} may be {names}")
+            names = phrase.joined([_called(each) for each in may_be[:3]], say(" or "))
+            who = shown(person.name or person.id)
+            told.append(say("{who} may be {names}", who=who, names=names))
     if told:
         notes.append(
-            f"Ambiguous, and so nobody's: {listed(told)}. They have no grade in any import; "
-            "make clear in the roster, or in the names of the files, who is who."
+            say(
+                "Ambiguous, and so nobody's: {pairs}. They have no grade in any import; "
+                "make clear in the roster, or in the names of the files, who is who.",
+                pairs=listed(told),
+            )
         )
     return found
+
+
+def _called(person: Person) -> str:
+    id = shown(person.id)
+    return say("{name} ({id})", name=shown(person.name), id=id) if person.name else id
 
 
 #: Columns of an export that say who somebody is.

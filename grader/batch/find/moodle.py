@@ -14,14 +14,15 @@ from collections.abc import Sequence
 from typing import Final
 
 from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
+from grader.language.phrase import say
 from grader.submission.folder import is_junk, listed
 
-LAYOUT: Final = "what Moodle's “Download all submissions” makes"
+LAYOUT: Final = say("what Moodle's “Download all submissions” makes")
 _PREFIX: Final = re.compile(
     r"(?P<name>.*?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind>[a-z0-9]+)(?:_(?P<filename>.*))?",
     re.DOTALL,
 )
-_ONLY_TEXT: Final = "Only a text was handed in online, and no file."
+_ONLY_TEXT: Final = say("Only a text was handed in online, and no file.")
 
 
 def looks_like(items: Sequence[Item]) -> bool:
@@ -47,8 +48,8 @@ def read(items: Sequence[Item]) -> Reading:
         _attempt(name, number, found, "" if of_groups else f"Participant {number}")
         for (name, number), found in pieces.items()
     ]
-    notes = [f"Left out, since Moodle does not name them so: {listed(others)}."] if others else []
-    return Reading(LAYOUT, attempts, notes)
+    left_out = say("Left out, since Moodle does not name them so: {names}.", names=listed(others))
+    return Reading(LAYOUT, attempts, [left_out] if others else [])
 
 
 def _attempt(name: str, number: str, pieces: list[Piece], identifier: str) -> Attempt:

@@ -19,6 +19,7 @@ from grader.batch.find.attempt import Attempt, Item, Piece, Reading, items_of, p
 from grader.batch.find.plain import stem
 from grader.batch.find.times import read_time
 from grader.errors import UsageError
+from grader.language.phrase import Phrase, say
 from grader.submission.folder import is_junk, listed, shown
 
 MAX_LEVELS: Final = 4
@@ -26,7 +27,7 @@ _MAX_DIGITS: Final = 9  # of the number of an attempt
 _WHOSE: Final = ("id", "name", "email")
 _FIELD: Final = re.compile(r"\{([^{}]*)\}")
 _WORD: Final = re.compile(r"[^\W\d]\w*")
-_ADVICE: Final = "Write it like {id}_{name}_{attempt}: see docs/batch.md."
+_ADVICE: Final = say("Write it like {{id}}_{{name}}_{{attempt}}: see docs/batch.md.")
 
 
 class _Field(str):
@@ -47,14 +48,16 @@ class Pattern:
         at = 0
         for match in _FIELD.finditer(text):
             if match.start() == at and self._parts:
-                raise self._refused("two fields follow each other, with nothing between them")
+                raise self._refused(say("two fields follow each other, with nothing between them"))
             self._parts += [self._literal(text[at : match.start()]), self._field(match[1])]
             at = match.end()
         self._parts.append(self._literal(text[at:]))
         if not set(_WHOSE) & self._fields:
-            raise self._refused("it does not say whose a file is: one of {id}, {name}, {email}")
+            raise self._refused(
+                say("it does not say whose a file is: one of {{id}}, {{name}}, {{email}}")
+            )
         if self.levels > MAX_LEVELS or "" in text.split("/"):
-            raise self._refused(f"it has empty folders, or more than {MAX_LEVELS}")
+            raise self._refused(say("it has empty folders, or more than {most}", most=MAX_LEVELS))
 
     @property
     def _fields(self) -> set[str]:
@@ -109,15 +112,22 @@ class Pattern:
             else:
                 attempts.append(_attempt(path[-1], said, notes))
         if not attempts:
-            found = listed(others, 5) or "nothing that deep"
             raise UsageError(
-                f"--pattern {shown(self.text)} fits none of what was found: {found}. {_ADVICE}"
+                say(
+                    "--pattern {pattern} fits none of what was found: {found}. {advice}",
+                    pattern=shown(self.text),
+                    found=listed(others, 5) or say("nothing that deep"),
+                    advice=_ADVICE,
+                )
             )
         if "filename" in self._fields:
             attempts = _together(attempts)
         if others:
-            notes.append(f"Left out, since the pattern does not fit: {listed(others)}.")
-        return Reading(f"the pattern {shown(self.text)} says", attempts, notes)
+            notes.append(
+                say("Left out, since the pattern does not fit: {names}.", names=listed(others))
+            )
+        layout = say("the pattern {pattern} says", pattern=shown(self.text))
+        return Reading(layout, attempts, notes)
 
     def _paths(self, items: Sequence[Item], above: tuple[Item, ...]) -> Iterator[tuple[Item, ...]]:
         for item in items:
@@ -129,20 +139,33 @@ class Pattern:
 
     def _literal(self, text: str) -> str:
         if "{" in text or "}" in text:
-            raise self._refused("a brace has no partner")
+            raise self._refused(say("a brace has no partner"))
         return text
 
     def _field(self, name: str) -> _Field:
         if not name:
             return _Field()
         if not _WORD.fullmatch(name):
-            raise self._refused(f"{{{shown(name)}}} is no name for a field: expected one word")
+            raise self._refused(
+                say("{field} is no name for a field: expected one word", field=_braced(name))
+            )
         if name in self._fields:
-            raise self._refused(f"{{{shown(name)}}} stands in it twice")
+            raise self._refused(say("{field} stands in it twice", field=_braced(name)))
         return _Field(name)
 
     def _refused(self, why: str) -> UsageError:
-        return UsageError(f"--pattern {shown(self.text)}: {why}. {_ADVICE}")
+        return UsageError(
+            say(
+                "--pattern {pattern}: {why}. {advice}",
+                pattern=shown(self.text),
+                why=why,
+                advice=_ADVICE,
+            )
+        )
+
+
+def _braced(name: str) -> Phrase:
+    return Phrase(f"{{{shown(name)}}}")
 
 
 def _together(attempts: Sequence[Attempt]) -> list[Attempt]:
@@ -163,7 +186,13 @@ def _attempt(item: Item, said: dict[str, str], notes: list[str]) -> Attempt:
     if text := said.pop("at", ""):
         at = read_time(text)
         if at is None:
-            notes.append(f"{shown(item.name)}: {shown(text)} is no time such as 2026-11-01T12:30Z.")
+            notes.append(
+                say(
+                    "{file}: {text} is no time such as 2026-11-01T12:30Z.",
+                    file=shown(item.name),
+                    text=shown(text),
+                )
+            )
     columns = {title: text.strip() for title, text in said.items()}
     if email:
         columns["email"] = email

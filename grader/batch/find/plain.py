@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from typing import Final
 
 from grader.batch.find.attempt import Attempt, Item, Piece, Reading, person
+from grader.language.phrase import say
 from grader.submission.folder import listed, shown
 from grader.submission.unpacking import is_archive
 
-LAYOUT: Final = "a plain folder, with one file or folder a student"
+LAYOUT: Final = say("a plain folder, with one file or folder a student")
 #: What lies beside hand-ins and is none.
 _OTHERS: Final = (".csv", ".json", ".md", ".ods", ".txt", ".xls", ".xlsx", ".yaml", ".yml", ".html")
 #: With any of these at its top a folder is a package.
@@ -39,7 +40,11 @@ def read(items: Sequence[Item]) -> Reading:
         name = stem(item)
         if name in whose:
             notes.append(
-                f"{shown(item.name)} is left out: {shown(whose[name].name)} is of the same name."
+                say(
+                    "{file} is left out: {other} is of the same name.",
+                    file=shown(item.name),
+                    other=shown(whose[name].name),
+                )
             )
         else:
             whose[name] = item
@@ -48,7 +53,7 @@ def read(items: Sequence[Item]) -> Reading:
         for name, item in sorted(whose.items())
     ]
     if others:
-        notes.append(f"Left out, since they are no submissions: {listed(others)}.")
+        notes.append(say("Left out, since they are no submissions: {names}.", names=listed(others)))
     return Reading(LAYOUT, attempts, notes)
 
 

@@ -20,6 +20,7 @@ from grader.batch.find.table import read_table
 from grader.batch.find.times import read_time
 from grader.batch.hand_in import Person
 from grader.errors import UsageError
+from grader.language.phrase import say
 from grader.submission.folder import listed, shown
 
 #: Columns that say who it is, the best first. A person's id is of the first of them in which every
@@ -109,8 +110,12 @@ def read_roster(path: Path) -> Roster:
     names = _Names(columns)
     if not ids and not names.is_there:
         raise UsageError(
-            f"{shown(path.name)} has no column that says who somebody is: it has {listed(titles)}. "
-            "Expected one called id, name, email, username or the like in the first line."
+            say(
+                "{name} has no column that says who somebody is: it has {titles}. "
+                "Expected one called id, name, email, username or the like in the first line.",
+                name=shown(path.name),
+                titles=listed(titles),
+            )
         )
     rows = [row for row in rows if folded(names.of(row)) not in _NOBODY]
     keyed = [row for row in rows if any(row[at] for at in ids) or names.of(row)]
@@ -130,11 +135,9 @@ def read_roster(path: Path) -> Roster:
             twice.append(member.person.id)
     if unread := [row for row in keyed if (said := _time(row, columns)) and not _moment_of(said)]:
         whose = [next((row[at] for at in ids if row[at]), names.of(row)) for row in unread]
-        times = [_time(row, columns) for row in unread]
-        notes.append(_unread(path, [f"{who}: {at}" for who, at in zip(whose, times, strict=True)]))
+        notes.append(_unread(path, whose, [_time(row, columns) for row in unread]))
     if twice:
-        what = "has several rows of the same id, of which the first counts"
-        notes.append(f"{shown(path.name)} {what}: {listed(twice)}.")
+        notes.append(_twice(path, twice))
     return Roster(path.name, list(members.values()), notes)
 
 
@@ -191,11 +194,22 @@ def _moment_of(said: str) -> datetime | None:
     return read_time(tag[1] if tag else said)
 
 
-def _unread(path: Path, times: Sequence[str]) -> str:
-    return (
-        f"These times in {shown(path.name)} cannot be read, and count as unknown: {listed(times)}. "
+def _unread(path: Path, whose: Sequence[str], times: Sequence[str]) -> str:
+    pairs = zip(map(shown, whose), map(shown, times), strict=True)
+    return say(
+        "These times in {name} cannot be read, and count as unknown: {times}. "
         "Expected one such as 2026-11-01T12:30:00+01:00, or Moodle's in English; without a zone it "
-        "is this machine's local time."
+        "is this machine's local time.",
+        name=shown(path.name),
+        times=listed(say("{where}: {note}", where=who, note=at) for who, at in pairs),
+    )
+
+
+def _twice(path: Path, ids: Sequence[str]) -> str:
+    return say(
+        "{name} has several rows of the same id, of which the first counts: {ids}.",
+        name=shown(path.name),
+        ids=listed(ids),
     )
 
 
@@ -209,7 +223,11 @@ def _tells_apart(values: Iterable[str]) -> bool:
 
 
 def _nameless(path: Path, number: int) -> str:
-    return f"{number} of the rows of {shown(path.name)} say neither an id nor a name."
+    return say(
+        "{number} of the rows of {name} say neither an id nor a name.",
+        number=number,
+        name=shown(path.name),
+    )
 
 
 def _squashed(title: str) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import UsageError
+from grader.language.phrase import say
 from grader.submission.folder import shown
 
 MAX_BYTES: Final = 50_000_000
@@ -33,12 +34,22 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
     except OSError as error:
-        raise UsageError(f"cannot read the roster {shown(path)}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot read the roster {path}: {why}", path=shown(path), why=str(error.strerror))
+        ) from None
     if len(raw) > MAX_BYTES:
-        raise UsageError(f"{name} has more than {MAX_BYTES / 1e6:g} MB: that is no roster")
+        raise UsageError(
+            say(
+                "{name} has more than {size:g} MB: that is no roster",
+                name=name,
+                size=MAX_BYTES / 1e6,
+            )
+        )
     text = _decoded(raw)
     if "\0" in text:
-        raise UsageError(f"{name} is no CSV file. Save the table as CSV, and name that.")
+        raise UsageError(
+            say("{name} is no CSV file. Save the table as CSV, and name that.", name=name)
+        )
     first, _, rest = text.partition("\n")
     if first.strip().lower().startswith("sep="):
         delimiter, text = first.strip()[4:5] or ",", rest
@@ -47,10 +58,14 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
     try:
         lines = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter))
     except csv.Error as error:
-        raise UsageError(f"{name} is no table in CSV: {error}") from None
+        raise UsageError(
+            say("{name} is no table in CSV: {error}", name=name, error=str(error))
+        ) from None
     filled = [line for line in lines if any(cell.strip() for cell in line)]
     if not filled:
-        raise UsageError(f"{name} is empty: expected a first line with titles such as id,name")
+        raise UsageError(
+            say("{name} is empty: expected a first line with titles such as id,name", name=name)
+        )
     titles = [cell.strip() for cell in filled[0]]
     rows = [[cell.strip() for cell in line[: len(titles)]] for line in filled[1:]]
     return titles, [row + [""] * (len(titles) - len(row)) for row in rows]
