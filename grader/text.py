@@ -118,11 +118,6 @@ def number(value: float) -> float | int:
     return int(rounded) if float(rounded).is_integer() else rounded
 
 
-def count(number: int, noun: str) -> str:
-    """How many there are: '1 pin', '2 pins', '4,210 pixels'."""
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
-
-
 def place(x: float, y: float) -> str:
     """A place in the window [m]: '(5.54, 7.20)'."""
     known = math.isfinite(x) and math.isfinite(y)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from grader.batch.store import STUDENTS, Store
 from grader.batch.task import Answer, Task
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
+from grader.language.phrase import Phrase, joined, say
 from grader.recording.recording import Clock
 
 #: Does tasks, in any order; `grader.batch.pool.work` with a number of jobs, or a cluster.
@@ -90,17 +91,26 @@ def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
         return
     if not differences:
         return
-    advice = "Give another --out."
-    if differences.keys() == {"exercise_sha256"}:
-        advice = (
-            f"See what the new one would change: grader batch --regrade {store.out} --exercise ..."
-        )
-    elif differences.keys() <= VERSIONS:
-        advice = "Give another --out, or have everything graded by this one: --again all."
-    told = "; ".join(differences.values())
     raise UsageError(
-        f"{store.out} was graded by something else ({told}). Nothing was changed. {advice}"
+        say(
+            "{out} was graded by something else ({differences}). Nothing was changed. {advice}",
+            out=str(store.out),
+            differences=joined(list(differences.values()), "; "),
+            advice=_advice(differences, store),
+        )
     )
+
+
+def _advice(differences: Mapping[str, str], store: Store) -> str:
+    """What to do about a folder of another class."""
+    if differences.keys() == {"exercise_sha256"}:
+        return say(
+            "See what the new one would change: grader batch --regrade {out} --exercise ...",
+            out=str(store.out),
+        )
+    if differences.keys() <= VERSIONS:
+        return say("Give another --out, or have everything graded by this one: --again all.")
+    return say("Give another --out.")
 
 
 def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
@@ -110,7 +120,9 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
         UsageError: `again` names nobody.
     """
     if order.again not in ("", "all", "failed", *(each.id for each in hand_ins)):
-        raise UsageError(f"--again {order.again}: there is no hand-in of this name")
+        raise UsageError(
+            say("--again {again}: there is no hand-in of this name", again=Phrase(order.again))
+        )
     by_key: dict[str, list[HandIn]] = {}
     trivial, done = [], []
     for hand_in, run in _with_keys(hand_ins, order):
@@ -140,11 +152,9 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
         place = task.into
         if answer.state != "done":
             place = store.new_place()
-            said = answer.message
-            told = f"The exercise's own code failed: {said}" if answer.state == "exercise" else said
             for hand_in in task.hand_ins:
                 folder = place / STUDENTS / hand_in.id
-                grade.failed(hand_in, order.exercise, folder, told)
+                grade.failed(hand_in, order.exercise, folder, answer.why)
         _check_same_exercise(task, place, order)
         store.put(task.key, place)
         yield from task.hand_ins
@@ -159,9 +169,12 @@ def _check_same_exercise(task: Task, place: Path, order: Order) -> None:
     for hand_in in task.hand_ins:
         if Entry.read(place / STUDENTS / hand_in.id).exercise_sha256 != order.exercise.sha256:
             raise UsageError(
-                f"the exercise {order.exercise.name} was changed while a class was graded by it, "
-                "or a worker of the cluster has another edition of it. What was graded before is "
-                "kept; see to it that there is one edition, and call again"
+                say(
+                    "the exercise {name} was changed while a class was graded by it, or a worker "
+                    "of the cluster has another edition of it. What was graded before is kept; see "
+                    "to it that there is one edition, and call again",
+                    name=Phrase(order.exercise.name),
+                )
             )
 
 
@@ -185,7 +198,7 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
             content = key.of_hand_in(hand_in.path, hand_in.filename)
         except OSError as error:
             if is_in(hand_in.id, order.shard):
-                why = f"It cannot be read: {error.strerror or error}"
+                why = say("It cannot be read: {why}", why=error.strerror or str(error))
                 yield replace(hand_in, problem=why, path=None), ""
             continue
         if is_in(content, order.shard):

@@ -10,6 +10,7 @@ from typing import Any, Self
 from grader import files, versions
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
+from grader.language.phrase import Phrase, say
 from grader.recording.recording import Clock
 from grader.result import json_file
 
@@ -20,14 +21,14 @@ CLASS = "class.json"
 MOST_SHOWN = 24
 VERSIONS = {"grader", "ros", "python"}
 _NAMED = {
-    "exercise": "the exercise",
-    "exercise_sha256": "the exercise's rubric",
-    "time": "the clock (--time)",
-    "seed": "the seed (--seed)",
-    "grader": "the grader's version",
-    "ros": "the version of rclpy and the ROS release",
-    "python": "the version of Python",
-    "shard": "the shard (--shard)",
+    "exercise": say("the exercise"),
+    "exercise_sha256": say("the exercise's rubric"),
+    "time": say("the clock (--time)"),
+    "seed": say("the seed (--seed)"),
+    "grader": say("the grader's version"),
+    "ros": say("the version of rclpy and the ROS release"),
+    "python": say("the version of Python"),
+    "shard": say("the shard (--shard)"),
 }
 
 
@@ -80,7 +81,13 @@ class ClassFile:
         """
         path = out / CLASS
         if not path.is_file():
-            raise UsageError(f"{out} is no folder of a class: there is no {CLASS} in it")
+            raise UsageError(
+                say(
+                    "{out} is no folder of a class: there is no {file} in it",
+                    out=str(out),
+                    file=CLASS,
+                )
+            )
         found: Self = json_file.made(cls._from_json, path, json_file.read(path))
         return found
 
@@ -88,7 +95,12 @@ class ClassFile:
         """What of two does not fit together: by its field, in words."""
         pairs = {name: (getattr(self, name), getattr(other, name)) for name in _NAMED}
         return {
-            name: f"{_NAMED[name]}: there {_shown(others)}, here {_shown(mine)}"
+            name: say(
+                "{what}: there {others}, here {mine}",
+                what=_NAMED[name],
+                others=_shown(others),
+                mine=_shown(mine),
+            )
             for name, (mine, others) in pairs.items()
             if mine != others
         }
@@ -96,12 +108,13 @@ class ClassFile:
     @classmethod
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-            raise ValueError(f"is no class: expected the schema {SCHEMA}")
+            raise ValueError(say("is no class: expected the schema {schema}", schema=SCHEMA))
         try:
             return cls(**{name: value for name, value in data.items() if name != "schema"})
         except TypeError as error:
-            raise ValueError(f"is damaged: {error}") from None
+            raise ValueError(say("is damaged: {why}", why=str(error))) from None
 
 
 def _shown(value: object) -> str:
-    return str(value)[:MOST_SHOWN] if value else "none"
+    # no sentence, whatever it reads like: `real` is what one writes after --time
+    return Phrase(str(value)[:MOST_SHOWN]) if value else say("none")

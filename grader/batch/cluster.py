@@ -18,8 +18,8 @@ from grader.batch import pool, remote
 from grader.batch.parcel import Unfit
 from grader.batch.task import Answer, Task
 from grader.errors import UsageError
+from grader.language.phrase import say, say_many
 from grader.requirements import require
-from grader.text import count
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -35,7 +35,7 @@ MOST_BYTES = 1_000_000_000
 #: So long an answer may need from its worker to here, else we look again later [s].
 FETCH_S = 60.0
 LOOK_S = 1.0
-ADVICE = "Install the same there as where the class is"
+ADVICE = say("Install the same there as where the class is")
 
 Done = tuple[Task, Answer]
 Tell = Callable[[str], None]
@@ -68,12 +68,23 @@ def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: str = "") -
             except _SchedulerLost as lost:
                 losses += 1
                 if losses > MOST_LOSSES:
-                    told = f"the scheduler at {address} goes again and again: {lost}"
-                    raise UsageError(told) from None
+                    raise UsageError(
+                        say(
+                            "the scheduler at {address} goes again and again: {why}",
+                            address=address,
+                            why=lost.args[0],
+                        )
+                    ) from None
                 waiting = chain(session.unfinished(), waiting)
             finally:
                 session.cancel()
-        tell(f"The scheduler at {address} is gone. Waiting for it, {AGAIN_S / 60:g} minutes ...")
+        tell(
+            say(
+                "The scheduler at {address} is gone. Waiting for it, {minutes:g} minutes ...",
+                address=address,
+                minutes=AGAIN_S / 60,
+            )
+        )
         patience_s = AGAIN_S
 
 
@@ -98,9 +109,21 @@ def _connected(address: str, patience_s: float) -> Iterator[Client]:
             break
         except OSError as error:  # also of one that goes as soon as it has come
             if time.monotonic() > end:
-                raise UsageError(f"there is no scheduler at {address}: {error}") from None
+                raise UsageError(
+                    say(
+                        "there is no scheduler at {address}: {why}",
+                        address=address,
+                        why=str(error),
+                    )
+                ) from None
         except (ValueError, TypeError, RuntimeError) as error:
-            raise UsageError(f"{address} is no address of a scheduler: {error}") from None
+            raise UsageError(
+                say(
+                    "{address} is no address of a scheduler: {why}",
+                    address=address,
+                    why=str(error),
+                )
+            ) from None
         time.sleep(LOOK_S)
     try:
         yield client
@@ -151,19 +174,20 @@ class _Session:
         """Refuse a cluster that would come to other verdicts, before anything is sent to it."""
         found = self._ask(lambda: self._client.run(remote.own_versions, on_error="return"))
         wanted = remote.own_versions()
-        for worker, theirs in found.items():
+        for address, theirs in found.items():
+            worker = say("the worker at {address}", address=address)
             if isinstance(theirs, dict):
-                remote.check_versions(wanted, theirs, f"the worker at {worker}")
+                remote.check_versions(wanted, theirs, worker)
             elif not isinstance(theirs, OSError):  # it has not just gone
-                raise UsageError(f"the worker at {worker} cannot grade ({theirs}). {ADVICE}")
+                raise _cannot_grade(worker, theirs)
 
     def _threads(self) -> int:
         """How much the cluster does at once."""
         threads: int = sum(self._ask(self._client.nthreads).values())
         if bool(threads) != self._has_workers:
             self._has_workers = bool(threads)
-            told = "has no worker. Waiting for one ..." if not threads else "has workers again."
-            self._tell(f"The scheduler {told}")
+            none = say("The scheduler has no worker. Waiting for one ...")
+            self._tell(say("The scheduler has workers again.") if threads else none)
         return threads
 
     def _fill(self) -> Iterator[Done]:
@@ -178,7 +202,7 @@ class _Session:
             except Unfit:  # too large to be a submission: it is refused, not run
                 yield task, self._here.done(task)
             except OSError as error:
-                yield task, Answer("failed", f"cannot be sent: {error}")
+                yield task, Answer("failed", say("cannot be sent: {why}", why=str(error)))
             else:
                 self._submit(task, package)
 
@@ -203,7 +227,7 @@ class _Session:
         with suppress(TimeoutError, CancelledError):
             wait(list(self._underway), timeout=LOOK_S, return_when="FIRST_COMPLETED")
         if self._client.status not in ("running", "connecting"):
-            raise _SchedulerLost("the connection is closed")
+            raise _SchedulerLost(say("the connection is closed"))
         # lost: with the worker that had it, and done again elsewhere
         for future in [f for f in self._underway if f.status not in ("pending", "lost")]:
             answer = self._answer(future)
@@ -230,13 +254,18 @@ class _Session:
         if isinstance(error, UsageError):  # no task should go there
             raise error
         if isinstance(error, ImportError):
-            raise UsageError(f"a worker cannot grade ({error}). {ADVICE}")
+            raise _cannot_grade(say("a worker"), error)
         from distributed import KilledWorker
 
         if isinstance(error, KilledWorker):
-            lost = count(error.allowed_failures + 1, "worker")
-            return Answer("failed", f"{lost} of the cluster ended while grading it")
-        return Answer("failed", f"a worker failed: {type(error).__name__}: {error}")
+            lost = say_many(
+                "{n:,} worker of the cluster ended while grading it",
+                "{n:,} workers of the cluster ended while grading it",
+                error.allowed_failures + 1,
+            )
+            return Answer("failed", lost)
+        what = f"{type(error).__name__}: {error}"
+        return Answer("failed", say("a worker failed: {what}", what=what))
 
     def _ask(self, call: Callable[[], Any]) -> Any:
         """What the scheduler answers.
@@ -250,3 +279,9 @@ class _Session:
             return call()
         except (OSError, CancelledError) as error:
             raise _SchedulerLost(str(error) or type(error).__name__) from None
+
+
+def _cannot_grade(worker: str, why: object) -> UsageError:
+    return UsageError(
+        say("{worker} cannot grade ({why}). {advice}", worker=worker, why=str(why), advice=ADVICE)
+    )

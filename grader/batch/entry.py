@@ -17,6 +17,7 @@ from grader import files
 from grader.batch.hand_in import HandIn
 from grader.errors import UsageError
 from grader.language import stored
+from grader.language.phrase import say
 from grader.result import json_file
 from grader.result.result import RESULT, Result
 
@@ -94,7 +95,9 @@ class Entry:
     @classmethod
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-            raise ValueError(f"is no entry of a class: expected the schema {SCHEMA}")
+            raise ValueError(
+                say("is no entry of a class: expected the schema {schema}", schema=SCHEMA)
+            )
         try:
             own = {name: data[name] for name in OWN}
             hand_in = HandIn.from_json(data["hand_in"])
@@ -102,7 +105,7 @@ class Entry:
             own["message"], problem = stored.restored(told, data.get("phrases", {}))
             return cls(hand_in=replace(hand_in, problem=problem), **own)
         except (KeyError, TypeError, AttributeError) as error:
-            raise ValueError(f"is damaged: {error}") from None
+            raise ValueError(say("is damaged: {why}", why=str(error))) from None
 
 
 def entries(out: Path) -> list[Entry]:

@@ -30,7 +30,7 @@ from grader.result.error import ErrorResult
 from grader.result.handed_in import HandedIn
 from grader.result.result import ARTIFACTS, PAGE, RESULT, Result
 from grader.submission.opening import Submission, open_submission
-from grader.text import plain
+from grader.text import plain_phrase
 
 #: Where a student's traceback says that the hand-in lies.
 SHOWN = "/submission"
@@ -72,7 +72,7 @@ def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
 def failed(hand_in: HandIn, exercise: Exercise, folder: Path, message: str) -> None:
     """Fill the folder of somebody whose hand-in the grader could not judge."""
     files.make_folder(folder)
-    _entry(hand_in, exercise, folder, "failed", message=plain(message)).put()
+    _entry(hand_in, exercise, folder, "failed", message=plain_phrase(message)).put()
 
 
 def _run(task: Task, exercise: Exercise) -> Recordings | str:

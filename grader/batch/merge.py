@@ -13,7 +13,7 @@ from grader.batch.entry import Entry, entries
 from grader.batch.store import RUN, SHARED, STUDENTS, Store
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
-from grader.text import count
+from grader.language.phrase import Phrase, joined, say, say_many
 
 
 def merge(parts: Sequence[Path], exercise: Exercise, store: Store) -> list[str]:
@@ -37,7 +37,13 @@ def merge(parts: Sequence[Path], exercise: Exercise, store: Store) -> list[str]:
             _take(entry, Store(part), store)
     whole.put(store.out)
     unfinished = [
-        f"{part} is not finished: {len(graded[part])} of {count(file.hand_ins, 'hand-in')}."
+        say_many(
+            "{part} is not finished: {graded} of {n:,} hand-in.",
+            "{part} is not finished: {graded} of {n:,} hand-ins.",
+            file.hand_ins,
+            part=str(part),
+            graded=len(graded[part]),
+        )
         for part, file in found.items()
         if len(graded[part]) < file.hand_ins
     ]
@@ -52,16 +58,23 @@ def _common(found: dict[Path, ClassFile]) -> ClassFile:
     )
     cuts = {shard.partition("/")[2] for shard in hand_ins}
     if len(cuts) > 1:
-        told = ", ".join(sorted(shard or "a whole class" for shard in hand_ins))
+        shards = sorted(shard or say("a whole class") for shard in hand_ins)
         raise UsageError(
-            f"these are not parts of one class, cut in one way: {told}. Nothing was changed."
+            say(
+                "these are not parts of one class, cut in one way: {shards}. Nothing was changed.",
+                shards=joined(shards, ", "),
+            )
         )
     for part, other in others:
         if differences := whole.differences(other):
-            told = "; ".join(differences.values())
             raise UsageError(
-                f"{part} does not fit to {first} ({told}). Nothing was changed. Have all parts "
-                "graded by the same exercise and grader."
+                say(
+                    "{part} does not fit to {first} ({differences}). Nothing was changed. Have all "
+                    "parts graded by the same exercise and grader.",
+                    part=str(part),
+                    first=str(first),
+                    differences=joined(list(differences.values()), "; "),
+                )
             )
     return whole
 
@@ -69,10 +82,12 @@ def _common(found: dict[Path, ClassFile]) -> ClassFile:
 def _must_be_judged_by(exercise: Exercise, whole: ClassFile) -> None:
     ours = replace(whole, exercise=exercise.name, exercise_sha256=exercise.sha256)
     if differences := ours.differences(whole):
-        told = "; ".join(differences.values())
         raise UsageError(
-            f"these parts were judged by something else ({told}). Nothing was changed. Name what "
-            "they were judged by: --exercise ..."
+            say(
+                "these parts were judged by something else ({differences}). Nothing was changed. "
+                "Name what they were judged by: --exercise ...",
+                differences=joined(list(differences.values()), "; "),
+            )
         )
 
 
@@ -85,8 +100,13 @@ def _must_agree(graded: dict[Path, list[Entry]]) -> None:
                 entry, folder=Path(), result=None
             ):
                 raise UsageError(
-                    f"{other} and {part} both have {entry.id}, and not the same of it. Nothing was "
-                    "changed. Remove one of the two folders submissions/" + entry.id
+                    say(
+                        "{other} and {part} both have {id}, and not the same of it. Nothing was "
+                        "changed. Remove one of the two folders submissions/{id}",
+                        other=str(other),
+                        part=str(part),
+                        id=Phrase(entry.id),
+                    )
                 )
 
 
@@ -99,7 +119,9 @@ def _take(entry: Entry, source: Store, store: Store) -> None:
         leave = shutil.ignore_patterns(*SHARED)
         shutil.copytree(entry.folder, place / STUDENTS / entry.id, ignore=leave)
     except (OSError, shutil.Error) as error:
-        raise UsageError(f"cannot copy {entry.folder}: {error}") from None
+        raise UsageError(
+            say("cannot copy {folder}: {why}", folder=str(entry.folder), why=str(error))
+        ) from None
     store.put(entry.key, place)
 
 
@@ -109,4 +131,5 @@ def _missing(shards: Sequence[str]) -> Iterator[str]:
     for parts in sorted({parts for _, parts in named}):
         there = {part for part, of in named if of == parts}
         if lost := sorted(set(range(1, parts + 1)) - there):
-            yield f"Not among these: part {', '.join(map(str, lost))} of {parts}."
+            numbers = ", ".join(map(str, lost))
+            yield say("Not among these: part {numbers} of {parts}.", numbers=numbers, parts=parts)

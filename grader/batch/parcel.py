@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Literal
 
+from grader.language.phrase import say
+
 #: Of all that goes into a parcel, unpacked [bytes]: more than a submission may have.
 MOST_BYTES = 250_000_000
 #: Files, folders and links: likewise.
@@ -79,7 +81,7 @@ def unpack(parcel: bytes, folder: Path, trust: Literal["tar", "data"] = "data") 
                 else:
                     tar.extract(info, folder, filter=trust)
     except (tarfile.TarError, zlib.error, EOFError, ValueError) as error:
-        raise Unfit(f"damaged: {error}") from None
+        raise Unfit(say("damaged: {why}", why=str(error))) from None
     return texts
 
 
@@ -95,7 +97,11 @@ class _Room:
         self._members -= 1
         if self._bytes < 0 or self._members < 0:
             raise Unfit(
-                f"it has more than {MOST_BYTES / 1e6:g} MB, or more than {MOST_MEMBERS:,} files"
+                say(
+                    "it has more than {megabytes:g} MB, or more than {files:,} files",
+                    megabytes=MOST_BYTES / 1e6,
+                    files=MOST_MEMBERS,
+                )
             )
         return size
 

@@ -16,6 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from grader.batch.task import Answer, Task
+from grader.language.phrase import say
 
 #: No task takes longer, unless the grader hangs [s].
 MOST_S = 3600.0
@@ -128,7 +129,10 @@ class Process:
             with suppress(ValueError):
                 return Answer.from_line(line)
             ended = self.end()
-        return Answer("failed", f"the process that graded it ended ({ended}), {_TRIES} times")
+        return Answer(
+            "failed",
+            say("the process that graded it ended ({how}), {times} times", how=ended, times=_TRIES),
+        )
 
     def _ask(self, task: Task) -> bytes:
         """The line that the process answers; empty if it ends instead."""
@@ -165,7 +169,7 @@ class Process:
                 process.wait(10.0)  # it ends by itself where nobody asks any more
         process.kill()
         code = process.wait()
-        return signal.Signals(-code).name if code < 0 else f"exit code {code}"
+        return signal.Signals(-code).name if code < 0 else say("exit code {code}", code=str(code))
 
 
 def start() -> subprocess.Popen[bytes]:

@@ -21,6 +21,7 @@ from grader.batch.task import Answer, Task
 from grader.errors import UsageError
 from grader.exercise import places
 from grader.exercise.places import CHECKS
+from grader.language.phrase import Phrase, joined, say
 from grader.run.processes import levels
 from grader.submission.folder import is_generated, is_junk
 
@@ -52,13 +53,22 @@ def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: 
         UsageError: they are not the same.
     """
     differences = [
-        f"{name} {found.get(name) or 'none'}, and {value or 'none'} where the class is"
+        say(
+            "{name} {there}, and {here} where the class is",
+            name=name,
+            there=found.get(name) or say("none"),
+            here=value or say("none"),
+        )
         for name, value in wanted.items()
         if found.get(name) != value
     ]
     if differences:
         raise UsageError(
-            f"{worker} has other versions: {'; '.join(differences)}. Install the same on both"
+            say(
+                "{worker} has other versions: {differences}. Install the same on both",
+                worker=worker,
+                differences=joined(differences, "; "),
+            )
         )
 
 
@@ -97,7 +107,8 @@ def graded(package: bytes) -> bytes:
     with scratch.make_folder() as folder:
         texts = parcel.unpack(package, folder, "tar")
         needs = strict_json.loads(texts[NEEDS].decode())
-        check_versions(needs["versions"], own_versions(), f"the worker {socket.gethostname()}")
+        worker = say("the worker {name}", name=Phrase(socket.gethostname()))
+        check_versions(needs["versions"], own_versions(), worker)
         if needs["isolation"]:
             levels.require(needs["isolation"])
         task = _here(Task.from_line(texts[TASK]), folder)
@@ -105,7 +116,8 @@ def graded(package: bytes) -> bytes:
         try:
             return parcel.pack({ANSWER: answer.to_line()}, _made(task))
         except Unfit as unfit:
-            answer = Answer("failed", f"what came of it cannot be sent: {unfit}")
+            why = say("what came of it cannot be sent: {why}", why=unfit.args[0])
+            answer = Answer("failed", why)
             return parcel.pack({ANSWER: answer.to_line()}, {})
 
 
@@ -119,12 +131,16 @@ def unpack(package: bytes, task: Task) -> Answer:
         texts = parcel.unpack(package, task.into)
         answer = Answer.from_line(texts.get(ANSWER, b""))
     except (Unfit, ValueError) as error:
-        return Answer("failed", f"what a worker sent back cannot be used: {error}")
+        said = say("what a worker sent back cannot be used: {why}", why=error.args[0])
+        return Answer("failed", said)
     except OSError as error:
-        raise UsageError(f"cannot write into {task.into}: {error.strerror or error}") from None
+        why = error.strerror or str(error)
+        raise UsageError(
+            say("cannot write into {folder}: {why}", folder=str(task.into), why=why)
+        ) from None
     expected = {RUN, *(f"{STUDENTS}/{each.id}" for each in task.hand_ins)}
     if answer.state == "done" and not _names(task.into) <= expected:
-        return Answer("failed", "a worker sent back what nobody has asked for")
+        return Answer("failed", say("a worker sent back what nobody has asked for"))
     return answer
 
 

@@ -25,6 +25,7 @@ from grader.batch.page.thumb import THUMB
 from grader.batch.similar.signature import NAME as SIGNATURE
 from grader.batch.similar.sources import SOURCE
 from grader.errors import UsageError
+from grader.language.phrase import Phrase, say
 from grader.removal import remove
 
 STORE, UNFINISHED, ASIDE = "store", ".unfinished", "aside"
@@ -93,7 +94,7 @@ class Store:
                 files.make_folder(self.out / ASIDE)
                 path.rename(self.out / ASIDE / path.name)
         except OSError as error:
-            raise UsageError(f"cannot write into {self.out}: {error}") from None
+            raise _unwritable(self.out, error) from None
         return sorted(path.name for path in others)
 
     def new_place(self) -> Path:
@@ -122,7 +123,7 @@ class Store:
                     _link_all(self.run(key), made)
                 _replace(made, self.student(made.name), place)
         except OSError as error:
-            raise UsageError(f"cannot write into {self.out}: {error}") from None
+            raise _unwritable(self.out, error) from None
         remove(place)
 
 
@@ -133,9 +134,19 @@ def _check_is_ours(out: Path) -> None:
     for name in (STORE, SUBMISSIONS):
         if (out / name).is_dir() and next((out / name).iterdir(), None) is not None:
             raise UsageError(
-                f"cannot write into {out}: it is no folder of a class ({CLASS} is missing), and "
-                f"there is a folder {name} in it already. Give another --out. Nothing was changed."
+                say(
+                    "cannot write into {out}: it is no folder of a class ({file} is missing), and "
+                    "there is a folder {name} in it already. Give another --out. Nothing was "
+                    "changed.",
+                    out=str(out),
+                    file=CLASS,
+                    name=Phrase(name),
+                )
             )
+
+
+def _unwritable(out: Path, error: OSError) -> UsageError:
+    return UsageError(say("cannot write into {folder}: {why}", folder=str(out), why=str(error)))
 
 
 def _replace(made: Path, target: Path, place: Path) -> None:

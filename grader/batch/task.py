@@ -10,7 +10,9 @@ from typing import Any, Literal, Self
 
 from grader import strict_json
 from grader.batch.hand_in import HandIn
+from grader.language import stored
 from grader.language.catalogue import spoken
+from grader.language.phrase import say
 from grader.recording.recording import Clock
 
 
@@ -88,9 +90,17 @@ class Answer:
     message: str = ""
     ran: bool = True
 
+    @property
+    def why(self) -> str:
+        """Why it is not done, for people."""
+        if self.state == "exercise":
+            return say("The exercise's own code failed: {why}", why=self.message)
+        return self.message
+
     def to_line(self) -> bytes:
         """As it is sent."""
-        return json.dumps(asdict(self)).encode() + b"\n"
+        data = {**asdict(self), "phrases": stored.phrases_in(self.message)}
+        return json.dumps(data).encode() + b"\n"
 
     @classmethod
     def from_line(cls, line: bytes) -> Self:
@@ -100,6 +110,8 @@ class Answer:
             ValueError: it is none.
         """
         try:
-            return cls(**strict_json.loads(line.decode()))
-        except (TypeError, UnicodeDecodeError) as error:
-            raise ValueError(f"is no answer: {error}") from None
+            data = strict_json.loads(line.decode())
+            phrases = data.pop("phrases", {})
+            return stored.restored(cls(**data), phrases)
+        except (TypeError, AttributeError, UnicodeDecodeError) as error:
+            raise ValueError(say("is no answer: {why}", why=str(error))) from None

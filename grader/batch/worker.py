@@ -17,7 +17,8 @@ from typing import IO
 from grader.batch.task import Answer, Task
 from grader.errors import CheckFailed, GraderError
 from grader.language.catalogue import speak
-from grader.text import plain
+from grader.language.phrase import say
+from grader.text import plain, plain_phrase
 
 
 def main() -> None:
@@ -42,13 +43,13 @@ def done(task: Task) -> Answer:
         speak(task.language)
         make(task)
     except CheckFailed as error:
-        return Answer("exercise", plain(error.message))
+        return Answer("exercise", plain_phrase(error.message))
     except GraderError as error:
-        return Answer("failed", plain(error.message))
+        return Answer("failed", plain_phrase(error.message))
     except Exception as error:
         traceback.print_exc()
         what = "".join(traceback.format_exception_only(error)).strip()
-        return Answer("failed", plain(f"unexpected: {what}"))
+        return Answer("failed", say("unexpected: {what}", what=plain(what)))
     return Answer("done", ran=task.run is None)
 
 

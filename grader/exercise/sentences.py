@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from grader.exercise.verdict import Finding
-from grader.language.phrase import joined, say
+from grader.language.phrase import Phrase, joined, say
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recording, Recordings
 from grader.scenes import load_scene
@@ -48,7 +48,7 @@ def _error(recording: Recording) -> str:
     said = _PLACE.sub("", error) or f"{raised.type}: {raised.text}".rstrip(".: ")
     if said.partition(":")[0].rpartition(".")[2] != raised.type.rpartition(".")[2]:
         return error  # of another thread
-    return without_controls(f"{said} ({file}, line {line})", "?")
+    return _with_place(said, file, str(line))
 
 
 def last_error(output: str) -> str:
@@ -64,8 +64,12 @@ def last_error(output: str) -> str:
     if not error:
         return ""
     where = frames[-1]
-    place = f"({PurePath(where['file']).name}, line {where['line']})"
-    return without_controls(f"{error.rstrip('.')} {place}", "?")
+    return _with_place(error.rstrip("."), PurePath(where["file"]).name, where["line"])
+
+
+def _with_place(error: str, file: str, line: str) -> str:
+    place = say(" ({file}, line {line})", file=Phrase(without_controls(file, "?")), line=line)
+    return joined([Phrase(without_controls(error, "?")), place])
 
 
 def error_first(recordings: Recordings, finding: Finding) -> Finding:

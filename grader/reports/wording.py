@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from grader import text
 from grader.exercise.verdict import Evidence, Verdict
-from grader.language.phrase import say
+from grader.language.phrase import Phrase, say
 from grader.language.telling import number, tell, tell_many, told
 from grader.result.result import NotShown, Result
 
@@ -37,6 +38,18 @@ OUTCOMES: Final = {
 }
 #: The clock that a submission lived by.
 CLOCKS: Final = {"virtual": say("virtual"), "real": say("real")}
+#: How a run was confined and kept apart; a result file puts it together from these.
+CONFINED: Final = {
+    "namespaces": say("namespaces (of a run)").key,
+    "limits": say("limits (of a run)").key,
+    "own user": say("own user").key,
+    "private network": say("private network").key,
+    "ROS domain": say("ROS domain").key,
+    "process group": say("process group").key,
+    "process tree": say("process tree").key,
+    "recording within reach": say("recording within reach").key,
+}
+_CONFINED: Final = re.compile("|".join(CONFINED))
 
 
 def word(verdict: Verdict) -> str:
@@ -61,6 +74,11 @@ def outcome(key: str) -> str:
 def clock(time: str) -> str:
     """The clock of a run, for people: the word before "time"."""
     return told(CLOCKS.get(time, time))
+
+
+def isolation(name: str) -> str:
+    """How a run was confined and kept apart, for people; see `grader.run.stage.Stage`."""
+    return _CONFINED.sub(lambda found: told(Phrase(found[0], CONFINED[found[0]])), name)
 
 
 def points(value: float) -> str:

@@ -92,8 +92,3 @@ def test_plain_text_commands_no_runner_of_ci(raw, plain):
 
 def test_in_a_terminal_no_word_does_wherever_the_line_is_cut():
     assert text.for_terminal("x ::ERROR file=a::b \x1b[31m[/b]") == "x : :ERROR file=a: :b [/b]"
-
-
-def test_what_is_counted_is_in_the_plural_unless_it_is_one():
-    assert [text.count(n, "pin") for n in (0, 1, 2)] == ["0 pins", "1 pin", "2 pins"]
-    assert text.count(4210, "pixel") == "4,210 pixels"

@@ -7,7 +7,7 @@
     export/notes.txt        what an import lacks
 
 Which of them there are follows from what is known of the people. The same entries give the same
-bytes.
+bytes, in each language.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from grader.batch.gradebook import archive, canvas, lines, moodle, table
 from grader.batch.gradebook.feedback import Feedback, has_feedback
 from grader.batch.gradebook.grade import Grade, grades
 from grader.batch.gradebook.notes import notes
+from grader.language.telling import told
 from grader.result.visible import View
 
 CSV, JSON_LINES, EXPORT = "gradebook.csv", "gradebook.jsonl", "export"
@@ -61,19 +62,19 @@ def write(out: Path, entries: Sequence[Entry], options: Options) -> list[str]:
     everybody = grades(entries, options.nothing_is_zero)
     feedback = Feedback(options.view)
     assignment = canvas.assignment_of(everybody, options.assignment or options.title)
-    told = notes(everybody, assignment)
+    lacking = notes(everybody, assignment)
     texts = {
         f"{EXPORT}/{MOODLE_WORKSHEET}": moodle.worksheet(everybody, feedback),
         f"{EXPORT}/{MOODLE_GRADES}": moodle.grade_import(everybody, options.title, feedback),
         f"{EXPORT}/{CANVAS_GRADES}": canvas.gradebook(everybody, assignment),
-        f"{EXPORT}/{NOTES}": "".join(f"{note}\n" for note in told),
+        f"{EXPORT}/{NOTES}": "".join(f"{told(note)}\n" for note in lacking),
     }
     for name, content in texts.items():
         _put(out / name, content)
     files.put(out / CSV, table.render(everybody).encode("utf-8"))
     files.put(out / JSON_LINES, lines.render(everybody).encode("utf-8"))
     _put_feedback(out / EXPORT, everybody, feedback)
-    return told
+    return lacking
 
 
 def _put_feedback(folder: Path, everybody: Sequence[Grade], feedback: Feedback) -> None:

@@ -27,6 +27,7 @@ from grader.batch.regrade.changes import Failure, Regrade
 from grader.batch.store import RECORDING, RUN, STUDENTS, Store
 from grader.batch.task import Task
 from grader.errors import UsageError
+from grader.language.phrase import say
 from grader.result.result import RESULT
 from grader.result.visible import View
 
@@ -87,7 +88,9 @@ def keep(found: Regrade, store: Store) -> Path:
         top.mkdir(exist_ok=True)
         made.rename(into)
     except OSError as error:
-        raise UsageError(f"cannot write into {top}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write into {folder}: {why}", folder=str(top), why=str(error.strerror))
+        ) from None
     return into
 
 

@@ -132,7 +132,7 @@ class Regrade:
     @property
     def more_notes(self) -> list[str]:
         """Notes, with what the numbers say."""
-        found = list(self.notes)
+        found = list(map(told, self.notes))
         worth = sorted({entry.max_score for entry in self.entries} - {self.exercise.max_score})
         if worth:
             before, *more = map(points, worth)

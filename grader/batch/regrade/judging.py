@@ -18,6 +18,7 @@ from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.sentences import not_followed
+from grader.language.phrase import chained, say
 from grader.removal import remove
 
 #: Judging a recording again takes no longer, unless something hangs [s].
@@ -80,8 +81,14 @@ def _of_class(out: Path, exercise_path: str) -> tuple[ClassFile, Exercise]:
     before, exercise = ClassFile.read(out), load_exercise(exercise_path)
     if exercise.name != before.exercise:
         raise UsageError(
-            f"{out} was graded for the exercise {before.exercise!r}, and {exercise_path} is one of "
-            f"{exercise.name!r}: give an edited copy of that exercise's exercise.yaml"
+            say(
+                "{out} was graded for the exercise {then!r}, and {path} is one of {now!r}: give an "
+                "edited copy of that exercise's exercise.yaml",
+                out=str(out),
+                then=before.exercise,
+                path=exercise_path,
+                now=exercise.name,
+            )
         )
     return before, exercise
 
@@ -128,10 +135,8 @@ def _judged_again(
 
 
 def _read(task: Task, answer: Answer, hand_in: str) -> Entry | str:
-    if answer.state == "exercise":
-        return f"The exercise's own code failed: {answer.message}"
-    if answer.state == "failed":
-        return answer.message
+    if answer.state != "done":
+        return answer.why
     try:
         return Entry.read(task.into / STUDENTS / hand_in)
     except UsageError as error:
@@ -141,7 +146,7 @@ def _read(task: Task, answer: Answer, hand_in: str) -> Entry | str:
 def _notes(before: ClassFile, exercise: Exercise, found: Iterable[Entry]) -> Iterator[str]:
     """What of the exercise recordings cannot follow, and what else differs."""
     if before.exercise_sha256 == exercise.sha256:
-        yield "The class was graded by just this exercise."
+        yield say("The class was graded by just this exercise.")
     results = [entry.result for entry in found if entry.result is not None]
     origins = [result.provenance for result in results if result.provenance is not None]
     told = Counter(
@@ -150,11 +155,17 @@ def _notes(before: ClassFile, exercise: Exercise, found: Iterable[Entry]) -> Ite
         for sentence in not_followed(origin.recorded, exercise.conditions)
     )
     for sentence, number in told.items():
-        yield f"{number} of {len(results)}: {sentence}"
+        yield say(
+            "{number} of {total}: {sentence}",
+            number=number,
+            total=len(results),
+            sentence=sentence,
+        )
     others = {origin.judged.grader for origin in origins} - {versions.grader()}
     if others:
-        then = " and ".join(sorted(others))
-        yield (
-            f"They were judged by version {then} of the grader, and are now by "
-            f"{versions.grader()}: what changes may come from that, too."
+        yield say(
+            "They were judged by version {then} of the grader, and are now by {now}: what changes "
+            "may come from that, too.",
+            then=chained(sorted(others)),
+            now=versions.grader(),
         )

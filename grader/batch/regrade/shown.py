@@ -120,7 +120,7 @@ def _failures(found: Regrade, console: Console) -> None:
         text = tell(
             "Not judged again, and left as it is: {who}: {why}",
             who=first,
-            why=clip(one_line(why), 300),
+            why=clip(one_line(told(why)), 300),
         )
         console.print(_text(text, "red"), soft_wrap=True)
     if len(said) > _MOST_WHYS:

@@ -29,6 +29,7 @@ from grader.batch.similar import known
 from grader.batch.similar.sources import SOURCE, File, kept
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
+from grader.language.phrase import say
 
 FOLDER: Final = "export"
 JPLAG, DOLOS = "jplag", "dolos.zip"
@@ -55,7 +56,9 @@ def write(
         _write_jplag(present, given, out / FOLDER / JPLAG)
         whole_files.put(out / FOLDER / DOLOS, dolos(present, given))
     except OSError as error:
-        raise UsageError(f"cannot write {out / FOLDER}: {error.strerror}") from None
+        raise UsageError(
+            say("cannot write {path}: {why}", path=str(out / FOLDER), why=str(error.strerror))
+        ) from None
 
 
 def dolos(present: Sequence[tuple[Entry, list[File]]], given: Sequence[File]) -> bytes:

@@ -16,6 +16,7 @@ from grader.batch.similar.sources import File
 from grader.batch.similar.syntax import units
 from grader.errors import ExerciseError
 from grader.exercise.exercise import Exercise
+from grader.language.phrase import say
 from grader.submission.python_source import parse
 from grader.testing.solutions import FILE_NAME, read_solutions
 
@@ -61,7 +62,9 @@ def _right_solutions(exercise: Exercise) -> Iterator[Path]:
 
 def _below(path: Path, whose: str) -> list[File]:
     if not path.exists():
-        raise ExerciseError(f"there is no {path}, which is to be known to everybody")
+        raise ExerciseError(
+            say("there is no {path}, which is to be known to everybody", path=str(path))
+        )
     if path.is_file():
         return [File(f"{whose}/{path.name}", path.read_bytes())]
     below = sorted(path.rglob("*.py"))

@@ -213,6 +213,7 @@ def _environment() -> jinja2.Environment:
         so_many=wording.so_many,
         clock=wording.clock,
         outcome_word=wording.outcome,
+        isolation=wording.isolation,
         points=wording.points,
         score_text=wording.score_text,
     )
