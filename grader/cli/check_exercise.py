@@ -76,7 +76,9 @@ def _print(examination: Examination, console: Console) -> None:
         for remark in trial.remarks:
             console.print(f"{trial.solution.name}: {told(remark)}", markup=False, soft_wrap=True)
     for problem in examination.problems:
-        console.print(tell("To mend: {problem}", problem=problem), markup=False, soft_wrap=True)
+        console.print(
+            tell("To mend: {problem}", problem=str(problem)), markup=False, soft_wrap=True
+        )
     count = tell(
         "{checks} checks, {mutants} mutants",
         checks=len(examination.checks),

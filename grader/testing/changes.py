@@ -10,6 +10,7 @@ from typing import Any
 
 from grader.errors import ExerciseError
 from grader.exercise import places
+from grader.language.phrase import say
 
 #: The keys of a solution that is made of the first one.
 MADE = frozenset(("replace", "files", "put"))
@@ -66,15 +67,27 @@ def changed(name: str, path: Path, changes: Sequence[Change]) -> Mapping[str, st
         file = path / change.file if change.file else path
         is_there = texts[change.file] is not None if change.file in texts else file.is_file()
         if not is_there and (change.old is not None or change.new is None):
-            raise ExerciseError(f"mutants: {name}: there is no file {change.file!r} in {path}")
+            raise ExerciseError(
+                say(
+                    "mutants: {name}: there is no file {file!r} in {path}",
+                    name=name,
+                    file=change.file,
+                    path=str(path),
+                )
+            )
         if change.old is None:
             texts[change.file] = change.new
             continue
         text = texts.get(change.file) or file.read_text(encoding="utf-8")
         if text.count(change.old) != 1:
             raise ExerciseError(
-                f"mutants: {name}: {change.old!r} stands {text.count(change.old)} times in "
-                f"{file.name}; expected once"
+                say(
+                    "mutants: {name}: {old!r} stands {count} times in {in_file}; expected once",
+                    name=name,
+                    old=change.old,
+                    count=text.count(change.old),
+                    in_file=file.name,
+                )
             )
         texts[change.file] = text.replace(change.old, change.new or "")
     return texts

@@ -11,6 +11,7 @@ from grader.diagnosis.diagnose import diagnose
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.grading import AnyPath, run_all, runner
+from grader.language.phrase import say
 from grader.recording.recording import Recordings
 from grader.scratch import make_folder
 from grader.submission.opening import open_submission
@@ -102,18 +103,24 @@ def _unexpected(trial: Trial) -> Iterator[Fault]:
     if solution.is_right:
         for verdict in trial.verdicts:
             if verdict.status != "passed":
-                yield Fault(verdict.check, f"a right solution loses points: {verdict.rationale}")
+                yield Fault(
+                    verdict.check,
+                    say("a right solution loses points: {rationale}", rationale=verdict.rationale),
+                )
         return
     if not trial.caught_by:
-        yield Fault("", "nobody catches a mutant")
+        yield Fault("", say("nobody catches a mutant"))
     if solution.leaves is None:
         return
     for verdict in trial.verdicts:
         expected = solution.leaves.get(verdict.check, 1.0)
         if not _fits(verdict.score, verdict.max_score, expected):
-            text = (
-                f"leaves {verdict.score:g} of {verdict.max_score:g} points; "
-                f"{FILE_NAME} says {_said(expected)}"
+            text = say(
+                "leaves {score:g} of {max_score:g} points; {file} says {said}",
+                score=verdict.score,
+                max_score=verdict.max_score,
+                file=FILE_NAME,
+                said=_said(expected),
             )
             yield Fault(verdict.check, text)
 
@@ -128,7 +135,15 @@ def _unsaid(trial: Trial, recordings: Recordings) -> Iterator[Fault]:
     if found is not None and found.place is not None:
         told += f" ({found.place.file}, line {found.place.line})"
     if says not in told:
-        yield Fault("", f"its first line is {told!r}; {FILE_NAME} says {says!r}")
+        yield Fault(
+            "",
+            say(
+                "its first line is {told!r}; {file} says {says!r}",
+                told=told,
+                file=FILE_NAME,
+                says=says,
+            ),
+        )
 
 
 def _fits(score: float, max_score: float, expected: Left) -> bool:
@@ -138,7 +153,7 @@ def _fits(score: float, max_score: float, expected: Left) -> bool:
 
 
 def _said(expected: Left) -> str:
-    return "some" if expected == "some" else f"{expected:g} of them"
+    return "some" if expected == "some" else say("{share:g} of them", share=expected)
 
 
 def _twice(
@@ -147,20 +162,20 @@ def _twice(
     """What differs between two runs of the same solution."""
     hashes = [[run.run.trace_sha256 for run in recordings] for recordings in (first, second)]
     if hashes[0] != hashes[1]:
-        yield Fault("", "two runs of a right solution are not the same run")
+        yield Fault("", say("two runs of a right solution are not the same run"))
         return
     for once, again in zip(trial.verdicts, examine(exercise, second)[0], strict=True):
         if once != again:
-            yield Fault(once.check, "two equal runs get different findings")
+            yield Fault(once.check, say("two equal runs get different findings"))
 
 
 def _never_failing(examination: Examination) -> Iterator[Fault]:
     if not examination.mutants:
-        yield Fault("", f"there are no mutants in {FILE_NAME}")
+        yield Fault("", say("there are no mutants in {file}", file=FILE_NAME))
         return
     for check, caught in examination.catches.items():
         if not caught:
-            yield Fault(check, "never fails on any mutant")
+            yield Fault(check, say("never fails on any mutant"))
 
 
 def _remarks(recordings: Recordings) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from grader.exercise.verdict import Verdict
+from grader.language.phrase import Phrase, joined, say
 from grader.testing.sanity import Fault
 from grader.testing.solutions import Solution
 
@@ -39,9 +40,15 @@ class Problem:
     on: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        check = f"{self.fault.check}: " if self.fault.check else ""
-        seen = ", ".join(self.on[:3]) + (f" and {len(self.on) - 3} more" if self.on[3:] else "")
-        return f"{check}{self.fault.text}" + (f" (on {seen})" if seen else "")
+        parts = [f"{self.fault.check}: " if self.fault.check else "", self.fault.text]
+        if self.on:
+            parts.append(say(" (on {solutions})", solutions=self._solutions))
+        return joined(parts)
+
+    @property
+    def _solutions(self) -> str:
+        first, more = joined([Phrase(name) for name in self.on[:3]], ", "), len(self.on) - 3
+        return say("{names} and {n} more", names=first, n=more) if more > 0 else first
 
 
 @dataclass(frozen=True)
@@ -110,7 +117,7 @@ class Examination:
         }
 
     def to_markdown(self) -> str:
-        """A table for people: a row a solution, a column a check."""
+        """A table for documents: a row a solution, a column a check; the same in any language."""
         head = ["", *(f"`{check}`" for check in self.checks), "caught by"]
         rows = [head, ["---", *("---" for _ in self.checks), "---:"]]
         for trial in self.trials:

@@ -10,6 +10,7 @@ from grader.exercise.check import judge_by
 from grader.exercise.exercise import Exercise
 from grader.exercise.places import describe
 from grader.exercise.verdict import Evidence, Finding, Verdict
+from grader.language.phrase import say
 from grader.limited import LimitHit
 from grader.recording.recording import Recordings
 from grader.scenes import load_scene
@@ -30,10 +31,17 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
         try:
             finding = asked(name)
         except NoFinding as error:
-            faults.append(Fault(name, f"raises {error}" if error.was_raised else str(error)))
+            faults.append(
+                Fault(
+                    name,
+                    say("raises {error}", error=error.args[0])
+                    if error.was_raised
+                    else error.args[0],
+                )
+            )
             return Finding(0, "The check found nothing.")
         except LimitHit as hit:
-            faults.append(Fault(name, str(hit)))
+            faults.append(Fault(name, hit.args[0]))
             return Finding(0, "The check found nothing.")
         odd = list(_odd_about(finding, exercise, recordings))
         faults.extend(Fault(name, text) for text in odd)
@@ -47,16 +55,16 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
         first, second = (judge_by(watched, exercise.checks, exercise.points) for _ in range(2))
     for once, again in zip(first, second, strict=True):
         if repr(once) != repr(again):  # not a number is none but looks like itself
-            text = "finds something else when it is asked again about the same recordings"
+            text = say("finds something else when it is asked again about the same recordings")
             faults.append(Fault(once.check, text))
     return first, list(dict.fromkeys(faults))
 
 
 def _odd_about(finding: Finding, exercise: Exercise, recordings: Recordings) -> Iterator[str]:
     if not finding.rationale.strip():
-        yield "has an empty rationale: what was seen?"
+        yield say("has an empty rationale: what was seen?")
     if finding.share < 1 and not finding.help.strip():
-        yield "fails without help: what is there to look at?"
+        yield say("fails without help: what is there to look at?")
     for item in finding.evidence:
         yield from _odd_about_evidence(item, exercise, recordings)
 
@@ -66,10 +74,14 @@ def _odd_about_evidence(
 ) -> Iterator[str]:
     scene = load_scene(exercise.scene)
     if item.tick > list(recordings)[item.run].run.ticks:
-        yield f"evidence: tick {item.tick} is outside the recording"
+        yield say("evidence: tick {tick} is outside the recording", tick=item.tick)
     elif abs(item.time_s - item.tick * scene.tick_ns / 1e9) > 0.001:
-        yield f"evidence: time_s is not that of the tick: {item.time_s} s at tick {item.tick}"
+        yield say(
+            "evidence: time_s is not that of the tick: {time_s} s at tick {tick}",
+            time_s=item.time_s,
+            tick=item.tick,
+        )
     if not scene.plane.holds(item.x, item.y):
-        yield f"evidence: the place ({item.x}, {item.y}) is outside the picture"
+        yield say("evidence: the place ({x}, {y}) is outside the picture", x=item.x, y=item.y)
     if not item.note:
-        yield "evidence: has an empty note"
+        yield say("evidence: has an empty note")

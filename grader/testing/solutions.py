@@ -41,6 +41,7 @@ from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
 from grader.exercise.yaml_file import Keys, Mistake, read_yaml
+from grader.language.phrase import say
 from grader.testing.changes import MADE, Change, changed, lay_out, read
 
 FILE_NAME = "mutants.yaml"
@@ -103,33 +104,40 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
             changed(solution.name, solution.path, solution.changes)
     except OSError as error:
         raise ExerciseError(
-            f"cannot read the solutions of {exercise.name!r}, {path}: {error.strerror}. "
-            f"Expected a {FILE_NAME} in the exercise's folder, or --mutants FILE."
+            say(
+                "cannot read the solutions of {name!r}, {path}: {why}. Expected a "
+                "{file} in the exercise's folder, or --mutants FILE.",
+                name=exercise.name,
+                path=str(path),
+                why=str(error.strerror),
+                file=FILE_NAME,
+            )
         ) from None
     except (ExerciseError, ValueError) as error:
-        raise ExerciseError(f"{path} cannot be used: {error}") from None
+        why = error.message if isinstance(error, ExerciseError) else str(error)
+        raise ExerciseError(say("{path} cannot be used: {why}", path=str(path), why=why)) from None
     return found
 
 
 def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]:
     if not isinstance(data, dict) or not isinstance(data.get("right"), dict) or not data["right"]:
-        raise Mistake(("right",), "expected names with paths of right solutions")
+        raise Mistake(("right",), say("expected names with paths of right solutions"))
     unknown = [key for key in data if key not in ("right", "mutants", "program")]
     if unknown:
-        raise Mistake((str(unknown[0]),), "unknown; there are right, mutants, program")
+        raise Mistake((str(unknown[0]),), say("unknown; there are right, mutants, program"))
     (name, where), *others = data["right"].items()
     if isinstance(where, dict):
-        raise Mistake(("right", str(name)), "expected the path of the first right solution")
+        raise Mistake(("right", str(name)), say("expected the path of the first right solution"))
     first = Solution(str(name), places.locate(folder, str(where)), is_right=True)
     program = str(data.get("program", ""))
     made = _Made(first.path, program, folder)
     right = [first, *(_right(str(n), words, made) for n, words in others)]
     mutants = data.get("mutants") or {}
     if not isinstance(mutants, dict):
-        raise Mistake(("mutants",), "expected names with what is changed")
+        raise Mistake(("mutants",), say("expected names with what is changed"))
     both = {solution.name for solution in right} & set(mutants)
     if both:
-        raise ExerciseError(f"{min(both)!r} is both a right solution and a mutant")
+        raise ExerciseError(say("{name!r} is both a right solution and a mutant", name=min(both)))
     return [
         *right,
         *(_mutant(str(n), words, made, exercise) for n, words in mutants.items()),
@@ -148,10 +156,10 @@ class _Made:
         try:
             changes = read(words, self.program, self.folder)
         except (TypeError, KeyError, AttributeError):
-            raise Mistake((*keys, "replace"), "expected a list of old and new") from None
+            raise Mistake((*keys, "replace"), say("expected a list of old and new")) from None
         is_folder = self.of.is_dir()
         if not changes or any(bool(each.file) != is_folder for each in changes):
-            raise Mistake(keys, f"there is nothing to replace in {self.of}")
+            raise Mistake(keys, say("there is nothing to replace in {path}", path=str(self.of)))
         return changes
 
 
@@ -161,20 +169,22 @@ def _right(name: str, words: Any, made: _Made) -> Solution:
     keys: Keys = ("right", name)
     unknown = words.keys() - MADE
     if unknown:
-        raise Mistake(keys, f"unknown {min(map(str, unknown))!r}")
+        raise Mistake(keys, say("unknown {key!r}", key=min(map(str, unknown))))
     return Solution(name, made.of, is_right=True, changes=made.changes(words, keys))
 
 
 def _mutant(name: str, words: Any, made: _Made, exercise: Exercise) -> Solution:
     keys: Keys = ("mutants", name)
     if not isinstance(words, dict) or ("file" in words) != MADE.isdisjoint(words):
-        raise Mistake(keys, "expected either `replace` or `file`")
+        raise Mistake(keys, say("expected either `replace` or `file`"))
     unknown = words.keys() - {"file", "leaves", "says", *MADE}
     if unknown:
-        raise Mistake(keys, f"unknown {min(map(str, unknown))!r}")
+        raise Mistake(keys, say("unknown {key!r}", key=min(map(str, unknown))))
     leaves, says = _leaves(name, words.get("leaves"), exercise), words.get("says", "")
     if not isinstance(says, str):
-        raise Mistake((*keys, "says"), f"expected words of a first line, found {says!r}")
+        raise Mistake(
+            (*keys, "says"), say("expected words of a first line, found {says!r}", says=says)
+        )
     if "file" in words:
         path = places.locate(made.folder, str(words["file"]))
         return Solution(name, path, is_right=False, leaves=leaves, says=says)
@@ -189,11 +199,13 @@ def _leaves(name: str, words: object, exercise: Exercise) -> Mapping[str, Left] 
     if words == "nothing":
         return dict.fromkeys(exercise.points, 0.0)
     if not isinstance(words, dict) or not words:
-        raise Mistake(keys, "expected 'nothing', or checks with shares")
+        raise Mistake(keys, say("expected 'nothing', or checks with shares"))
     for check, left in words.items():
         if check not in {known.name for known in exercise.checks}:
-            raise Mistake(keys, f"no check is named {check!r}")
+            raise Mistake(keys, say("no check is named {check!r}", check=check))
         is_share = isinstance(left, int | float) and not isinstance(left, bool) and 0 <= left < 1
         if left != "some" and not is_share:
-            raise Mistake((*keys, check), f"expected a share below 1, or some; found {left!r}")
+            raise Mistake(
+                (*keys, check), say("expected a share below 1, or some; found {left!r}", left=left)
+            )
     return words
