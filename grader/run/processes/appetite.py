@@ -148,7 +148,15 @@ class Family:
         while children := {pid for pid, seen in found.items() if seen.parent in above} - above:
             members.update((pid, found[pid]) for pid in children - members.keys())
             above |= children
-        self._others |= found.keys() - above
+        # whose parent has ended since it was asked has another by now: that one tells, next time
+        outside = self._others | {0}
+        while (
+            children := {pid for pid, seen in found.items() if seen.parent in outside}
+            - outside
+            - above
+        ):
+            outside |= children
+        self._others = outside
         return members
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from grader import system
+from grader.run.processes import appetite
 from grader.run.processes.appetite import Appetite, Family
 from grader.run.processes.sandbox.limits import MIB, Limits
 
@@ -58,6 +59,25 @@ def test_all_descendants_count_and_what_they_share_once() -> None:
 def test_an_ancestor_does_not_count() -> None:
     with family() as child:
         assert Family(child).look().tasks == 2
+
+
+def test_whose_parent_ends_during_a_look_is_found_by_the_next(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """He has told of a parent that is not there any more, and has another one by now."""
+    gone = 1 << 30
+    see = appetite._see
+    with family() as child:
+
+        def see_before(pid: int) -> appetite._Process | None:
+            seen = see(pid)
+            return seen._replace(parent=gone) if seen and pid == child else seen
+
+        found = Family(os.getpid())
+        with monkeypatch.context() as during:
+            during.setattr(appetite, "_see", see_before)
+            before = found.look().tasks
+        assert found.look().tasks == before + 4
 
 
 def test_a_process_that_does_not_exist_has_no_family() -> None:
