@@ -21,7 +21,7 @@ from grader.batch.task import Answer, Task
 from grader.errors import UsageError
 from grader.exercise import places
 from grader.exercise.places import CHECKS
-from grader.language.phrase import Phrase, joined, say
+from grader.language.phrase import Phrase, joined, reason, say
 from grader.run.processes import levels
 from grader.submission.folder import is_generated, is_junk
 
@@ -116,7 +116,7 @@ def graded(package: bytes) -> bytes:
         try:
             return parcel.pack({ANSWER: answer.to_line()}, _made(task))
         except Unfit as unfit:
-            why = say("what came of it cannot be sent: {why}", why=unfit.args[0])
+            why = say("what came of it cannot be sent: {why}", why=reason(unfit))
             answer = Answer("failed", why)
             return parcel.pack({ANSWER: answer.to_line()}, {})
 
@@ -131,7 +131,7 @@ def unpack(package: bytes, task: Task) -> Answer:
         texts = parcel.unpack(package, task.into)
         answer = Answer.from_line(texts.get(ANSWER, b""))
     except (Unfit, ValueError) as error:
-        said = say("what a worker sent back cannot be used: {why}", why=error.args[0])
+        said = say("what a worker sent back cannot be used: {why}", why=reason(error))
         return Answer("failed", said)
     except OSError as error:
         why = error.strerror or str(error)

@@ -16,7 +16,7 @@ from typing import Any
 from grader.errors import CheckFailed
 from grader.exercise.asking import Asked, NoFinding
 from grader.exercise.verdict import Finding, Verdict
-from grader.language.phrase import authored, chained, say
+from grader.language.phrase import authored, chained, reason, say
 from grader.limited import LimitHit
 from grader.recording.recording import Recordings
 
@@ -94,7 +94,7 @@ class Checks:
                 if name in tolerances:
                     look(tolerances[name])
             except ValueError as error:
-                return name, error.args[0] if error.args else ""  # a phrase stays one
+                return name, reason(error)
         return None
 
     def __call__(

@@ -17,7 +17,7 @@ from grader.exercise.building import NAME, build
 from grader.exercise.exercise import LOOKS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.yaml_file import Mistake, YamlFile, did_you_mean, is_amount, read_yaml
-from grader.language.phrase import say
+from grader.language.phrase import reason, say
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
@@ -89,12 +89,8 @@ def _from_place(place: Place) -> Exercise:
         ) from None
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            say("{path} is not an exercise: {why}", path=str(place.folder), why=_why(error))
+            say("{path} is not an exercise: {why}", path=str(place.folder), why=reason(error))
         ) from error
-
-
-def _why(error: Exception) -> str:
-    return error.message if isinstance(error, ExerciseError) else str(error)
 
 
 def _from_file(path: Path) -> Exercise:
@@ -118,7 +114,7 @@ def _from_file(path: Path) -> Exercise:
         ) from None
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            say("{path} is not an exercise: {why}", path=str(path), why=_why(error))
+            say("{path} is not an exercise: {why}", path=str(path), why=reason(error))
         ) from error
 
 

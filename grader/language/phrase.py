@@ -143,6 +143,12 @@ def fill(key: str, values: Mapping[str, Any], write: Callable[[Any, str], str] =
     return "".join(made)
 
 
+def reason(error: Exception) -> str:
+    """What an exception says; the phrase itself, where it was raised with nothing but one."""
+    is_phrase = len(error.args) == 1 and isinstance(error.args[0], Phrase)
+    return error.args[0] if is_phrase else str(error)
+
+
 def each_text(value: Any, change: Callable[[str, str], str], field: str = "") -> Any:
     """A dataclass, row or dictionary with each of its texts changed; keys stay.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from grader import strict_json
 from grader.errors import UsageError
-from grader.language.phrase import joined, say
+from grader.language.phrase import joined, reason, say
 
 if TYPE_CHECKING:
     import jsonschema
@@ -74,7 +74,7 @@ def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
     try:
         return make(data)
     except ValueError as error:
-        raise UsageError(joined([f"{path} ", error.args[0]])) from None
+        raise UsageError(joined([f"{path} ", reason(error)])) from None
 
 
 @cache

@@ -41,7 +41,7 @@ from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
 from grader.exercise.yaml_file import Keys, Mistake, read_yaml
-from grader.language.phrase import say
+from grader.language.phrase import reason, say
 from grader.testing.changes import MADE, Change, changed, lay_out, read
 
 FILE_NAME = "mutants.yaml"
@@ -114,8 +114,9 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
             )
         ) from None
     except (ExerciseError, ValueError) as error:
-        why = error.message if isinstance(error, ExerciseError) else str(error)
-        raise ExerciseError(say("{path} cannot be used: {why}", path=str(path), why=why)) from None
+        raise ExerciseError(
+            say("{path} cannot be used: {why}", path=str(path), why=reason(error))
+        ) from None
     return found
 
 

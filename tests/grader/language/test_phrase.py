@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.errors import SubmissionError
-from grader.language.phrase import Phrase, fill, joined, listed, say, say_many
+from grader.errors import SubmissionError, UsageError
+from grader.language.phrase import Phrase, fill, joined, listed, reason, say, say_many
+from grader.result import json_file
 from grader.text import one_line, place, without_controls
 
 
@@ -55,6 +56,23 @@ def test_it_lives_through_copies_and_what_changes_nothing():
     for other in (deepcopy(made), made.strip(), one_line(made), without_controls(made)):
         assert other is made
     assert pickle.loads(pickle.dumps(made)).key == made.key
+
+
+def test_an_exception_says_its_phrase_and_else_all_that_it_says():
+    made = say("is damaged")
+    assert reason(ValueError(made)) is made
+    assert (reason(ValueError()), reason(ValueError("a", 1))) == ("", "('a', 1)")
+    odd = UnicodeDecodeError("utf-8", b"\xff", 0, 1, "invalid start byte")
+    assert reason(odd).endswith("invalid start byte")
+
+
+@pytest.mark.parametrize("error", [ValueError(), ValueError("a", 1)])
+def test_a_file_that_cannot_be_used_is_told_whatever_its_reader_raises(error):
+    def make(data):
+        raise error
+
+    with pytest.raises(UsageError, match=r"result\.json "):
+        json_file.made(make, Path("result.json"), {})
 
 
 def test_what_changes_it_makes_a_plain_text():
