@@ -1,17 +1,15 @@
-"""For all tests: checked message fields and a ROS graph that nobody else is on."""
+"""For all tests: checked message fields, and a simulator on a graph that nobody else is on."""
 
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
-from contextlib import ExitStack
 from itertools import count
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
-from grader.run.processes import domain
 from tests.programs import Program
 
 # Before anything of ROS is imported: the wheels take an int in a float field for other bits.
@@ -20,19 +18,28 @@ os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 # whatever the locale of who runs them
 os.environ["LANGUAGE"] = "en"
 
-_reserved = ExitStack()
+pytest_plugins = ["tests.apart"]
+
+#: So many examples has each search, in `make test-all`; without it, few.
+EXAMPLES = int(os.environ.get("EXAMPLES") or 0)
+settings.register_profile(
+    "ours",
+    max_examples=EXAMPLES or 30,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
+settings.load_profile("ours")
+
 _numbers = count(1)
 
 
-def pytest_configure() -> None:
-    """Take a ROS domain for this session, and a place for ROS's log files."""
-    os.environ["ROS_DOMAIN_ID"] = str(_reserved.enter_context(domain.reserve_domain()))
-    os.environ["ROS_LOG_DIR"] = _reserved.enter_context(tempfile.TemporaryDirectory())
-
-
-def pytest_unconfigure() -> None:
-    """Give them back."""
-    _reserved.close()
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """With EXAMPLES, `make test-all` searches again: where `make test` has not."""
+    if EXAMPLES:
+        for item in items:
+            if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
+                item.add_marker(pytest.mark.more("so many examples"))
 
 
 @pytest.fixture(scope="session")

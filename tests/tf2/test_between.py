@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from tf2_py import BufferCore
 
@@ -40,7 +40,6 @@ def rotation_between(a: np.ndarray, b: np.ndarray, ratio: float) -> np.ndarray:
     return a @ turned(twist / np.linalg.norm(twist), ratio * angle)
 
 
-@settings(max_examples=100, deadline=None)
 @given(poses, poses, st.floats(0.01, 0.99))
 def test_between_two_samples_it_goes_straight_and_turns_evenly_the_shorter_way(first, last, ratio):
     buffer = BufferCore()
@@ -83,7 +82,6 @@ def trees(draw):
     return parents, draw(st.lists(poses, min_size=size, max_size=size)), order
 
 
-@settings(max_examples=100, deadline=None)
 @given(trees(), st.data())
 def test_in_any_tree_it_finds_what_multiplied_matrices_give(tree, data):
     parents, all_poses, order = tree

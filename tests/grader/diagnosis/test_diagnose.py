@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import get_args
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.diagnosis.diagnose import diagnose
@@ -99,7 +99,6 @@ def form(name):
     return st.none() | anything(getattr(conduct, name.removesuffix(" | None")))
 
 
-@settings(deadline=None, max_examples=200)
 @given(
     conduct=anything(Conduct),
     outcome=st.sampled_from(["finished", "exited", "crashed", "stalled", "time_limit", "killed"]),

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.exercise.check import judge
@@ -90,7 +90,6 @@ def recordings(draw: st.DrawFn) -> Recording:
 
 @pytest.mark.parametrize("name", NAMES)
 @given(nominal=recordings(), varied=recordings())
-@settings(max_examples=30, deadline=None, suppress_health_check=list(HealthCheck))
 def test_whatever_was_recorded_is_judged(name, nominal, varied):
     exercise = load_exercise(name)
     asked = Recordings(replace(nominal, start=None), (varied,))

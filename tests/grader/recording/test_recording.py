@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.recording import reading, saving
@@ -172,7 +172,6 @@ def odd_recordings(draw) -> Recording:
 
 
 @given(odd=odd_recordings())
-@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_odd_values_survive_bit_for_bit(tmp_path_factory, odd):
     folder = tmp_path_factory.mktemp("odd")
     saving.save(odd, folder)

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import jsonschema
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 
@@ -166,11 +166,6 @@ def test_the_points_need_not_be_known(name):
 
 
 @pytest.mark.parametrize("name", FORMATS)
-@settings(
-    deadline=None,
-    max_examples=40,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
 @given(
     whose=st.sampled_from(["submission", "exercise", "call", "grader"]),
     message=st.lists(TEXTS, max_size=3).map("\n".join),

@@ -8,7 +8,7 @@ from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.reports import FORMATS, ErrorReport, Report, render
@@ -170,11 +170,6 @@ def classroom(monkeypatch):
 
 
 @pytest.mark.parametrize("name", FORMATS)
-@settings(
-    deadline=None,
-    max_examples=20,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
 @given(made=any_results(), output=st.lists(TEXTS, max_size=3).map("\n".join))
 def test_every_format_of_every_result_is_well_formed_and_has_the_same_score(
     name, made, output, classroom
@@ -243,11 +238,6 @@ def test_every_format_that_people_read_calls_the_first_line_what_it_is(name, cla
 
 
 @pytest.mark.parametrize("name", FORMATS)
-@settings(
-    deadline=None,
-    max_examples=15,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
 @given(message=TEXTS, file=st.text(st.characters(codec=None, exclude_characters="\0/"), min_size=1))
 def test_every_format_of_every_error_is_safe_to_print(name, message, file, classroom):
     error = ErrorResult("submission", message, 100.0)

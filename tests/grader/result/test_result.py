@@ -4,7 +4,7 @@ import json
 from dataclasses import asdict, replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from grader import reports
 from grader.diagnosis.diagnosis import Diagnosis
@@ -21,7 +21,6 @@ from tests.grader.reports import samples
 from tests.grader.reports.test_every_format import any_results
 
 
-@settings(max_examples=50, deadline=None)
 @given(made=any_results())
 def test_whatever_follows_the_schema_can_be_read_and_written_again(made):
     found = Result.from_json(made).to_json()

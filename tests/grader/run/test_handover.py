@@ -10,7 +10,7 @@ from pathlib import Path
 from struct import pack
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import GraderFailure
@@ -88,7 +88,6 @@ def test_an_empty_file_is_a_failure(file, scene):
 
 
 @given(data=st.binary(max_size=200))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_garbage_is_a_failure_and_nothing_else(file, scene, data):
     put(file, data)
     failure(file, scene)

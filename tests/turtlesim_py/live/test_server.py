@@ -9,7 +9,7 @@ import socket
 
 import pytest
 from geometry_msgs.msg import Twist
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
@@ -172,7 +172,6 @@ def test_a_call_that_cannot_be_made_says_why(page, service, args, words):
 def test_whatever_a_viewer_sends_the_simulator_goes_on(page):
     with page.viewer() as viewer:
 
-        @settings(max_examples=150, deadline=None)
         @given(
             st.dictionaries(
                 st.sampled_from(("topic", "type", "msg", "service", "args", "id")),

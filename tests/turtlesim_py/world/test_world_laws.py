@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from struct import pack
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from turtlesim_py.world.arena import Arena
@@ -30,7 +30,6 @@ def driven(steps, holonomic=False, name="turtle1"):
     return arena, poses
 
 
-@settings(max_examples=60, deadline=None)
 @given(commands, st.booleans())
 def test_finite_commands_keep_the_turtle_inside_and_its_heading_normalised(steps, holonomic):
     for pose in driven(steps, holonomic)[1]:
@@ -39,20 +38,17 @@ def test_finite_commands_keep_the_turtle_inside_and_its_heading_normalised(steps
         assert pose.linear_velocity >= 0.0
 
 
-@settings(max_examples=60, deadline=None)
 @given(commands)
 def test_published_values_are_float32(steps):
     for pose in driven(steps)[1]:
         assert all(value == float32(value) for value in pose)
 
 
-@settings(max_examples=30, deadline=None)
 @given(commands)
 def test_a_turtles_name_does_not_change_its_motion(steps):
     assert driven(steps)[1] == driven(steps, name="zoe")[1]
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(anything, anything, anything), max_size=8))
 def test_no_input_whatever_stops_the_world(values):
     arena = Arena(sprite="rolling")
@@ -66,7 +62,6 @@ def test_no_input_whatever_stops_the_world(values):
     assert arena.tick()
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.permutations(["Zoe", "alice", "bob", "turtle10"]))
 def test_the_order_of_spawning_does_not_change_the_order_of_updates(names):
     arena = Arena(sprite="rolling")
@@ -75,7 +70,6 @@ def test_the_order_of_spawning_does_not_change_the_order_of_updates(names):
     assert list(arena.tick()) == ["Zoe", "alice", "bob", "turtle1", "turtle10"]
 
 
-@settings(max_examples=40, deadline=None)
 @given(commands)
 def test_a_lifted_pen_leaves_the_canvas_empty(steps):
     arena = Arena(sprite="rolling")

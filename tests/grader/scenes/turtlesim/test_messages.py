@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.stores import ros2_jazzy as ros
 
@@ -80,14 +80,12 @@ def test_all_others_are_those_of_jazzy():
 
 
 @given(odd=odd_traces())
-@settings(deadline=None)
 def test_a_trace_comes_back_from_its_messages_bit_for_bit(odd):
     back = messages.from_channels(channels_of(messages.to_messages(odd), odd), odd.ticks)
     assert_same_trace(back, odd)
 
 
 @given(odd=odd_traces())
-@settings(deadline=None)
 def test_what_is_packed_by_columns_is_what_rosbags_serializes(odd):
     types = types_of(messages.DEFINITIONS)
     for packed in messages.to_messages(odd):

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from grader.errors import RecordingError
 from grader.scenes.playback import Judged, Line, Playback, Sent, Take
@@ -139,7 +139,6 @@ def test_where_a_clock_of_its_own_ended_commands_the_film_follows_the_poses():
 
 
 @given(odd_traces())
-@settings(max_examples=30, deadline=None)
 def test_whatever_a_recording_holds_becomes_a_film_that_is_json(trace):
     made = film(trace, None)
     json.dumps(made, allow_nan=False)

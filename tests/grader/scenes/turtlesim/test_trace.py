@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.scenes.turtlesim.trace import Log, TurtleTrace, decode, encode
@@ -32,14 +32,12 @@ def test_a_decoded_trace_equals_the_encoded_one(trace):
 
 
 @given(odd=odd_traces())
-@settings(deadline=None)
 def test_odd_traces_survive_bit_for_bit(odd):
     assert_same_trace(decode(encode(odd)), odd)
 
 
 @pytest.mark.parametrize("op", KINDS)
 @given(data=st.data())
-@settings(max_examples=20, deadline=None)
 def test_every_kind_of_event_survives(trace, op, data):
     short = replace(trace, trajectories={}, canvas=trace.canvas[:1], window=trace.window[:1])
     odd = replace(short, events=tuple(data.draw(st.lists(odd_events(op), min_size=1, max_size=3))))
