@@ -1,0 +1,106 @@
+"""Runs of fixture submissions: each made once for all tests, whichever process asks for it first.
+
+They are saved and read back as `grader run` saves them, so what a test sees of one has survived
+that, too. See `tests.once` for how long they serve.
+"""
+
+from __future__ import annotations
+
+from functools import cache, lru_cache
+from pathlib import Path
+
+import grader
+from grader import grading
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
+from grader.recording import reading, saving
+from grader.recording.recording import Clock, Recording, Recordings
+from grader.result.result import Result
+from grader.run import real_time, virtual_time
+from grader.run.plan import Plan
+from grader.run.simulator.link import Patience
+from grader.submission.opening import open_submission
+from tests import once
+from tests.submissions.mutants import MUTANTS, REFERENCE
+
+SUBMISSIONS = Path(__file__).parent / "submissions"
+CHALLENGE = load_exercise("turtlesim_challenge")
+#: So many of each kind are kept in memory: some megabytes each.
+KEPT = 32
+
+
+@cache
+def path_of(name: str) -> Path:
+    """Where a submission lies.
+
+    Args:
+        name: its path below tests/submissions, without `.py`; `reference`, the challenge's; or
+            `mutants/NAME`, one of its mutants.
+    """
+    if name == "reference":
+        return REFERENCE
+    kind, _, which = name.partition("/")
+    if kind == "mutants":
+        return _written(name, "turtle_controller.py", MUTANTS[which].text())
+    path = SUBMISSIONS / name
+    return path if path.is_dir() else path.with_name(f"{path.name}.py")
+
+
+def _written(name: str, file: str, text: str) -> Path:
+    def write(folder: Path) -> None:
+        (folder / file).write_text(text, encoding="utf-8")
+
+    return once.folder(write, "source", name, text) / file
+
+
+@lru_cache(KEPT)
+def recorded(
+    name: str,
+    plan: Plan,
+    patience: Patience | None = None,
+    *,
+    time: Clock = "virtual",
+    number: int = 1,
+) -> Recording:
+    """One run of a submission.
+
+    Args:
+        name: see `path_of`.
+        patience: None for the usual one.
+        number: 2, 3, ... are further runs of the same, to be compared with the first.
+    """
+
+    def run(folder: Path) -> None:
+        with open_submission(path_of(name)) as submission:
+            if time == "real":
+                recording = real_time.run(submission, plan)
+            else:
+                recording = virtual_time.run(submission, plan, patience=patience or Patience())
+        saving.save(recording, folder)
+
+    return reading.load(once.folder(run, "run", name, plan, patience, time, number))
+
+
+def recordings(name: str, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Recordings:
+    """All runs of a submission that an exercise asks for, in virtual time; see `recorded`."""
+
+    def run(folder: Path) -> None:
+        with open_submission(path_of(name), **exercise.opening) as submission:
+            plans = grading.plan(submission, exercise)
+            origin = grading.provenance(submission, exercise)
+            run = grading.runner(exercise, "virtual")
+            # one at a time: another worker has the other core
+            with grading.start(submission, plans, run, None, origin, at_once=1) as runs:
+                saving.save_all(grading.gather(runs), folder)
+
+    key = (name, exercise.name, exercise.sha256, sorted(exercise.conditions.items()), number)
+    return _loaded(once.folder(run, "runs", *key))
+
+
+_loaded = lru_cache(KEPT)(reading.load_all)
+
+
+def graded(name: str, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Result:
+    """What a submission gets for these runs."""
+    found = recordings(name, exercise, number=number)
+    return grader.judge(found, exercise, submission=path_of(name).name)
