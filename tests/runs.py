@@ -30,13 +30,15 @@ KEPT = 32
 
 
 @cache
-def path_of(name: str) -> Path:
+def path_of(name: str | Path) -> Path:
     """Where a submission lies.
 
     Args:
-        name: its path below tests/submissions, without `.py`; `reference`, the challenge's; or
-            `mutants/NAME`, one of its mutants.
+        name: its path below tests/submissions, without `.py`; `reference`, the challenge's;
+            `mutants/NAME`, one of its mutants; or the path of anything in the tree.
     """
+    if isinstance(name, Path):
+        return name
     if name == "reference":
         return REFERENCE
     kind, _, which = name.partition("/")
@@ -55,7 +57,7 @@ def _written(name: str, file: str, text: str) -> Path:
 
 @lru_cache(KEPT)
 def recorded(
-    name: str,
+    name: str | Path,
     plan: Plan,
     patience: Patience | None = None,
     *,
@@ -81,7 +83,7 @@ def recorded(
     return reading.load(once.folder(run, "run", name, plan, patience, time, number))
 
 
-def recordings(name: str, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Recordings:
+def recordings(name: str | Path, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Recordings:
     """All runs of a submission that an exercise asks for, in virtual time; see `recorded`."""
 
     def run(folder: Path) -> None:
@@ -100,7 +102,7 @@ def recordings(name: str, exercise: Exercise = CHALLENGE, *, number: int = 1) ->
 _loaded = lru_cache(KEPT)(reading.load_all)
 
 
-def graded(name: str, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Result:
+def graded(name: str | Path, exercise: Exercise = CHALLENGE, *, number: int = 1) -> Result:
     """What a submission gets for these runs."""
     found = recordings(name, exercise, number=number)
     return grader.judge(found, exercise, submission=path_of(name).name)

@@ -10,7 +10,8 @@ from grader.run.plan import Plan
 from grader.scenes.scene import Limits, Start
 from grader.scenes.turtlesim.live.mirror import Mirror
 from grader.submission.opening import open_submission
-from tests.grader.run.conftest import LIMITS, SUBMISSIONS
+from tests.grader.run.conftest import LIMITS
+from tests.runs import SUBMISSIONS
 from turtlesim_py.live.feed import Whole
 from turtlesim_py.world import picture
 
@@ -46,7 +47,6 @@ class Onlooker:
         return picture.render(whole.canvas, tuple(whole.content["background"]), turtles)
 
 
-@pytest.mark.records("services/all_services", "quick_spiral")
 @pytest.mark.parametrize(
     ("name", "speed"), [("services/all_services", None), ("quick_spiral", 8.0)]
 )
@@ -76,7 +76,6 @@ def test_a_run_in_real_time_is_seen_as_well_from_where_it_starts(tmp_path):
     assert np.array_equal(onlooker.window(), seen.trace.window)
 
 
-@pytest.mark.records("quick_spiral")
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_one_who_fails_is_told_nothing_more_and_the_run_goes_on(recorded):
     onlooker = Onlooker(None)

@@ -10,18 +10,15 @@ from grader.diagnosis import standstill
 from grader.diagnosis.case import Case
 from grader.recording.conduct import Conduct, End, Place, Sent, Slow, Stop, Wait
 from grader.recording.recording import Recording
-from grader.run import real_time
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
-from grader.submission.opening import open_submission
-from tests.grader.run.conftest import SUBMISSIONS
+from tests import runs
 from turtlesim_py.world.events import CmdVel
 
 Recorded = Callable[..., Recording]
 PEN = "self.pen.call(SetPen.Request(r=255, width=3))"
 
 
-@pytest.mark.records("conduct/wrong_ends", times=2)
 def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
     recorded: Recorded,
 ) -> None:
@@ -49,13 +46,11 @@ def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
     assert (conduct.spun_s, conduct.returned_s, conduct.raised) == (None, 3.0, None)
 
 
-@pytest.mark.records("conduct/wrong_ends", times=2)
 def test_the_same_is_told_of_two_runs(recorded: Recorded) -> None:
     first, second = recorded("conduct/wrong_ends"), recorded("conduct/wrong_ends", 2)
     assert first.conduct == second.conduct
 
 
-@pytest.mark.records("conduct/spins_once")
 def test_a_program_that_spins_once_and_is_through_tells_both(recorded: Recorded) -> None:
     conduct = recorded("conduct/spins_once").conduct
     assert (conduct.is_told, conduct.spun_s, conduct.stop) == (True, 0.0, None)
@@ -66,23 +61,18 @@ def test_a_program_that_spins_once_and_is_through_tells_both(recorded: Recorded)
 @pytest.mark.parametrize(
     ("name", "stop"),
     [
-        pytest.param(f"misbehaving/{name}", stop, marks=pytest.mark.records(f"misbehaving/{name}"))
-        for name, stop in (
-            ("calls_in_callback", ("callback", 1.0, "Client.call", 15, PEN)),
-            ("calls_without_spinning", ("call", 0.0, "Client.call", 10, PEN.removeprefix("self."))),
-            ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
-            (
-                "spins_in_callback",
-                *(("callback", 0.48, "spin_until_future_complete", 26,
-                   "rclpy.spin_until_future_complete(self, answer)"),),
-            ),
-        )
+        ("calls_in_callback", ("callback", 1.0, "Client.call", 15, PEN)),
+        ("calls_without_spinning", ("call", 0.0, "Client.call", 10, PEN.removeprefix("self."))),
+        ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
+        ("spins_in_callback",
+         ("callback", 0.48, "spin_until_future_complete", 26,
+          "rclpy.spin_until_future_complete(self, answer)")),
     ],
 )  # fmt: skip
 def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(
     recorded: Recorded, name: str, stop: tuple[str, float, str, int, str]
 ) -> None:
-    found = recorded(name).conduct.stop
+    found = recorded(f"misbehaving/{name}").conduct.stop
     assert found is not None
     assert found.place is not None
     assert (found.kind, found.time_s, found.call, found.place.line, found.place.text) == stop
@@ -91,13 +81,10 @@ def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(
 @pytest.mark.parametrize(
     ("name", "raised"),
     [
-        pytest.param(name, raised, marks=pytest.mark.records(name))
-        for name, raised in (
-            ("misbehaving/raises_in_callback", ("AttributeError", 0.48, 17, "on_pose")),
-            ("misbehaving/exits", ("SystemExit", 1.0, 16, "")),
-            ("conduct/raises_inside_rclpy", ("AttributeError", 0.5, 10, "tick")),
-            ("conduct/says_goodbye", ("SystemExit", 0.0, 9, "leave")),
-        )
+        ("misbehaving/raises_in_callback", ("AttributeError", 0.48, 17, "on_pose")),
+        ("misbehaving/exits", ("SystemExit", 1.0, 16, "")),
+        ("conduct/raises_inside_rclpy", ("AttributeError", 0.5, 10, "tick")),
+        ("conduct/says_goodbye", ("SystemExit", 0.0, 9, "leave")),
     ],
 )
 def test_what_ended_it_is_told_with_the_last_line_of_its_own(
@@ -111,14 +98,12 @@ def test_what_ended_it_is_told_with_the_last_line_of_its_own(
     assert conduct.returned_s is None
 
 
-@pytest.mark.records("conduct/says_goodbye")
 def test_the_text_that_a_program_leaves_with_is_told(recorded: Recorded) -> None:
     raised = recorded("conduct/says_goodbye").conduct.raised
     assert raised is not None
     assert raised.text == "bye"
 
 
-@pytest.mark.records("conduct/aborts")
 def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded: Recorded) -> None:
     raised = recorded("conduct/aborts").conduct.raised
     assert raised is not None
@@ -128,7 +113,6 @@ def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded: Recorded) -
     )
 
 
-@pytest.mark.records("misbehaving/busy_for_ever")
 def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
     found = recorded("misbehaving/busy_for_ever").conduct.stop
     assert found == Stop("loop", 0.096, "", Place("busy_for_ever.py", 13, "", "while True:"))
@@ -137,13 +121,10 @@ def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
 @pytest.mark.parametrize(
     ("name", "line", "function", "text"),
     [
-        pytest.param(name, *place, marks=pytest.mark.records(f"conduct/{name}"))
-        for name, *place in (
-            ("waits_in_vain", 14, "Controller.__init__",
-             "while not self.pen.wait_for_service(timeout_sec=1.0):"),
-            ("waits_for_an_answer", 10, "",
-             "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"),
-        )
+        ("waits_in_vain", 14, "Controller.__init__",
+         "while not self.pen.wait_for_service(timeout_sec=1.0):"),
+        ("waits_for_an_answer", 10, "",
+         "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"),
     ],
 )  # fmt: skip
 def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
@@ -154,7 +135,6 @@ def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
     assert conduct.waits == (Wait("/set_pen", "turtlesim/srv/SetPen", 0.0, None, place),)
 
 
-@pytest.mark.records("conduct/waits_for_message")
 def test_who_waits_for_messages_without_spinning_has_heard_them(recorded: Recorded) -> None:
     recording = recorded("conduct/waits_for_message")
     heard = [(end.name, end.used) for end in recording.conduct.ends if end.kind == "subscription"]
@@ -162,14 +142,12 @@ def test_who_waits_for_messages_without_spinning_has_heard_them(recorded: Record
     assert standstill.never_spins(Case(recording)) is None
 
 
-@pytest.mark.records("conduct/sleeps_in_callback")
 def test_a_callback_that_sleeps_is_told_by_its_longest_line(recorded: Recorded) -> None:
     conduct = recorded("conduct/sleeps_in_callback").conduct
     place = Place("sleeps_in_callback.py", 12, "pause", "time.sleep(0.15)")
     assert conduct.slow == (Slow(place, 0.2, 10),)
 
 
-@pytest.mark.records("styles/timer")
 def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(
     recorded: Recorded,
 ) -> None:
@@ -188,8 +166,7 @@ def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(
 
 
 def in_real_time(name: str) -> Conduct:
-    with open_submission(SUBMISSIONS / f"{name}.py") as submission:
-        return real_time.run(submission, Plan(Limits(3, 1, 20))).conduct
+    return runs.recorded(name, Plan(Limits(3, 1, 20)), time="real").conduct
 
 
 def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:
@@ -221,7 +198,6 @@ def test_in_real_time_a_program_that_comes_to_its_end_tells_so() -> None:
 # Numbers of the wrong type --------------------------------------------------------------------
 
 
-@pytest.mark.records("fields/wrong_colours")
 def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message(
     recorded: Recorded,
 ) -> None:
@@ -241,7 +217,6 @@ def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message
     assert [end.is_met for end in recording.conduct.ends] == [True]
 
 
-@pytest.mark.records("fields/honest_numbers")
 def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Recorded) -> None:
     recording = recorded("fields/honest_numbers")
     assert recording.output == ""
@@ -251,7 +226,6 @@ def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Record
 # Loops ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.records("conduct/loops_for_ever", times=2)
 def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded: Recorded) -> None:
     place = Place("loops_for_ever.py", 21, "work", "while add(numbers) > 0:")
     for number in (1, 2):
@@ -259,7 +233,6 @@ def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded: R
         assert stop == Stop("loop", 0.096, "", place)
 
 
-@pytest.mark.records("conduct/thread_dies")
 def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_on(
     recorded: Recorded,
 ) -> None:
@@ -271,6 +244,5 @@ def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_o
     assert recorded("conduct/thread_dies").run.exit_code == 0
 
 
-@pytest.mark.records("conduct/leaves_without_a_word")
 def test_a_program_that_ends_without_a_word_has_told_that_it_was_there(recorded: Recorded) -> None:
     assert recorded("conduct/leaves_without_a_word").conduct == Conduct(is_told=True)

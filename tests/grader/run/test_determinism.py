@@ -8,11 +8,12 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
+from grader.recording.recording import Run
 from grader.run import virtual_time
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
 from grader.submission.opening import open_submission
-from tests.grader.run.conftest import SUBMISSIONS
+from tests import runs
 
 NAMES = (
     "styles/timer",
@@ -34,15 +35,14 @@ def busy_loops(count: int) -> Iterator[None]:
             loop.wait()
 
 
-def trace(name: str) -> tuple[str, str]:
-    with open_submission(SUBMISSIONS / f"{name}.py") as submission:
-        recording = virtual_time.run(submission, PLAN)
-    assert (recording.run.time, recording.run.flags) == ("virtual", ())
-    return name, recording.run.trace_sha256
+def crowded(name: str) -> Run:
+    with open_submission(runs.path_of(name)) as submission:
+        return virtual_time.run(submission, PLAN).run
 
 
 def test_beside_busy_loops_and_other_runs_every_trace_stays_the_same() -> None:
-    alone = dict(trace(name) for name in NAMES)
+    alone = [runs.recorded(name, PLAN).run for name in NAMES]
     with busy_loops(2), ThreadPoolExecutor(4) as pool:
-        crowded = list(pool.map(trace, NAMES * 2))
-    assert {(name, alone[name]) for name in NAMES} == set(crowded)
+        for name, first, again in zip(NAMES, alone, pool.map(crowded, NAMES), strict=True):
+            assert (again.time, again.flags) == (first.time, first.flags) == ("virtual", ())
+            assert again.trace_sha256 == first.trace_sha256, name

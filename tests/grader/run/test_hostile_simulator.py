@@ -12,7 +12,6 @@ import pytest
 
 import grader
 from grader.errors import GraderFailure
-from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings
 from grader.run import handover, real_time, virtual_time
 from grader.run.plan import Plan
@@ -20,27 +19,21 @@ from grader.run.simulator import virtual_time as simulator
 from grader.run.simulator.link import Patience
 from grader.scenes.scene import Limits
 from grader.scenes.turtlesim.allowance import LONGEST_NAME, MOST_TURTLES
-from grader.submission.opening import open_submission
+from tests import runs
+from tests.runs import CHALLENGE, SUBMISSIONS
 from turtlesim_py.world.events import Kill
 
-SUBMISSIONS = Path(__file__).parents[2] / "submissions"
-HOSTILE = SUBMISSIONS / "hostile_simulator"
 LIMITS = Limits(first_motion_s=3, rest_s=2, total_s=10)
 PATIENCE = Patience(run_cpu_s=20, simulator_cpu_s=20, asleep_s=1.0)
 #: For a turtle that moves, and for pens that are not set too often.
 MOST_POINTS = 20
-#: All of it takes less than a second; the machine may be busy.
-MOST_WALL_S = 60
 
 
 def run(name: str, patience: Patience = PATIENCE) -> Recording:
     """What is recorded of one of them; it is judged, too, and earns next to nothing."""
-    with open_submission(HOSTILE / f"{name}.py") as submission:
-        recording = virtual_time.run(submission, Plan(LIMITS), patience=patience)
+    recording = runs.recorded(f"hostile_simulator/{name}", Plan(LIMITS), patience)
     assert recording.run.time == "virtual"
-    assert recording.run.wall_s < MOST_WALL_S
-    exercise = load_exercise("turtlesim_challenge")
-    alone = replace(exercise, varied=replace(exercise.varied, count=0))
+    alone = replace(CHALLENGE, varied=replace(CHALLENGE.varied, count=0))
     assert grader.judge(Recordings(recording), alone).score <= MOST_POINTS
     return recording
 
@@ -63,7 +56,7 @@ def test_pictures_are_written_into_the_folder_of_the_run() -> None:
     # the folder is not set, and the picture is saved where it always is
     expected = [f"False True canvas_00{number}.png" for number in range(1, 6)]
     assert recording.output.splitlines() == [*expected, "False"]
-    assert not (HOSTILE / "elsewhere").exists()
+    assert not (SUBMISSIONS / "hostile_simulator" / "elsewhere").exists()
     assert "canvas_folder cannot be set" in flags(recording)
     assert "100 pictures" in flags(recording)
 
@@ -133,8 +126,7 @@ def test_thousands_of_topics_are_counted_to_a_thousand() -> None:
 
 @pytest.fixture
 def short() -> Any:
-    exercise = load_exercise("turtlesim_challenge")
-    return replace(exercise, limits=LIMITS, varied=replace(exercise.varied, count=0))
+    return replace(CHALLENGE, limits=LIMITS, varied=replace(CHALLENGE.varied, count=0))
 
 
 def kill_when(monkeypatch: pytest.MonkeyPatch, has_met: bool, times: int) -> None:
@@ -160,10 +152,9 @@ def kill_when(monkeypatch: pytest.MonkeyPatch, has_met: bool, times: int) -> Non
 def test_a_simulator_that_is_killed_once_does_not_count(
     short: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    honest = SUBMISSIONS / "styles/timer.py"
-    undisturbed = grader.grade(honest, short)
+    undisturbed = runs.graded("styles/timer", short)
     kill_when(monkeypatch, has_met=True, times=1)
-    result = grader.grade(honest, short)
+    result = grader.grade(SUBMISSIONS / "styles/timer.py", short)
     assert result.run.trace_sha256 == undisturbed.run.trace_sha256
     assert result.score == undisturbed.score
 

@@ -13,7 +13,6 @@ OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <modu
 
 
 @LINUX
-@pytest.mark.records("limits/fills_memory", "limits/fills_shared_memory")
 @pytest.mark.parametrize("name", ["fills_memory", "fills_shared_memory"])
 def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> None:
     run = recorded(f"limits/{name}").run
@@ -30,7 +29,6 @@ REFUSED = {
 
 
 @LINUX
-@pytest.mark.records(*(f"limits/{name}" for name in REFUSED))
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> None:
     run = recorded(f"limits/{name}").run
@@ -39,14 +37,12 @@ def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> Non
 
 
 @LINUX
-@pytest.mark.records("limits/starts_processes", "limits/starts_threads")
 @pytest.mark.parametrize("name", ["starts_processes", "starts_threads"])
 def test_processes_and_threads_are_counted_together(recorded: Run, name: str) -> None:
     flags = recorded(f"limits/{name}").run.flags
     assert any(f"{LIMITS.tasks} processes and threads" in flag for flag in flags), flags
 
 
-@pytest.mark.records("limits/prints_without_end")
 def test_of_a_long_output_the_middle_is_left_out_and_its_length_told(recorded: Run) -> None:
     recording = recorded("limits/prints_without_end")
     first, told, last = recording.output.partition("[... 19934464 bytes left out ...]")

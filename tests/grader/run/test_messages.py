@@ -74,12 +74,7 @@ FLAGS = {
 }
 
 
-def each(names: list[str]) -> list[object]:
-    """Parameters of a test: submissions that it will have recorded."""
-    return [pytest.param(n, marks=pytest.mark.records(f"messages/{n}")) for n in names]
-
-
-@pytest.mark.parametrize("name", each(list(RUNS)))
+@pytest.mark.parametrize("name", RUNS)
 def test_messages_count_when_they_should(recorded: Recorded, name: str) -> None:
     run = recorded(f"messages/{name}").run
     expected = RUNS[name]
@@ -92,13 +87,12 @@ def test_messages_count_when_they_should(recorded: Recorded, name: str) -> None:
     executor.known() is not reversed or sys.version_info[:2] != (3, 11),
     reason="recorded with the order of rclpy 7 and with Python 3.11, which tell some milliseconds",
 )
-@pytest.mark.parametrize("name", each(sorted(path.stem for path in OUTPUTS.glob("*.txt"))))
+@pytest.mark.parametrize("name", sorted(path.stem for path in OUTPUTS.glob("*.txt")))
 def test_a_program_hears_and_is_told_what_it_should(recorded: Recorded, name: str) -> None:
     output = recorded(f"messages/{name}").output
     assert _without_the_machine(output) == (OUTPUTS / f"{name}.txt").read_text()
 
 
-@pytest.mark.records("messages/lifecycle")
 def test_a_lifecycle_node_tells_of_its_states_on_a_topic_of_its_own(recorded: Recorded) -> None:
     topics = [topic.topic for topic in recorded("messages/lifecycle").topics]
     assert topics == ["/driver/transition_event", "/turtle1/cmd_vel"]

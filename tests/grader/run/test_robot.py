@@ -13,16 +13,18 @@ from grader.recording.recording import Recordings
 from grader.scenes.robot import motion
 from grader.scenes.robot.trace import RobotTrace
 from grader.testing.solutions import read_solutions
+from tests import runs
 
 pytest.importorskip("tf2_ros")
 EXERCISE = load_exercise("state_publisher")
 LOOP = EXERCISE.folder / "right" / "constructor_loop.py"
+REFERENCE = read_solutions(EXERCISE)[0].path
 TWO_STAMPS = "odom_trans.header.stamp = now.to_msg()"
 
 
 @pytest.fixture(scope="module")
 def recorded() -> Recordings:
-    return grading.record(LOOP, EXERCISE)
+    return runs.recordings(LOOP, EXERCISE)
 
 
 def trace_of(recordings: Recordings) -> RobotTrace:
@@ -36,7 +38,7 @@ def test_a_loop_in_the_constructor_runs_in_virtual_time(recorded):
 
 
 def test_two_runs_are_equal(recorded):
-    again = grading.record(LOOP, EXERCISE)
+    again = runs.recordings(LOOP, EXERCISE, number=2)
     assert again.nominal.run.trace_sha256 == recorded.nominal.run.trace_sha256
     assert trace_of(again).messages == trace_of(recorded).messages
 
@@ -55,8 +57,7 @@ def test_a_recording_is_read_back_as_it_was(recorded, tmp_path):
 
 
 def test_what_is_found_of_its_package_is_read_back_too(tmp_path):
-    reference = read_solutions(EXERCISE)[0].path
-    recorded = grading.record(reference, EXERCISE)
+    recorded = grading.record(REFERENCE, EXERCISE)
     grading.save_recordings(recorded, tmp_path / "recording")
     read = grading.load_recordings(tmp_path / "recording")
     assert read.nominal.package == recorded.nominal.package
@@ -66,7 +67,7 @@ def test_what_is_found_of_its_package_is_read_back_too(tmp_path):
 
 def test_what_a_launch_file_would_have_started_otherwise_is_told(tmp_path):
     package = tmp_path / "walker"
-    shutil.copytree(read_solutions(EXERCISE)[0].path, package)
+    shutil.copytree(REFERENCE, package)
     launch = package / "launch" / "walker.launch.py"
     launch.write_text(launch.read_text().replace('output="screen"', 'parameters=[{"r": 1.0}]'))
     (remark,) = grading.record(package, EXERCISE).nominal.run.flags
@@ -89,7 +90,7 @@ def test_the_same_in_real_time():
 
 def test_what_is_added_so_that_it_starts_here_is_not_looked_at(tmp_path):
     package = tmp_path / "walker"
-    shutil.copytree(read_solutions(EXERCISE)[0].path, package)
+    shutil.copytree(REFERENCE, package)
     (package / "walker" / "__init__.py").unlink()
     setup = (package / "setup.py").read_text()
     found = "packages=__import__('setuptools').find_packages()"
