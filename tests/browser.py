@@ -8,13 +8,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import pytest
+from tests.needs import BROWSERS, needs
 
-#: Debian, Ubuntu and Fedora call it differently.
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
-)
-needs_browser = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+BROWSER = next(filter(None, map(shutil.which, BROWSERS)), "")
+needs_browser = needs("chromium")
 #: What the law asks for: WCAG 2.1, levels A and AA.
 RULES = {
     "runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"],

@@ -18,7 +18,7 @@ os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 # whatever the locale of who runs them
 os.environ["LANGUAGE"] = "en"
 
-pytest_plugins = ["tests.apart"]
+pytest_plugins = ["tests.apart", "tests.needs"]
 
 #: So many examples has each search, in `make test-all`; without it, few.
 EXAMPLES = int(os.environ.get("EXAMPLES") or 0)

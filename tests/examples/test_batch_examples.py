@@ -97,7 +97,6 @@ def test_each_part_is_graded_once_and_then_all_are_put_together(
 
 
 def test_the_workflow_follows_the_schema_and_has_its_actions_pinned() -> None:
-    pytest.importorskip("check_jsonschema")
     path = BATCH / "github" / "grade-class.yml"
     words = ["--builtin-schema", "vendor.github-workflows", str(path)]
     check = subprocess.run([sys.executable, "-m", "check_jsonschema", *words], capture_output=True)

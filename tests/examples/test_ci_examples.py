@@ -25,6 +25,7 @@ import yaml
 
 from grader.reports import FORMATS
 from grader.result import json_file
+from tests.needs import needs
 
 ROOT = Path(__file__).resolve().parents[2]
 CI = ROOT / "examples" / "ci"
@@ -33,7 +34,6 @@ GITHUB = yaml.safe_load((CI / "github" / "grade.yml").read_text())
 GITLAB = yaml.safe_load((CI / "gitlab" / ".gitlab-ci.yml").read_text())
 #: Whom the stub runs as where the tests run as root: nobody else has this number.
 UID = 50_000 + os.getpid() % 10_000
-AS_ROOT = os.geteuid() == 0
 SOURCE = "/a/release"
 SPIRAL = ROOT / "tests" / "submissions" / "quick_spiral.py"
 
@@ -188,11 +188,13 @@ def machine() -> Iterator[Machine]:
 # What the files say
 
 
+@needs("shellcheck")
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
 def test_scripts_pass_shellcheck(script: Path) -> None:
     shellcheck(script.read_text())
 
 
+@needs("shellcheck")
 @pytest.mark.parametrize(
     "script",
     [
@@ -204,11 +206,15 @@ def test_scripts_in_workflows_pass_shellcheck(script: str) -> None:
     shellcheck("#!/bin/bash\nset -e\n" + script)
 
 
+@needs("shellcheck")
+def test_the_script_that_vpl_is_to_run_passes_shellcheck(machine: Machine) -> None:
+    student = machine.submission("exit 0")
+    assert machine.bash(CI / "vpl" / "vpl_evaluate.sh", cwd=student).returncode == 0
+    shellcheck((student / "vpl_execution").read_text())
+
+
 def shellcheck(script: str) -> None:
-    path = shutil.which("shellcheck", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
-    if path is None:
-        pytest.skip("there is no shellcheck")
-    check = subprocess.run([path, "-"], input=script, capture_output=True, text=True)
+    check = subprocess.run(["shellcheck", "-"], input=script, capture_output=True, text=True)
     assert check.returncode == 0, check.stdout
 
 
@@ -217,7 +223,6 @@ def shellcheck(script: str) -> None:
     [("github-workflows", "github/grade.yml"), ("gitlab-ci", "gitlab/.gitlab-ci.yml")],
 )
 def test_workflows_follow_the_schema(schema: str, file: str) -> None:
-    pytest.importorskip("check_jsonschema")
     words = ["--builtin-schema", f"vendor.{schema}", str(CI / file)]
     check = subprocess.run([sys.executable, "-m", "check_jsonschema", *words], capture_output=True)
     assert check.returncode == 0, check.stdout
@@ -322,7 +327,7 @@ def test_what_a_submission_does_to_the_results_changes_no_judgement(
     assert not [path for path in machine.work.rglob("*") if path.is_fifo()]
 
 
-@pytest.mark.skipif(not AS_ROOT, reason="only root can start it as somebody else")
+@needs("root")
 def test_a_submission_cannot_open_what_its_grader_writes_into(machine: Machine) -> None:
     does = "for file in /proc/*/fd/[34]; do (echo forged >>$file); done 2>/dev/null; exit 0"
     assert machine.grade(does) == 0
@@ -378,7 +383,7 @@ def test_git_data_is_no_part_of_the_copy(machine: Machine) -> None:
     assert machine.bash(*words).returncode == 0
 
 
-@pytest.mark.skipif(not AS_ROOT, reason="only root can start it as somebody else")
+@needs("root")
 @pytest.mark.parametrize("place", ["venv/bin/grader", "work/graded/x", "results.json", "student/x"])
 def test_a_submission_writes_nowhere_else(machine: Machine, place: str) -> None:
     target = machine.folder / place
@@ -386,7 +391,7 @@ def test_a_submission_writes_nowhere_else(machine: Machine, place: str) -> None:
     assert not target.exists() or "forged" not in target.read_text()
 
 
-@pytest.mark.skipif(not AS_ROOT, reason="only root can start it as somebody else")
+@needs("root")
 def test_links_in_the_results_show_nothing_that_the_submission_could_not_read(
     machine: Machine,
 ) -> None:
@@ -399,7 +404,7 @@ def test_links_in_the_results_show_nothing_that_the_submission_could_not_read(
     )
 
 
-@pytest.mark.skipif(not AS_ROOT, reason="only root can start it as somebody else")
+@needs("pgrep", "root")
 def test_nothing_of_a_submission_is_left_running(machine: Machine) -> None:
     assert machine.grade("setsid env -i sleep 1000 </dev/null >/dev/null 2>&1 &") == 0
     running = ["pgrep", "--runstates", "RSD", "-U", str(UID)]  # not what is dead, but not buried
@@ -605,7 +610,6 @@ def on_autolab(machine: Machine, student: Path, settings: dict[str, str]) -> Out
 def on_vpl(machine: Machine, student: Path, settings: dict[str, str]) -> Outcome:
     """In the folder with the student's files: first the one script, then what that has written."""
     assert machine.bash(CI / "vpl" / "vpl_evaluate.sh", cwd=student).returncode == 0
-    shellcheck((student / "vpl_execution").read_text())
     run = machine.bash("vpl_execution", cwd=student, **settings)
     grades = re.findall(r"^Grade :=>> (.*)$", run.stdout, re.MULTILINE)
     return float(grades[0]) if grades else None, run.stdout

@@ -14,6 +14,7 @@ import pytest
 
 from grader import removal
 from grader.removal import remove
+from tests.needs import needs
 
 ROOT = Path(__file__).parents[2]
 TEXT = "keep me"
@@ -125,7 +126,7 @@ def test_whatever_was_left_is_removed_and_nothing_beside_it(
     assert remove(folder)
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="needs root to become another user")
+@needs("root")
 @pytest.mark.parametrize("leave", [each for each in KINDS if each is not immutable])
 def test_a_user_who_may_not_do_everything_removes_it_as_well(
     folder: Path, leave: Callable[[Path], None]

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
-from pathlib import Path
 
-import pytest
 from turtlesim.msg import Pose
 
-from tests.programs import DEADLINE_S
+from tests.needs import ROSLIBJS, needs
+from tests.programs import DEADLINE_S, ROOT
 
-PROGRAM = Path(__file__).parent / "roslibjs"
-needs_roslibjs = pytest.mark.skipif(
-    shutil.which("node") is None or not (PROGRAM / "node_modules" / "roslib").is_dir(),
-    reason="roslibjs is not installed: npm install --prefix tests/turtlesim_py/live/roslibjs",
-)
+PROGRAM = ROOT / ROSLIBJS
 
 
-@needs_roslibjs
+@needs("node", "roslibjs")
 def test_roslibjs_drives_sets_the_pen_and_turns(page, graph):
     poses = graph.listen(Pose, "/seen/turtle1/pose")
     socket = f"{page.address.replace('http', 'ws')}socket"

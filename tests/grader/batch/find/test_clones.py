@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import shutil
 from datetime import datetime
 from pathlib import Path
-
-import pytest
 
 from tests.grader.batch.find.exports import (
     NODE,
@@ -17,8 +14,9 @@ from tests.grader.batch.find.exports import (
     packed,
     repository,
 )
+from tests.needs import needs
 
-pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="there is no git")
+pytestmark = needs("git")
 
 NOON = datetime.fromisoformat("2026-11-01T12:00:00+01:00")
 SCORES = (

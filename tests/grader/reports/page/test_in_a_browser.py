@@ -6,7 +6,6 @@ Chromium's own switches do: what the script makes of the document, and what come
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 
 import pytest
@@ -17,8 +16,7 @@ from tests.browser import BROWSER, needs_browser
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
-
-PDF_TO_TEXT = shutil.which("pdftotext") or ""
+from tests.needs import needs
 
 pytestmark = needs_browser
 
@@ -57,11 +55,11 @@ def test_it_opens_at_the_run_and_the_moment_of_the_first_fault(shown):
     assert "30.0 s" in re.findall(r"<output>(.*?)</output>", shown)
 
 
-@pytest.mark.skipif(not PDF_TO_TEXT, reason="no pdftotext here")
+@needs("pdftotext")
 def test_on_paper_is_the_run_with_the_fault_and_no_control(page, tmp_path):
     pdf = tmp_path / "page.pdf"
     browse(page, f"--print-to-pdf={pdf}", "--no-pdf-header-footer")
-    listed = [PDF_TO_TEXT, str(pdf), "-"]
+    listed = ["pdftotext", str(pdf), "-"]
     said = subprocess.run(listed, capture_output=True, text=True, check=True).stdout
     said = " ".join(said.split())
     assert "First thing to mend: Title of stops" in said

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from grader.scenes.package.examining import surfaces
+from tests.needs import needs
 
 ONE = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
 
@@ -80,7 +81,7 @@ def test_a_fine_mesh_becomes_coarse_and_keeps_its_shape(tmp_path):
     assert np.abs(np.sqrt((made**2).sum(axis=2)) - 1).max() < 0.1
 
 
+@needs("trimesh")
 def test_another_kind_is_read_where_trimesh_is(tmp_path):
     obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-    pytest.importorskip("trimesh", reason="the extra `meshes` is not installed")
     assert read(tmp_path, obj, "a.obj").tolist() == ONE.tolist()

@@ -1,0 +1,100 @@
+"""What of the machine some tests need, and the one command that brings each.
+
+On a newcomer's laptop such tests are left out, and the last lines of the call say what to install.
+Where the environment variable CI is set, what is missing is a failure. As a program this prints the
+commands for what is missing, for a shell:
+
+    .venv/bin/python tests/needs.py | sh -ex
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROSLIBJS = Path("tests", "turtlesim_py", "live", "roslibjs")
+AS_ROOT = os.geteuid() == 0
+#: Debian, Ubuntu and Fedora call it differently.
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+
+
+def _there(*programs: str) -> Callable[[], bool]:
+    return lambda: any(map(shutil.which, programs))
+
+
+def _apt(*packages: str) -> str:
+    return f"{'' if AS_ROOT else 'sudo '}apt-get install -y {' '.join(packages)}"
+
+
+#: Name -> whether it is there, and what installs it; each after what it needs itself.
+NEEDS: dict[str, tuple[Callable[[], bool], str]] = {
+    "chromium": (_there(*BROWSERS), _apt("chromium")),
+    "git": (_there("git"), _apt("git")),
+    "node": (_there("node"), _apt("nodejs", "npm")),
+    "pdftotext": (_there("pdftotext"), _apt("poppler-utils")),
+    "pgrep": (_there("pgrep"), _apt("procps")),
+    "roslibjs": (
+        (Path(__file__).parents[1] / ROSLIBJS / "node_modules" / "roslib").is_dir,
+        f"npm install --prefix {ROSLIBJS} --no-audit --no-fund --no-package-lock",
+    ),
+    "root": (lambda: AS_ROOT, "sudo make test"),
+    "shellcheck": (_there("shellcheck"), _apt("shellcheck")),
+    "trimesh": (lambda: bool(find_spec("trimesh")), ".venv/bin/pip install 'trimesh>=4.4'"),
+}
+
+
+def needs(*names: str) -> pytest.MarkDecorator:
+    """The mark of a test that can only pass where all of these are, of `NEEDS`."""
+    assert names and NEEDS.keys() >= set(names), f"{names}: not all of them are in {[*NEEDS]}"
+    return pytest.mark.needs(*names)
+
+
+def missing(names: Any) -> list[str]:
+    return [name for name in names if not NEEDS[name][0]()]
+
+
+# What pytest calls: tests/conftest.py names this module as a plugin ------------------------------
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the mark known."""
+    config.addinivalue_line("markers", "needs(*names): left out where one is missing (needs.py)")
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Leave a test out, or fail it, before anything is set up for it."""
+    named = [name for mark in item.iter_markers("needs") for name in mark.args]
+    if not (lacks := missing(dict.fromkeys(named))):
+        return
+    if os.environ.get("CI"):
+        commands = "; ".join(NEEDS[name][1] for name in lacks)
+        pytest.fail(f"missing: {', '.join(lacks)}. Install it with: {commands}", pytrace=False)
+    item.user_properties += [("needs", name) for name in lacks]  # they travel with the report
+    pytest.skip(f"missing: {', '.join(lacks)}")
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_terminal_summary(terminalreporter: Any) -> Iterator[None]:
+    """After all other summaries: what is missing, how many tests that left out, and the command."""
+    yield
+    reports = terminalreporter.stats.get("skipped", [])
+    left_out = Counter(
+        name for report in reports for kind, name in report.user_properties if kind == "needs"
+    )
+    if left_out:
+        terminalreporter.section("left out for what is missing here")
+    for name, count in left_out.most_common():
+        tests = "1 test" if count == 1 else f"{count} tests"
+        terminalreporter.line(f"{name}: {tests}. To run them: {NEEDS[name][1]}")
+
+
+if __name__ == "__main__":
+    # root is not to be had by a line of a shell
+    print(*(NEEDS[name][1] for name in missing(NEEDS.keys() - {"root"})), sep="\n")
