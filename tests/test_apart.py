@@ -1,0 +1,36 @@
+"""What tests leave behind fails their session."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+LEAVING = {
+    "a process": "import os; os.posix_spawn('/bin/sleep', ['sleep', '9999'], {})",
+    "file": "import tempfile; tempfile.mkdtemp(prefix='left-')",
+    "shared memory": "open('/dev/shm/left-by-a-test', 'w').close()",
+    "": "import tempfile; tempfile.TemporaryDirectory().cleanup()",
+}
+
+
+@pytest.mark.parametrize("kind", LEAVING)
+def test_what_a_test_leaves_behind_fails_the_session(tmp_path, kind):
+    (tmp_path / "test_it.py").write_text(f"def test_it():\n    {LEAVING[kind]}\n")
+    command = [sys.executable, "-m", "pytest", "-p", "tests.apart", "-n", "1", "-q"]
+    try:
+        done = subprocess.run(
+            [*command, "-c", "/dev/null", f"--basetemp={tmp_path / 'its'}", str(tmp_path)],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    finally:
+        Path("/dev/shm/left-by-a-test").unlink(missing_ok=True)
+    assert done.returncode == bool(kind), done.stdout + done.stderr
+    assert ("1 passed, 1 error" if kind else "1 passed in") in done.stdout
+    assert kind.removeprefix("a ") in done.stdout
