@@ -21,9 +21,9 @@ sys.path.insert(0, str(ROOT))
 
 from grader.exercise.loading import load_exercise  # noqa: E402
 from grader.testing.solutions import read_solutions  # noqa: E402
+from tests.submissions.beginners import CHANGED, changed  # noqa: E402
 
-TESTS = ROOT / "tests"
-SUBMISSIONS, ATTACKS = TESTS / "submissions", TESTS / "attacks" / "submissions"
+ATTACKS = ROOT / "tests" / "attacks" / "submissions"
 FIRST = ("Zoë", "Li", "José", "Anna Maria", "O'Neil", "Søren", "Fatıma", "Jürgen", "Nguyễn", "Ada")
 LAST = ("Müller", "van der Berg", "Ødegård", "D'Angelo", "Çelik", "Smith", "Łukasz", "García")
 #: Neither needs real time nor a minute of a processor, so that it shows what a usual class costs.
@@ -46,16 +46,14 @@ def right() -> list[str]:
     return texts[:1] * (len(texts) // 2) + texts  # not all make a mistake
 
 
-def beginners() -> tuple[str, ...]:
+def beginners() -> list[str]:
     """The mistakes of beginners, but for those that burn a minute of a processor each."""
-    names = (path.stem for path in sorted((SUBMISSIONS / "first_lines").glob("*.py")))
-    return tuple(name for name in names if not name.startswith(("loops", "floods")))
+    return [changed(n) for n in sorted(CHANGED) if not n.startswith(("loops", "floods"))]
 
 
-def sources(folder: Path, names: tuple[str, ...] = ()) -> list[str]:
-    """The programs in a folder."""
-    paths = [folder / f"{name}.py" for name in names] or sorted(folder.glob("*.py"))
-    return [path.read_text(encoding="utf-8") for path in paths]
+def hostile() -> list[str]:
+    """Programs of attackers."""
+    return [(ATTACKS / f"{name}.py").read_text(encoding="utf-8") for name in HOSTILE]
 
 
 def names(chance: random.Random) -> Iterator[str]:
@@ -70,8 +68,8 @@ def make(folder: Path, count: int, seed: int) -> None:
     kinds: dict[str, Callable[[], str]] = {}
     for kind, texts in (
         ("right", right()),
-        ("beginner", sources(SUBMISSIONS / "first_lines", beginners())),
-        ("hostile", sources(ATTACKS, HOSTILE)),
+        ("beginner", beginners()),
+        ("hostile", hostile()),
     ):
         kinds[kind] = lambda texts=texts: chance.choice(texts)  # type: ignore[misc]
     pool = [kind for share, kind in SHARES for _ in range(share)]

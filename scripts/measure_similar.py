@@ -13,6 +13,7 @@ from pathlib import Path
 
 from tests.grader.batch.similar.classes import HONEST, SUBMITTED, hand_in, looked_at, text
 from tests.grader.batch.similar.disguises import DISGUISES
+from tests.submissions.beginners import CHANGED, changed
 
 COPIED = ("quick", "functions", "states", "loop")
 #: So much of the lines verbatim, and it is a variant of the other.
@@ -46,6 +47,11 @@ def honest(out: Path) -> list[tuple[str, Path]]:
     """Hand in everything that lies below tests/submissions; ids and where it is from."""
     files = [path for path in sorted(SUBMITTED.glob("*/*.py")) if path.parent.name != "similar"]
     named = {f"{path.parent.name}.{path.stem}": path for path in files}
+    for name in CHANGED:
+        path = out.parent / "written" / f"{name}.py"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(changed(name), encoding="utf-8")
+        named[f"first_lines.{name}"] = path
     for who, handed_in in {**HONEST, **named}.items():
         if who != "styles.timer":  # it is among the honest ones
             hand_in(out, who, handed_in)

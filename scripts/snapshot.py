@@ -35,6 +35,8 @@ FORMATS = (
     *("html", "markdown", "csv", "junit", "gradescope", "prairielearn", "autolab"),
     *("moodle-vpl", "github-autograding", "terminal"),
 )
+#: What lies beside the fixtures, and is none.
+HELPERS = ("beginners.py", "mutants.py", "packages.py")
 #: What of a recording differs between equal runs.
 CIRCUMSTANCES = "circumstances.json"
 
@@ -42,13 +44,16 @@ CIRCUMSTANCES = "circumstances.json"
 def lay_out() -> dict[str, tuple[Path, str]]:
     """Copy the fixtures; name -> path and exercise."""
     sys.path.insert(0, str(ROOT))
+    from tests.submissions.beginners import CHANGED, changed
     from tests.submissions.mutants import MUTANTS, REFERENCE
 
     shutil.rmtree(FIXTURES, ignore_errors=True)
     shutil.copytree(ROOT / "tests" / "submissions", FIXTURES)
+    for name in CHANGED:
+        (FIXTURES / "first_lines" / f"{name}.py").write_text(changed(name), encoding="utf-8")
     found: dict[str, tuple[Path, str]] = {}
     for path in sorted(FIXTURES.rglob("*.py")):
-        if path.stem != "mutants":
+        if path.relative_to(FIXTURES).as_posix() not in HELPERS:
             is_square = path.stem.startswith("square")
             found[path.stem] = (path, "square" if is_square else "turtlesim_challenge")
     for name, text in {

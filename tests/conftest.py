@@ -34,12 +34,14 @@ _numbers = count(1)
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """With EXAMPLES, `make test-all` searches again: where `make test` has not."""
-    if EXAMPLES:
-        for item in items:
-            if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
-                item.add_marker(pytest.mark.more("so many examples"))
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what does not apply to this system; with EXAMPLES, search where `make test` did."""
+    for item in items:
+        if EXAMPLES and getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
+            item.add_marker(pytest.mark.more("so many examples"))
+    apply = {id(item): all(mark.args[0] for mark in item.iter_markers("applies")) for item in items}
+    config.hook.pytest_deselected(items=[item for item in items if not apply[id(item)]])
+    items[:] = [item for item in items if apply[id(item)]]
 
 
 @pytest.fixture(scope="session")

@@ -21,6 +21,7 @@ from grader.run.plan import Plan
 from grader.run.simulator.link import Patience
 from grader.submission.opening import open_submission
 from tests import once
+from tests.submissions import beginners
 from tests.submissions.mutants import MUTANTS, REFERENCE
 
 SUBMISSIONS = Path(__file__).parent / "submissions"
@@ -35,7 +36,8 @@ def path_of(name: str | Path) -> Path:
 
     Args:
         name: its path below tests/submissions, without `.py`; `reference`, the challenge's;
-            `mutants/NAME`, one of its mutants; or the path of anything in the tree.
+            `mutants/NAME`, one of its mutants; a row of first_lines.yaml; or the path of something
+            in the tree or `written`.
     """
     if isinstance(name, Path):
         return name
@@ -43,16 +45,19 @@ def path_of(name: str | Path) -> Path:
         return REFERENCE
     kind, _, which = name.partition("/")
     if kind == "mutants":
-        return _written(name, "turtle_controller.py", MUTANTS[which].text())
+        return written(MUTANTS[which].text())
+    if name in beginners.ROWS and (source := beginners.source(name)) is not None:
+        return written(source, f"{name}.py")
     path = SUBMISSIONS / name
     return path if path.is_dir() else path.with_name(f"{path.name}.py")
 
 
-def _written(name: str, file: str, text: str) -> Path:
-    def write(folder: Path) -> None:
-        (folder / file).write_text(text, encoding="utf-8")
-
-    return once.folder(write, "source", name, text) / file
+def written(text: str | bytes, file: str = "turtle_controller.py") -> Path:
+    """A submission that is not among the files of the tree, always in the same place."""
+    data = text.encode() if isinstance(text, str) else text
+    return (
+        once.folder(lambda folder: (folder / file).write_bytes(data), "source", file, data) / file
+    )
 
 
 @lru_cache(KEPT)

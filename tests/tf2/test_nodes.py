@@ -159,7 +159,7 @@ def test_the_static_broadcaster_sends_all_it_has_sent_again(graph, node):
     assert [message.transforms for message in heard] == [[first], [first, second], [first, second]]
 
 
-@pytest.mark.skipif(not OURS, reason="from some release on it replaces the first")
+@pytest.mark.applies(OURS, reason="from some release on it replaces the first")
 def test_the_static_broadcaster_keeps_the_first_transform_of_a_frame_and_that_very_object(
     graph, node
 ):
@@ -258,7 +258,7 @@ def test_a_lookup_can_be_awaited(buffer):
     assert stamp_s(asyncio.run(full)) == 1
 
 
-@pytest.mark.skipif(not OURS, reason="a way into the buffer's clock that others need not have")
+@pytest.mark.applies(OURS, reason="a way into the buffer's clock that others need not have")
 def test_a_clock_that_goes_back_by_a_second_empties_the_buffer(node, capfd):
     buffer = Buffer(node=node)
     clock = node.get_clock()

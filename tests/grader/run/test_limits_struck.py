@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from grader import system
 from grader.run.finish import limits_struck
 from grader.run.processes.sandbox.limits import LIMITS, size
 from tests.grader.run.conftest import Run
 
-LINUX = pytest.mark.skipif("not __import__('grader.system').system.has_supervision()")
+LINUX = pytest.mark.applies(system.has_supervision(), reason="only Linux counts what is used")
 OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <module>\n'
 
 

@@ -15,7 +15,6 @@ from grader.scenes.robot.trace import RobotTrace
 from grader.testing.solutions import read_solutions
 from tests import runs
 
-pytest.importorskip("tf2_ros")
 EXERCISE = load_exercise("state_publisher")
 LOOP = EXERCISE.folder / "right" / "constructor_loop.py"
 REFERENCE = read_solutions(EXERCISE)[0].path

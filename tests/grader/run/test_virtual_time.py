@@ -129,7 +129,7 @@ def test_a_deadlock_is_shown_where_it_is(recorded: Recorded, name: str, line: st
     assert "grader/run" not in output
 
 
-@pytest.mark.skipif(executor.known() is None, reason="stands aside with this rclpy")
+@pytest.mark.applies(executor.known() is not None, reason="stands aside with other rclpy")
 def test_a_known_executor_waits_in_our_code(recorded: Recorded) -> None:
     output = recorded("misbehaving/spins_in_callback").output
     assert "in wait_for_ready_callbacks" in output
@@ -191,7 +191,7 @@ def test_who_stops_his_process_does_not_stop_the_grader(recorded: Recorded) -> N
     assert (run.time, run.outcome, run.flags) == ("virtual", "stalled", (virtual_time.STOPPED,))
 
 
-@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="a process cannot choose its core")
+@pytest.mark.applies(hasattr(os, "sched_setaffinity"), reason="a process can choose its core")
 def test_all_threads_of_a_run_share_one_core(recorded: Recorded) -> None:
     recording = recorded("misbehaving/shows_its_cores")
     assert (recording.run.time, recording.run.exit_code) == ("virtual", 0)

@@ -1,4 +1,4 @@
-"""A class where a message belongs."""
+"""It drives a spiral, and never stops."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -23,7 +23,7 @@ class Controller(Node):
         twist = Twist()
         twist.linear.x = self.speed
         twist.angular.z = 1.0
-        self.publisher.publish(Twist)
+        self.publisher.publish(twist)
 
 
 def main():
