@@ -6,10 +6,12 @@ wheels of PyPI. Used by setup.py, and only where ROS is not sourced.
 
 import shutil
 from importlib.metadata import version
+from multiprocessing import get_context
 from pathlib import Path
 
 from setuptools import Extension
 from setuptools.command.build_ext import build_ext
+from setuptools.errors import CompileError
 
 from interfaces.generate import generate, ros_prefix
 
@@ -49,10 +51,33 @@ class BuildInterfaces(build_ext):
         lib.mkdir(parents=True, exist_ok=True)
         (lib / "turtlesim_py_ament_prefix.pth").write_text(AMENT_PREFIX_PTH)
 
-    def build_extension(self, ext: Extension) -> None:
-        """Generate, compile and collect one package; only collect when nothing has changed."""
+    def build_extensions(self) -> None:
+        """Build the packages side by side, and collect what each has made.
+
+        Processes, not the threads of `build_ext --parallel`: to generate is Python's work, and
+        half of it all.
+        """
+        fork = get_context("fork")
+        builders = [
+            fork.Process(target=self.build_extension, args=[ext]) for ext in self.extensions
+        ]
+        for builder in builders:
+            builder.start()
+        for builder in builders:
+            builder.join()
+        for ext, builder in zip(self.extensions, builders, strict=True):
+            if builder.exitcode:
+                raise CompileError(f"{ext.name} cannot be built, see above")
+            self._collect(*self._package(ext))
+
+    def _package(self, ext: Extension) -> tuple[str, Path]:
+        """The name of the package, and the folder of what is generated for it."""
         package = ext.name.split(".")[0]
-        generated = (Path(self.build_temp) / "rosidl" / package).resolve()
+        return package, (Path(self.build_temp) / "rosidl" / package).resolve()
+
+    def build_extension(self, ext: Extension) -> None:
+        """Generate and compile one package, unless nothing has changed."""
+        package, generated = self._package(ext)
         module = Path(self.get_ext_fullpath(ext.name))
         built_with = generated / "built_with.txt"
         is_ours = built_with.exists() and built_with.read_text() == _ros_version()
@@ -65,7 +90,6 @@ class BuildInterfaces(build_ext):
             _configure(ext, package, generated)
             super().build_extension(ext)
             built_with.write_text(_ros_version())
-        self._collect(package, generated)
 
     def _collect(self, package: str, generated: Path) -> None:
         """Python modules go into the package, `share/` goes to `<prefix>/share`."""

@@ -4,24 +4,31 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 import tomllib
+from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 
 import pytest
 from setuptools import Distribution
 from setuptools.command.build_ext import build_ext
+from setuptools.errors import CompileError
 
 from interfaces import build
 
+#: The build forks; a worker of pytest-xdist has a thread.
+pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")
+
 
 @pytest.fixture
-def built(monkeypatch, tmp_path) -> list[str]:
-    """The packages that were compiled, by a compiler that only touches files."""
-    compiled: list[str] = []
+def built(monkeypatch, tmp_path) -> Callable[[], list[str]]:
+    """Says which packages were compiled, by a compiler that only touches files."""
+    log = tmp_path / "compiled"
 
     def compile_nothing(command: build_ext, extension: build.Extension) -> None:
-        compiled.append(extension.name.partition(".")[0])
+        with log.open("a") as said:  # of another process
+            said.write(extension.name.partition(".")[0] + "\n")
         module = Path(command.get_ext_fullpath(extension.name))
         module.parent.mkdir(parents=True, exist_ok=True)
         module.touch()
@@ -31,7 +38,7 @@ def built(monkeypatch, tmp_path) -> list[str]:
     monkeypatch.setattr(build, "_configure", lambda *_: None)
     monkeypatch.setattr(build_ext, "build_extension", compile_nothing)
     monkeypatch.chdir(tmp_path)
-    return compiled
+    return lambda: sorted(log.read_text().split())
 
 
 def make() -> None:
@@ -43,14 +50,24 @@ def make() -> None:
 def test_what_is_built_is_not_built_again(built):
     make()
     make()
-    assert built == [*build.PACKAGES]
+    assert built() == sorted(build.PACKAGES)
 
 
 def test_what_was_built_with_another_ros_is_built_again(built, monkeypatch):
     make()
     monkeypatch.setattr(build, "_ros_version", lambda: "0.24.2")
     make()
-    assert built == [*build.PACKAGES] * 2
+    assert built() == sorted([*build.PACKAGES] * 2)
+
+
+def test_one_package_that_cannot_be_built_fails_the_build(built, monkeypatch):
+    def compile_but_one(command: build_ext, extension: build.Extension) -> None:
+        if extension.name.startswith("tf2_msgs"):
+            sys.exit("a compiler's complaint")
+
+    monkeypatch.setattr(build_ext, "build_extension", compile_but_one)
+    with pytest.raises(CompileError, match="tf2_msgs"):
+        make()
 
 
 @pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="nothing is built there")
