@@ -19,11 +19,11 @@ endif
 NOT_AT_LOWEST := tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
 
-.PHONY: help install test test-lowest test-kilted catalogues lint demo bench wheel clean
+.PHONY: help install tools test test-lowest test-kilted catalogues lint demo bench wheel clean
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make install   make .venv with everything in it; the programs are in .venv/bin"
+	@echo "make install   make .venv; the programs are in .venv/bin"
 	@echo "make demo      grade the reference controller: pictures and result in demo/"
 	@echo "make test      run all tests                   (ARGS=\"-k name\" for some)"
 	@echo "make test-lowest   run them with our dependencies at their lower bounds"
@@ -38,23 +38,27 @@ help:
 install:
 	@scripts/install.sh
 
-test: install
+# what the tests, ruff and mypy need besides
+tools:
+	@scripts/install.sh test
+
+test: tools
 	@echo "== running the tests"
 	@$(BIN)/python -m pytest $(ARGS)
 
 # an environment of its own, with the oldest packages that pyproject.toml promises to work with
 test-lowest:
-	@VENV=.venv-lowest BOUNDS=lowest scripts/install.sh
+	@VENV=.venv-lowest BOUNDS=lowest scripts/install.sh test
 	@echo "== running the tests at the lower bounds"
 	@.venv-lowest/bin/python -m pytest $(NOT_AT_LOWEST:%=--ignore-glob="$(CURDIR)/%") $(ARGS)
 
 test-kilted:
 	@$(MAKE) --no-print-directory ROS=kilted test
 
-catalogues: install
+catalogues: tools
 	@$(BIN)/python scripts/catalogues.py
 
-lint: install
+lint: tools
 	@echo "== ruff"
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check

@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
-# Makes .venv and installs the project into it, with everything that its tests need. Does only what
-# is not done yet, so it may be called before every test.
+# Makes .venv and installs the project into it. Does only what is not done yet, so it may be called
+# before every test.
+#
+#   scripts/install.sh         the project and what it needs
+#   scripts/install.sh test    ... and what its tests, ruff and mypy need
 #
 #   VENV     another folder than .venv
 #   BOUNDS   lowest: our dependencies at their lower bounds
+#   UV       empty: pip, even where there is uv
 #
 # The project goes in without pip's own build environment: .venv has all that a build needs, and
 # need not download it a second time. `pip install .` works as well, elsewhere.
@@ -28,20 +32,32 @@ say() { echo "== $*"; }
 stamped() { [ "$(cat "$venv/$1" 2>/dev/null)" = "$2" ]; }
 stamp() { printf '%s\n' "$2" >"$venv/$1"; }
 
-# pip with its hundreds of lines in a log; the large downloads and every 20th package are shown
-pip_install() {
+# uv where it is. Not beside a sourced ROS: it does not see what apt has installed, and would put
+# newer packages before those that ROS uses
+uv=${UV-uv}
+if [ -n "${ROS_DISTRO:-}" ] || ! "$uv" --version >/dev/null 2>&1; then uv=; fi
+
+# "$@" with all its lines in a log; the large downloads and every 20th package are shown
+logged() {
     local packages=0 line
-    if "$venv/bin/python" -u -m pip --disable-pip-version-check install --no-input --retries 2 \
-        --progress-bar off "$@" 2>&1 | tee "$log" | while IFS= read -r line; do
+    "$@" 2>&1 | tee "$log" | while IFS= read -r line; do
         case "$line" in
         Collecting*)
             packages=$((packages + 1))
             [ $((packages % 20)) -ne 0 ] || echo "   $packages packages found ..."
             ;;
-        *Downloading*" MB)") echo "   ${line#"${line%%[! ]*}"}" ;;
+        *Downloading*" MB)" | Downloading* | Resolved*) echo "   ${line#"${line%%[! ]*}"}" ;;
         "Installing collected"*) echo "   unpacking ..." ;;
         esac
-    done; then
+    done
+}
+
+# without byte code, which pip makes on one core: scripts/compile.py uses all
+packages() {
+    if [ -n "$uv" ]; then
+        if logged "$uv" --color never pip install --python "$venv/bin/python" "$@"; then return; fi
+    elif logged "$venv/bin/python" -u -m pip --disable-pip-version-check install --no-input \
+        --retries 2 --progress-bar off --no-compile "$@"; then
         return
     fi
     # setup.py has said it in one line
@@ -50,13 +66,24 @@ pip_install() {
     fi
     # its warnings about single tries stay in the log when what failed in the end is a compiler
     if ! grep -q subprocess-exited "$log" && grep -qE \
-        'NewConnectionError|NameResolutionError|ConnectTimeout|ReadTimeout|ProxyError|SSLError|Connection(Reset|Refused)' "$log"; then
-        echo "Cannot install: pip does not reach the package index: check the network (or proxy), then try again. Details: $log" >&2
+        'NewConnectionError|NameResolutionError|ConnectTimeout|ReadTimeout|ProxyError|SSLError|Connection(Reset|Refused)|error sending request' "$log"; then
+        echo "Cannot install: ${uv:-pip} does not reach the package index: check the network (or proxy), then try again. Details: $log" >&2
+        [ -z "$uv" ] || echo "uv reads none of pip's settings: \`make UV= ...\` takes pip." >&2
     else
         grep -E '^ *(ERROR|error):|error:' "$log" | tail -5 >&2 || true
-        echo "Cannot install: pip failed, see above and $log" >&2
+        echo "Cannot install: ${uv:-pip} failed, see above and $log" >&2
     fi
     exit 1
+}
+
+# what scripts/requirements.py prints; $1 is the name of the stamp, the rest are its arguments
+requirements() {
+    local all
+    all=$("$venv/bin/python" scripts/requirements.py "${@:2}")
+    stamped "$1" "$all" && return
+    say "installing what ${2:-it} needs into $venv (half a minute, more where the network is slow)"
+    packages -r <(echo "$all")
+    stamp "$1" "$all"
 }
 
 place="$PWD ${ROS_DISTRO:-no ROS}"
@@ -66,18 +93,17 @@ if [ -n "${PYTHON:-}" ] || ! stamped made-in "$place" || ! "$venv/bin/python" -c
         say "making $venv with $python"
         rm -rf "$venv"
         # only there can .venv see the rclpy of a sourced ROS and what apt has installed for it
-        "$python" -m venv ${ROS_DISTRO:+--system-site-packages} "$venv"
+        if [ -n "$uv" ]; then
+            "$uv" venv --quiet --python "$python" "$venv"
+        else
+            "$python" -m venv ${ROS_DISTRO:+--system-site-packages} "$venv"
+        fi
         stamp made-in "$place"
         stamp made-with "$python"
     fi
 fi
 
-requirements=$("$venv/bin/python" scripts/requirements.py)
-if ! stamped installed-requirements "$requirements"; then
-    say "installing what it needs into $venv (half a minute, more where the network is slow)"
-    pip_install -r <(echo "$requirements")
-    stamp installed-requirements "$requirements"
-fi
+requirements installed-requirements
 
 # content, not dates: git changes dates, and a deleted file has none
 sources=$(find turtlesim_py turtlesim_challenge robot_py grader interfaces tf2 launch ros2run LICENSE MANIFEST.in \
@@ -85,6 +111,11 @@ sources=$(find turtlesim_py turtlesim_challenge robot_py grader interfaces tf2 l
     LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
 if ! stamped installed-sources "$sources"; then
     say "installing the project (seconds; up to a minute where turtlesim's interfaces are to be compiled)"
-    pip_install --no-build-isolation --no-deps --force-reinstall .
+    packages --no-build-isolation --no-deps --force-reinstall .
+    "$venv/bin/python" scripts/compile.py
     stamp installed-sources "$sources"
+fi
+
+if [ "${1:-}" = test ]; then
+    requirements installed-test-requirements test
 fi

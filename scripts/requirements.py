@@ -1,4 +1,7 @@
-"""Prints everything to install into .venv before the project itself, one requirement a line.
+"""Prints everything to install into .venv beside the project itself, one requirement a line.
+
+    requirements.py         what building and running it needs
+    requirements.py test    ... and what `make test` and `make lint` need besides
 
 BOUNDS=lowest asks for our dependencies at their lower bounds.
 """
@@ -22,11 +25,11 @@ ours = pyproject["tool"]["turtlesim-py"]
 build = pyproject["build-system"]["requires"]
 is_sourced = bool(os.environ.get("ROS_DISTRO"))  # the same rule as in setup.py
 dependencies = ours["dependencies"] + ([] if is_sourced else ours["without_ros"])
-tests = pyproject["project"]["optional-dependencies"]["test"]
+tests = pyproject["project"]["optional-dependencies"]["test"] if "test" in sys.argv else []
 if os.environ.get("BOUNDS") == "lowest":
     build, dependencies = map(lowest, build), map(lowest, dependencies)
     tests = [name for name in tests if not name.startswith(NOT_AT_LOWEST)]
-requirements = [*build, *dependencies, *tests]
+requirements = ["pip", *build, *dependencies, *tests]  # uv brings no pip
 if not is_sourced:
     release = os.environ.get("ROS") or "jazzy"
     if release not in ours["ros"]:
