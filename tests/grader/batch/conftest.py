@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import shutil
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from tests import once
 from tests.grader.batch.classes import ROOT, Class
 
 CONTROLLER = (ROOT / "tests" / "submissions" / "square_controller.py").read_text(encoding="utf-8")
@@ -23,10 +25,7 @@ points: {drives: 5, sides: 25, corners: 20, straight: 10, returns: 15, stops: 10
 """
 
 
-@pytest.fixture(scope="session")
-def small_class(tmp_path_factory: pytest.TempPathFactory) -> Class:
-    """Four who have handed in something, and one who has not."""
-    folder = tmp_path_factory.mktemp("class")
+def _make(folder: Path) -> None:
     handed_in = folder / "handed_in"
     (handed_in / "nobody").mkdir(parents=True)
     for name, source in HANDED_IN.items():
@@ -38,13 +37,34 @@ def small_class(tmp_path_factory: pytest.TempPathFactory) -> Class:
     text = described.read_text(encoding="utf-8")
     described.write_text(text.replace("exercise: square", "exercise: own_square", 1), "utf-8")
     (own / "quick.yaml").write_text(QUICK, "utf-8")
-    return Class(handed_in, own / "quick.yaml")
 
 
 @pytest.fixture(scope="session")
-def graded(small_class: Class, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same class, graded in one go on this machine."""
-    out = tmp_path_factory.mktemp("graded") / "whole"
-    call = small_class.grade(out)
+def small_class() -> Class:
+    """Four who have handed in something, and one who has not; nobody changes it."""
+    folder = once.folder(_make, "a small class", HANDED_IN, QUICK)
+    return Class(folder / "handed_in", folder / "own_square" / "quick.yaml")
+
+
+def _grade(small_class: Class, folder: Path, *words: str) -> None:
+    call = small_class.grade(folder / "class", *words)
     assert call.returncode == 0, call.stderr
-    return out
+
+
+@pytest.fixture(scope="session")
+def graded(small_class: Class) -> Path:
+    """The same class, graded in one go on this machine; nobody changes it."""
+    return once.folder(partial(_grade, small_class), "graded", HANDED_IN, QUICK) / "class"
+
+
+@pytest.fixture(scope="session")
+def parts(small_class: Class) -> list[Path]:
+    """The class in two parts, each graded by a call of its own; nobody changes them."""
+
+    def make(folder: Path) -> None:
+        for number in "12":
+            (folder / number).mkdir()
+            _grade(small_class, folder / number, "--shard", f"{number}/2")
+
+    folder = once.folder(make, "two parts", HANDED_IN, QUICK)
+    return [folder / number / "class" for number in "12"]

@@ -1,23 +1,36 @@
-"""`grader batch` on a small class of real submissions, in real processes."""
+"""`grader batch` on a small class of real submissions, which real workers run."""
 
 from __future__ import annotations
 
 import csv
+import io
 import os
+import shutil
 import signal
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import psutil
 import pytest
 
 from grader.batch.entry import Entry, entries
+from grader.cli import main
+from tests import once
+from tests.programs import ROOT
 
-ROOT = Path(__file__).parents[3]
 SUBMISSIONS = ROOT / "tests" / "submissions"
 RIGHT = (SUBMISSIONS / "quick_spiral.py").read_text(encoding="utf-8")
 CRASHES = "import rclpy\nrclpy.init()\nraise RuntimeError('not today')\n"
+HANDED_IN: dict[str, str | bytes] = {
+    "alice/node.py": RIGHT,
+    "bob/node.py": RIGHT,
+    "carol.zip": b"PK and nothing more",
+    "dave/node.py": CRASHES,
+    "erin/notes.txt": "I could not do it.",
+}
+RUBRIC = "exercise: turtlesim_challenge\nvaried_runs: {count: 1}\n"
 PATIENCE_S = 300.0
 
 
@@ -38,9 +51,11 @@ def start(*words: str | Path) -> subprocess.Popen[str]:
 
 
 def batch(*words: str | Path) -> tuple[int, str]:
-    process = start(*words)
-    output, messages = process.communicate(timeout=PATIENCE_S)
-    return process.returncode, output + messages
+    """The verb in this process, its workers in theirs; the exit code, and what it said."""
+    said = io.StringIO()
+    with redirect_stdout(said), redirect_stderr(said):
+        code = main(["batch", *map(str, words)])
+    return code, said.getvalue()
 
 
 def made_together(out: Path) -> dict[str, bytes]:
@@ -56,28 +71,43 @@ def scores(out: Path) -> dict[str, tuple[str, float | None]]:
     return {entry.id: (entry.state, entry.score) for entry in entries(out)}
 
 
-@pytest.fixture(scope="module")
-def handed_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write(
-        tmp_path_factory.mktemp("handed_in"),
-        {
-            "alice/node.py": RIGHT,
-            "bob/node.py": RIGHT,
-            "carol.zip": b"PK and nothing more",
-            "dave/node.py": CRASHES,
-            "erin/notes.txt": "I could not do it.",
-        },
-    )
+def _make(folder: Path) -> None:
+    """A class from beginning to end, as a process; the folder has what its tests need."""
+    handed_in = write(folder / "handed_in", HANDED_IN)
+    (folder / "rubric.yaml").write_text(RUBRIC)
+    words = (handed_in, "--out", folder / "class", "--exercise", folder / "rubric.yaml")
+    process = start(*words, "--jobs", "2")
+    output, messages = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 0, messages
+    (folder / "said.txt").write_text(output + messages)
 
 
-@pytest.fixture(scope="module")
-def graded(handed_in: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("graded") / "class"
-    code, messages = batch(handed_in, "--out", out, "--jobs", "2")
-    assert code == 0, messages
+@pytest.fixture(scope="session")
+def made() -> Path:
+    """Everybody's: nothing in it is changed."""
+    return once.folder(_make, "a class", HANDED_IN, RUBRIC)
+
+
+@pytest.fixture
+def handed_in(made: Path) -> Path:
+    return made / "handed_in"
+
+
+@pytest.fixture
+def rubric(made: Path) -> tuple[str, Path]:
+    return "--exercise", made / "rubric.yaml"
+
+
+@pytest.fixture
+def graded(made: Path, tmp_path: Path) -> Path:
+    """The class, a test's own."""
+    return Path(shutil.copytree(made / "class", tmp_path / "graded" / "class"))
+
+
+def test_who_hands_in_the_same_is_run_once(made: Path) -> None:
+    messages = (made / "said.txt").read_text()
     assert "1 hand-in not run: the same content has been run already." in messages
     assert "[5/5]" in messages
-    return out
 
 
 def test_everybody_gets_what_is_earned_and_one_bad_hand_in_touches_nobody(graded: Path) -> None:
@@ -91,7 +121,7 @@ def test_a_student_s_folder_has_what_grader_run_writes(graded: Path) -> None:
     folder = graded / "submissions" / "alice"
     for name in ("result.json", "report.html", "canvas.png", "output.txt"):
         assert (folder / name).stat().st_size or name == "output.txt"
-    assert (folder / "recording" / "varied_2" / "metadata.yaml").exists()
+    assert (folder / "recording" / "varied_1" / "metadata.yaml").exists()
     result = Entry.read(folder).result
     assert result is not None and result.handed_in is not None
     assert result.handed_in.id == "alice"
@@ -102,28 +132,25 @@ def test_the_gradebook_has_everybody(graded: Path) -> None:
     assert [row["id"] for row in rows] == ["alice", "bob", "carol", "dave", "erin"]
 
 
-def test_a_second_call_runs_nothing_and_changes_nothing(handed_in: Path, graded: Path) -> None:
+def test_a_second_call_runs_nothing_and_changes_nothing(
+    handed_in: Path, rubric: tuple[str, Path], graded: Path
+) -> None:
     before = made_together(graded)
     when = (graded / "submissions" / "alice" / "result.json").stat().st_mtime_ns
-    code, messages = batch(handed_in, "--out", graded)
+    code, messages = batch(handed_in, "--out", graded, *rubric)
     assert (code, "5 hand-ins of 5 graded before." in messages) == (0, True), messages
     assert (graded / "submissions" / "alice" / "result.json").stat().st_mtime_ns == when
     assert made_together(graded) == before
 
 
 def test_who_hands_in_once_more_is_graded_once_more_and_nobody_else(
-    handed_in: Path, graded: Path, tmp_path: Path
+    rubric: tuple[str, Path], graded: Path, tmp_path: Path
 ) -> None:
-    later = tmp_path / "handed_in"
-    for path in handed_in.rglob("*"):
-        if path.is_file():
-            write(later, {str(path.relative_to(handed_in)): path.read_bytes()})
-    write(later, {"dave/node.py": RIGHT})
-    code, messages = batch(later, "--out", graded)
+    later = write(tmp_path / "handed_in", {**HANDED_IN, "dave/node.py": RIGHT})
+    code, messages = batch(later, "--out", graded, *rubric)
     assert (code, "4 hand-ins of 5 graded before." in messages) == (0, True), messages
     assert scores(graded)["dave"] == ("judged", 100.0)
     assert "1 hand-in not run" in messages  # what alice handed in is what dave has now
-    assert batch(handed_in, "--out", graded)[0] == 0
 
 
 def test_another_exercise_does_not_come_into_the_same_folder(handed_in: Path, graded: Path) -> None:
@@ -137,33 +164,35 @@ def test_another_exercise_does_not_come_into_the_same_folder(handed_in: Path, gr
 def test_a_changed_rubric_is_to_be_looked_at_first(
     handed_in: Path, graded: Path, tmp_path: Path
 ) -> None:
-    rubric = tmp_path / "new.yaml"
-    rubric.write_text("exercise: turtlesim_challenge\npoints: {moves: 6}\n")
-    code, messages = batch(handed_in, "--out", graded, "--exercise", rubric)
+    changed = tmp_path / "new.yaml"
+    changed.write_text(f"{RUBRIC}points: {{moves: 6}}\n")
+    code, messages = batch(handed_in, "--out", graded, "--exercise", changed)
     assert (code, "grader batch --regrade" in messages) == (2, True), messages
 
 
-def test_who_is_named_by_again_is_run_again(handed_in: Path, graded: Path) -> None:
+def test_who_is_named_by_again_is_run_again(
+    handed_in: Path, rubric: tuple[str, Path], graded: Path
+) -> None:
     when = {
         name: (graded / "submissions" / name / "result.json").stat().st_mtime_ns
         for name in ("alice", "dave")
     }
-    code, messages = batch(handed_in, "--out", graded, "--again", "dave")
+    code, messages = batch(handed_in, "--out", graded, *rubric, "--again", "dave")
     assert (code, "4 hand-ins of 5 graded before." in messages) == (0, True), messages
     now = {
         name: (graded / "submissions" / name / "result.json").stat().st_mtime_ns for name in when
     }
     assert (now["alice"], now["dave"] > when["dave"]) == (when["alice"], True)
-    code, messages = batch(handed_in, "--out", graded, "--again", "nobody")
+    code, messages = batch(handed_in, "--out", graded, *rubric, "--again", "nobody")
     assert (code, "there is no hand-in of this name" in messages) == (2, True)
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="a system without kill -9")
 def test_what_kill_9_interrupts_goes_on_and_comes_out_the_same(
-    handed_in: Path, graded: Path, tmp_path: Path
+    handed_in: Path, rubric: tuple[str, Path], graded: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "class"
-    process = start(handed_in, "--out", out, "--jobs", "2")
+    process = start(handed_in, "--out", out, *rubric, "--jobs", "2")
     assert process.stderr is not None
     for line in process.stderr:
         if "[3/5]" in line:
@@ -173,39 +202,26 @@ def test_what_kill_9_interrupts_goes_on_and_comes_out_the_same(
     process.communicate()
     gone, left = psutil.wait_procs(family[1:], timeout=60)
     assert (len(gone), left) == (len(family) - 1, [])
-    code, messages = batch(handed_in, "--out", out)
+    code, messages = batch(handed_in, "--out", out, *rubric)
     assert (code, "graded before." in messages) == (0, True), messages
     assert made_together(out) == made_together(graded)
     assert scores(out) == scores(graded)
 
 
-def test_parts_that_were_graded_apart_are_the_class(
-    handed_in: Path, graded: Path, tmp_path: Path
-) -> None:
-    for part in ("1/2", "2/2"):
-        place = tmp_path / part[0]
-        code, messages = batch(handed_in, "--out", place, "--shard", part)
-        assert code == 0, messages
-    parts = (tmp_path / "1", tmp_path / "2")
-    assert scores(parts[0]).keys().isdisjoint(scores(parts[1]))
-    code, messages = batch("--merge", *parts, "--out", tmp_path / "whole")
-    assert code == 0, messages
-    assert made_together(tmp_path / "whole") == made_together(graded)
-
-
 def test_who_is_no_longer_among_the_submissions_is_set_aside_and_comes_back_without_a_run(
-    handed_in: Path, graded: Path, tmp_path: Path
+    handed_in: Path, rubric: tuple[str, Path], graded: Path, tmp_path: Path
 ) -> None:
     fewer = write(tmp_path / "fewer", {"alice/node.py": RIGHT})
-    code, messages = batch(fewer, "--out", graded)
+    code, messages = batch(fewer, "--out", graded, *rubric)
     assert (code, "4 hand-ins in" in messages, "bob, carol, dave, erin" in messages) == (0, 1, 1)
     assert scores(graded).keys() == {"alice"}
     assert (graded / "aside" / "dave" / "result.json").exists()
-    code, messages = batch(handed_in, "--out", graded)
+    code, messages = batch(handed_in, "--out", graded, *rubric)
     assert (code, len(scores(graded))) == (0, 5), messages
+    assert "not run: the same content has been run already." in messages
 
 
-def test_the_folder_of_a_class_is_no_submissions(handed_in: Path, graded: Path) -> None:
+def test_the_folder_of_a_class_is_no_submissions(graded: Path) -> None:
     before = made_together(graded)
     for words in ((graded, "--out", graded), (graded, "--out", graded.parent / "other")):
         code, messages = batch(*words)

@@ -19,20 +19,6 @@ from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from tests.grader.batch.classes import Class, told
 
-PARTS = ("1/2", "2/2")
-
-
-@pytest.fixture(scope="module")
-def parts(small_class: Class, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """The class in two parts, each graded by a call of its own."""
-    folder = tmp_path_factory.mktemp("parts")
-    made = []
-    for number, shard in enumerate(PARTS, 1):
-        made.append(folder / str(number))
-        call = small_class.grade(made[-1], "--shard", shard)
-        assert call.returncode == 0, call.stderr
-    return made
-
 
 @pytest.fixture
 def exercise(small_class: Class) -> Exercise:

@@ -14,7 +14,7 @@ import pytest
 from rich.console import Console
 
 from grader import grading
-from grader.batch import grade, pool
+from grader.batch import grade, pool, worker
 from grader.batch import store as store_module
 from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
@@ -31,13 +31,16 @@ from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings
 from tests.grader.driving import RED, Spiral, drive
 
-CHALLENGE = "turtlesim_challenge"
-#: A stop as far as 1.5 m from a wall is near no more; colours cost more; runs may last longer.
-CHANGED = """
+#: One run of each: how many it takes decides nothing here.
+BEFORE = """
 exercise: turtlesim_challenge
-limits: {total_s: 200}
-points: {moves: 5, spiral: 30, steady_rate: 5, edge_stop: 25, pen_per_quadrant: 30, picture: 5}
-tolerances: {edge_m: 1.0}
+varied_runs: {count: 0}
+"""
+#: A stop as far as 1.5 m from a wall is near no more; colours cost more; runs may last longer.
+CHANGED = f"""{BEFORE}
+limits: {{total_s: 200}}
+points: {{moves: 5, spiral: 30, steady_rate: 5, edge_stop: 25, pen_per_quadrant: 30, picture: 5}}
+tolerances: {{edge_m: 1.0}}
 """
 NAMES = {"far": '=HYPERLINK("x")', "red": "<script>alert(1)</script>\x1b[31m"}
 
@@ -58,16 +61,42 @@ class AllRed(Spiral):
     colors = dict.fromkeys(range(1, 5), RED)
 
 
-def recorded(kind: type[Spiral]) -> Recordings:
-    exercise = load_exercise(CHALLENGE)
-    origin = Provenance("2026-11-21T12:00:00Z", "1", "3.12", "7", conditions=exercise.conditions)
-    runs = [drive(kind(), start=start) for start in (None, *exercise.starts())]
-    return Recordings(replace(runs[0], provenance=origin), tuple(runs[1:]))
+@pytest.fixture(scope="module")
+def rubrics(tmp_path_factory) -> dict[str, str]:
+    """Paths: the class was graded by `before`."""
+    folder = tmp_path_factory.mktemp("rubrics")
+    for name, text in (("before", BEFORE), ("changed", CHANGED)):
+        (folder / f"{name}.yaml").write_text(text)
+    return {path.stem: str(path) for path in folder.iterdir()}
 
 
 @pytest.fixture(scope="module")
-def runs() -> dict[str, Recordings]:
-    return {kind.__name__: recorded(kind) for kind in (Spiral, StopsFar, AllRed)}
+def original(rubrics) -> str:
+    return rubrics["before"]
+
+
+@pytest.fixture(scope="module")
+def changed(rubrics) -> str:
+    return rubrics["changed"]
+
+
+@pytest.fixture(scope="module")
+def runs(original) -> dict[str, Recordings]:
+    conditions = load_exercise(original).conditions
+    origin = Provenance("2026-11-21T12:00:00Z", "1", "3.12", "7", conditions=conditions)
+    kinds = (Spiral, StopsFar, AllRed)
+    return {kind.__name__: Recordings(replace(drive(kind()), provenance=origin)) for kind in kinds}
+
+
+@pytest.fixture(scope="module")
+def expected(runs, original, changed) -> dict[str, tuple[float, float]]:
+    """The scores before and after, by id, of those who are judged: as judging in memory finds."""
+    rubrics = [load_exercise(path) for path in (original, changed)]
+    return {
+        name: tuple(grading.judge(runs[kind], each).score for each in rubrics)
+        for kind, names in CLASS.values()
+        for name in names
+    }
 
 
 #: Key of a run -> what it is, and who has handed it in; two have handed in the same.
@@ -83,17 +112,17 @@ def hand_in(name: str, problem: str = "") -> HandIn:
 
 
 @pytest.fixture(scope="module")
-def whole(runs, tmp_path_factory) -> Path:
+def whole(runs, original, tmp_path_factory) -> Path:
     """A class that is graded: with somebody who handed in nothing, and a failure of the grader."""
     out = tmp_path_factory.mktemp("class") / "out"
-    exercise = load_exercise(CHALLENGE)
+    exercise = load_exercise(original)
     with Store.opened(out) as store:
         ClassFile.of(exercise, "virtual", None).put(out)
         for key, (kind, names) in CLASS.items():
             place = store.new_place()
             grading.save_recordings(runs[kind], place / RUN / RECORDING)
             people = tuple(map(hand_in, names))
-            task = Task(key, people, Path(), "", CHALLENGE, "virtual", None, place / RUN, place)
+            task = Task(key, people, Path(), "", original, "virtual", None, place / RUN, place)
             grade.make(task)
             store.put(key, place)
         place = store.new_place()
@@ -109,24 +138,23 @@ def out(whole, tmp_path) -> Path:
     return Path(shutil.copytree(whole, tmp_path / "out"))
 
 
-@pytest.fixture
-def changed(tmp_path) -> str:
-    path = tmp_path / "changed.yaml"
-    path.write_text(CHANGED)
-    return str(path)
+def work(tasks, jobs, patience_s):
+    """The workers' work in this process, for tests of what comes of it."""
+    for task in tasks:
+        yield task, worker.done(task)
 
 
 @pytest.fixture
 def in_process(monkeypatch):
-    """The workers' work in this process, for tests of what comes of it."""
-
-    def work(tasks, jobs, patience_s):
-        from grader.batch import worker
-
-        for task in tasks:
-            yield task, worker.done(task)
-
     monkeypatch.setattr(pool, "work", work)
+
+
+@pytest.fixture(scope="module")
+def found(whole, changed) -> Regrade:
+    """What a changed rubric changes in the class, which nobody has changed."""
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setattr(pool, "work", work)
+        return judging.regrade(whole, changed, 1)
 
 
 def tree(folder: Path) -> dict[str, bytes]:
@@ -138,16 +166,6 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def in_memory(runs, exercise_path) -> dict[str, tuple[float, float]]:
-    """The scores before and after, by id, of those who were judged."""
-    old, new = load_exercise(CHALLENGE), load_exercise(exercise_path)
-    return {
-        name: tuple(grading.judge(runs[kind], exercise).score for exercise in (old, new))
-        for kind, names in CLASS.values()
-        for name in names
-    }
-
-
 def scores(found: Regrade) -> dict[str, tuple[float | None, float | None]]:
     return {change.before.id: (change.before.score, change.after.score) for change in found.changes}
 
@@ -155,18 +173,16 @@ def scores(found: Regrade) -> dict[str, tuple[float | None, float | None]]:
 # What is told ---------------------------------------------------------------------------------
 
 
-def test_who_changes_and_by_how_much_is_what_judging_in_memory_finds(out, changed, runs):
+def test_who_changes_and_by_how_much_is_what_judging_in_memory_finds(whole, changed, expected):
     """By real workers."""
-    found = judging.regrade(out, changed, jobs=2)
-    expected = in_memory(runs, changed)
+    found = judging.regrade(whole, changed, jobs=2)
     assert scores(found) == expected  # each has lost a check that is asked for no more
     assert not found.failures
     assert found.judged == len(expected) == 4
     assert found.headline == ("4 of 6 change: 2 get fewer points, 2 keep theirs by other verdicts.")
 
 
-def test_which_check_and_why_is_told_of_each(out, changed, runs, in_process):
-    found = judging.regrade(out, changed, 1)
+def test_which_check_and_why_is_told_of_each(found):
     (far,) = (change for change in found.changes if change.before.id == "far")
     by_check = {each.check: each for each in far.differences}
     stop = by_check["edge_stop"]
@@ -179,16 +195,15 @@ def test_which_check_and_why_is_told_of_each(out, changed, runs, in_process):
     assert round(sum(each.points for each in far.differences), 2) == far.points
 
 
-def test_the_checks_are_summed_up_over_the_class(out, changed, in_process):
-    found = judging.regrade(out, changed, 1)
+def test_the_checks_are_summed_up_over_the_class(found):
     of = {each.check: each for each in found.of_checks}
     assert (of["edge_stop"].gain, of["edge_stop"].lose, of["edge_stop"].points) == (0, 1, -25)
     total = sum(change.points for change in found.changes)
     assert round(sum(each.points for each in found.of_checks), 2) == round(total, 2)
 
 
-def test_what_a_recording_cannot_follow_is_told(out, changed, in_process):
-    notes = judging.regrade(out, changed, 1).more_notes
+def test_what_a_recording_cannot_follow_is_told(found):
+    notes = found.more_notes
     assert (
         "4 of 4: The recording was made with limits.total_s 180; the exercise now says 200. "
         "Run the submission again for that." in notes
@@ -196,24 +211,24 @@ def test_what_a_recording_cannot_follow_is_told(out, changed, in_process):
     assert "2 hand-ins without a run stay as they are." in notes
 
 
-def test_another_worth_of_the_whole_is_told(out, tmp_path, in_process):
+def test_another_worth_of_the_whole_is_told(whole, tmp_path, in_process):
     path = tmp_path / "changed.yaml"
-    path.write_text("exercise: turtlesim_challenge\npoints: {moves: 7, spiral: 30}\n")
-    found = judging.regrade(out, str(path), 1)
+    path.write_text(f"{BEFORE}points: {{moves: 7, spiral: 30}}\n")
+    found = judging.regrade(whole, str(path), 1)
     assert "The exercise is worth 37 points; it was 100." in found.more_notes
 
 
-def test_the_same_rubric_changes_nothing(out, in_process):
-    found = judging.regrade(out, CHALLENGE, 1)
+def test_the_same_rubric_changes_nothing(whole, original, in_process):
+    found = judging.regrade(whole, original, 1)
     assert (found.changes, found.reworded) == ((), ())
     assert found.headline == "None of 6 changes."
     assert "The class was graded by just this exercise." in found.more_notes
 
 
-def test_who_only_reads_other_words_does_not_count_as_changed(out, tmp_path, in_process):
+def test_who_only_reads_other_words_does_not_count_as_changed(whole, tmp_path, in_process):
     path = tmp_path / "changed.yaml"
-    path.write_text("exercise: turtlesim_challenge\ntolerances: {rate_deviation: 0.31}\n")
-    found = judging.regrade(out, str(path), 1)
+    path.write_text(f"{BEFORE}tolerances: {{rate_deviation: 0.31}}\n")
+    found = judging.regrade(whole, str(path), 1)
     assert not found.changes
     assert all(is_of_words(change) for change in found.reworded)
 
@@ -231,21 +246,21 @@ def test_what_is_deducted_from_a_score_counts_as_well(out, monkeypatch):
     assert difference.why == "20 points are deducted from the score, not 5"
 
 
-def test_the_exercise_has_to_be_that_of_the_class(out, tmp_path):
+def test_the_exercise_has_to_be_that_of_the_class(whole, original, tmp_path):
     with pytest.raises(UsageError, match=r"graded for the exercise 'turtlesim_challenge', and"):
-        judging.regrade(out, "square", 1)
+        judging.regrade(whole, "square", 1)
     with pytest.raises(UsageError, match="is no folder of a class"):
-        judging.regrade(tmp_path, CHALLENGE, 1)
+        judging.regrade(tmp_path, original, 1)
     (tmp_path / "bad.yaml").write_text("exercise: turtlesim_challenge\npoints: {spirals: 3}\n")
     with pytest.raises(ExerciseError, match="spirals"):
-        judging.regrade(out, str(tmp_path / "bad.yaml"), 1)
+        judging.regrade(whole, str(tmp_path / "bad.yaml"), 1)
 
 
 # What cannot be judged again ------------------------------------------------------------------
 
 
 def test_a_recording_that_cannot_be_read_is_told_and_no_other_is_touched_by_it(
-    out, changed, runs, in_process
+    out, changed, in_process
 ):
     bag = Store(out).run("b" * 32) / RECORDING / "recording.mcap"
     bag.unlink()  # it is linked with that of the hand-in
@@ -261,7 +276,7 @@ def test_a_recording_that_cannot_be_read_is_told_and_no_other_is_touched_by_it(
     assert "not judged again: " in table.render(found)
 
 
-def test_a_worker_that_dies_is_told_for_its_own_recording(out, changed, monkeypatch):
+def test_a_worker_that_dies_is_told_for_its_own_recording(whole, changed, monkeypatch):
     dies = (
         "import os, sys; sys.path.append(sys.argv[1]); from grader.batch import worker; "
         "done = worker.done; "
@@ -269,29 +284,29 @@ def test_a_worker_that_dies_is_told_for_its_own_recording(out, changed, monkeypa
         "worker.main()"
     )
     monkeypatch.setattr(pool, "_COMMAND", ("-P", "-c", dies, pool._COMMAND[-1]))
-    found = judging.regrade(out, changed, 1)
+    found = judging.regrade(whole, changed, 1)
     assert {failure.entry.id: failure.why for failure in found.failures} == {
         "red": "the process that graded it ended (exit code 9), 2 times"
     }
     assert found.judged == 3
 
 
-def test_a_worker_that_is_stuck_is_ended_and_told(out, changed, monkeypatch):
+def test_a_worker_that_is_stuck_is_ended_and_told(whole, changed, monkeypatch):
     stuck = "import sys\nfor line in sys.stdin: sys.stdin.readline()"
     monkeypatch.setattr(pool, "_COMMAND", ("-c", stuck))
     monkeypatch.setattr(judging, "MOST_S", 0.2)
-    found = judging.regrade(out, changed, 4)
+    found = judging.regrade(whole, changed, 4)
     assert {failure.entry.id for failure in found.failures} == {"right", "twin", "far", "red"}
     assert found.failures[0].why == "the process that graded it ended (SIGKILL), 2 times"
 
 
 def test_a_recording_that_lies_with_the_hand_in_alone_is_judged_and_kept(
-    out, changed, runs, in_process
+    out, changed, expected, in_process
 ):
     shutil.rmtree(Store(out).run("b" * 32))
     assert call(out, changed, jobs=1, apply=True) == 0
     (far,) = (entry for entry in entries(out) if entry.id == "far")
-    assert far.score == in_memory(runs, changed)["far"][1]
+    assert far.score == expected["far"][1]
     assert (far.folder / RECORDING / "recording.mcap").is_file()
     assert Store(out).has("b" * 32)
 
@@ -322,11 +337,10 @@ def applied(out: Path, changed: str) -> int:
 
 
 def test_applied_everybody_has_the_new_result_and_the_old_one_is_beside(
-    out, changed, runs, in_process
+    out, changed, expected, in_process
 ):
     before, exercise = tree(out), load_exercise(changed)
     assert applied(out, changed) == 0
-    expected = in_memory(runs, changed)
     for entry in entries(out):
         assert entry.exercise_sha256 == exercise.sha256
         assert entry.max_score == 100
@@ -356,9 +370,13 @@ def test_what_is_applied_is_applied_once(out, changed, in_process, capsys):
     assert capsys.readouterr().out.startswith("None of 6 changes.")
 
 
-def test_a_second_regrade_is_kept_beside_the_first(out, changed, in_process):
+def test_a_second_regrade_is_kept_beside_the_first_and_the_way_back_leads_to_the_same_results(
+    out, original, changed, in_process
+):
+    before = {entry.id: entry.result for entry in entries(out)}
     applied(out, changed)
-    applied(out, CHALLENGE)
+    applied(out, original)
+    assert {entry.id: entry.result for entry in entries(out)} == before
     assert names(out / "before") == ["1", "2"]
     again = {entry.id: entry.score for entry in entries(out)}
     kept = map(Entry.read, (out / "before/1/submissions").iterdir())
@@ -366,16 +384,12 @@ def test_a_second_regrade_is_kept_beside_the_first(out, changed, in_process):
     assert first.items() <= again.items()
 
 
-def test_a_way_back_leads_to_the_same_results(out, changed, in_process):
-    before = {entry.id: entry.result for entry in entries(out)}
-    applied(out, changed)
-    applied(out, CHALLENGE)
-    assert {entry.id: entry.result for entry in entries(out)} == before
+every_place = pytest.mark.more("the first, the middle and the last place stand for the others")
 
 
-@pytest.mark.parametrize("after", range(5))
+@pytest.mark.parametrize("after", [0, *(pytest.param(n, marks=every_place) for n in (1, 3)), 2, 4])
 def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
-    out, changed, runs, in_process, monkeypatch, after
+    out, original, changed, expected, in_process, monkeypatch, after
 ):
     """And the same call again does the rest."""
     put, calls = Store.put, iter(range(99))
@@ -388,7 +402,7 @@ def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
     monkeypatch.setattr(Store, "put", interrupted)
     with pytest.raises(KeyboardInterrupt):
         applied(out, changed)
-    expected, shas = in_memory(runs, changed), set()
+    shas = set()
     found = {entry.id: entry for entry in entries(out)}
     assert found.keys() == {*expected, "nobody", "unlucky"}
     for name, (old, new) in expected.items():
@@ -397,7 +411,7 @@ def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
         assert found[name].result.provenance.judged.exercise_sha256 == found[name].exercise_sha256
         shas.add(is_new)
     assert shas == ({False} if after == 0 else {True, False} if after < 3 else {True})
-    assert ClassFile.read(out).exercise_sha256 == load_exercise(CHALLENGE).sha256
+    assert ClassFile.read(out).exercise_sha256 == load_exercise(original).sha256
     monkeypatch.setattr(Store, "put", put)
     applied(out, changed)
     assert {e.id: e.score for e in entries(out) if e.id in expected} == {
@@ -407,7 +421,7 @@ def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
     assert not (out / store_module.UNFINISHED).exists()
 
 
-def test_a_call_that_is_killed_between_two_names_gives_back_what_it_took(out, changed, runs):
+def test_a_call_that_is_killed_between_two_names_gives_back_what_it_took(out, expected):
     """Power goes when the older folder has been moved away and the new one is not there yet."""
     with Store.opened(out) as store:
         place = store.new_place()
@@ -418,7 +432,7 @@ def test_a_call_that_is_killed_between_two_names_gives_back_what_it_took(out, ch
     with Store.opened(out):
         pass
     (far,) = (entry for entry in entries(out) if entry.id == "far")
-    assert far.score == in_memory(runs, changed)["far"][0]
+    assert far.score == expected["far"][0]
 
 
 def test_what_cannot_be_judged_again_stays_as_it_is(out, changed, in_process):
@@ -438,14 +452,9 @@ def test_two_do_not_write_at_once(out, changed, in_process):
 # For people -----------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def found(out, changed, in_process) -> Regrade:
-    return judging.regrade(out, changed, 1)
-
-
-def test_the_table_has_a_row_a_check_and_adds_up(found, runs, changed):
+def test_the_table_has_a_row_a_check_and_adds_up(found, expected):
     rows = list(csv.DictReader(io.StringIO(table.render(found))))
-    for name, (old, new) in in_memory(runs, changed).items():
+    for name, (old, new) in expected.items():
         own = [row for row in rows if row["id"] == name]
         assert {(float(row["before"]), float(row["after"])) for row in own} == {(old, new)}
         assert sum(float(row["check_change"]) for row in own) == pytest.approx(new - old)
