@@ -19,15 +19,18 @@ endif
 NOT_AT_LOWEST := tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
 
-.PHONY: help install tools test test-lowest test-kilted catalogues lint demo bench wheel clean
+.PHONY: help install tools needs test test-more test-all test-lowest test-kilted catalogues lint demo bench wheel clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make install   make .venv; the programs are in .venv/bin"
 	@echo "make demo      grade the reference controller: pictures and result in demo/"
-	@echo "make test      run all tests                   (ARGS=\"-k name\" for some)"
-	@echo "make test-lowest   run them with our dependencies at their lower bounds"
-	@echo "make test-kilted   run them with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
+	@echo "make test      all that proves a change        (ARGS=\"-k name\" for some of it)"
+	@echo "make test-all  everything else as well: hours  (EXAMPLES=1000: so many in each search)"
+	@echo "   test-more      ... what only that runs here: attacks at every level, wheels, colcon, searches"
+	@echo "   test-lowest    ... make test with our dependencies at their lower bounds"
+	@echo "   test-kilted    ... make test with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
+	@echo "make needs     install what tests need of the machine: a browser, ..."
 	@echo "make lint      ruff and mypy"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
 	@echo "make bench     what the simulator and a grading cost: tables (less than five minutes)"
@@ -42,18 +45,32 @@ install:
 tools:
 	@scripts/install.sh test
 
+# of the machine, not of .venv: see tests/needs.py
+needs: tools
+	@$(BIN)/python tests/needs.py | sh -ex
+
+# a worker for each core, of which each takes a module at a time
+PYTEST = -m pytest --numprocesses=logical --dist=loadscope
+
 test: tools
 	@echo "== running the tests"
-	@$(BIN)/python -m pytest $(ARGS)
+	@$(BIN)/python $(PYTEST) -m "not more" $(ARGS)
+
+test-more: export EXAMPLES := $(or $(EXAMPLES),1000)
+test-more: tools
+	@echo "== running what make test leaves out, with $(EXAMPLES) examples in each search"
+	@$(BIN)/python $(PYTEST) -m more $(ARGS)
 
 # an environment of its own, with the oldest packages that pyproject.toml promises to work with
 test-lowest:
 	@VENV=.venv-lowest BOUNDS=lowest scripts/install.sh test
 	@echo "== running the tests at the lower bounds"
-	@.venv-lowest/bin/python -m pytest $(NOT_AT_LOWEST:%=--ignore-glob="$(CURDIR)/%") $(ARGS)
+	@.venv-lowest/bin/python $(PYTEST) -m "not more" $(NOT_AT_LOWEST:%=--ignore-glob="$(CURDIR)/%") $(ARGS)
 
 test-kilted:
 	@$(MAKE) --no-print-directory ROS=kilted test
+
+test-all: test test-more test-lowest test-kilted
 
 catalogues: tools
 	@$(BIN)/python scripts/catalogues.py
