@@ -9,6 +9,7 @@ not as our own code would have written it, nothing was told.
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import chain
@@ -17,6 +18,7 @@ from typing import Any
 from grader import strict_json, system
 from grader.recording.conduct import Conduct
 from grader.run import dumps
+from grader.run.processes import usage
 from grader.run.processes.process import await_readable
 from grader.run.student.telling import asking_signal
 from grader.submission.opening import Submission
@@ -26,6 +28,8 @@ MOST_BYTES = 65_536
 PATIENCE_S = 1.0
 #: It writes line by line, and has said all when nothing more comes for so long [s].
 QUIET_S = 0.1
+#: How often it is looked at meanwhile, and how long a busy machine may keep it waiting [s].
+LOOK_S, LONGEST_S = 0.05, 20.0
 #: What is told by number, and again when it is more -> where it is kept.
 _LISTS = {"wait": "waits", "slow": "slow", "timer": "timers", "caught": "caught"}
 
@@ -65,11 +69,22 @@ class Evidence:
             return
         with suppress(OSError):
             os.kill(pid, number)
-            wait_s = PATIENCE_S
-            while len(self._data) < MOST_BYTES and await_readable(self._reads, wait_s):
+            patience_s = PATIENCE_S
+            while len(self._data) < MOST_BYTES and self._says_more(pid, patience_s):
                 if not self._read():
                     return
-                wait_s = QUIET_S
+                patience_s = QUIET_S
+
+    def _says_more(self, pid: int, patience_s: float) -> bool:
+        """Whether a process says more; while it waits for a processor, its time stands still."""
+        used_s, slept_s = usage.look(pid).cpu_s, 0.0
+        gives_up = time.monotonic() + LONGEST_S
+        while not await_readable(self._reads, LOOK_S):
+            now = usage.look(pid)
+            slept_s += 0.0 if now.state == "R" else LOOK_S
+            if now.cpu_s - used_s + slept_s >= patience_s or time.monotonic() > gives_up:
+                return False
+        return True
 
     def conduct(self, submission: Submission, ended_s: float, *, computes: bool) -> Conduct:
         """All that was told; of a process that has told nothing, or nonsense, that it has not.

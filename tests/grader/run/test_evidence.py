@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 import os
 import random
+import signal
 from collections.abc import Iterator
+from itertools import count
 
 import pytest
 
 from grader.recording.conduct import Conduct
+from grader.run import evidence
 from grader.run.evidence import MOST_BYTES, open_evidence
+from grader.run.processes import usage
 from grader.run.student import loops
 from grader.submission.opening import Submission, open_submission
 
@@ -27,10 +31,10 @@ def submission(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Submission]
 
 
 def told(submission: Submission, *lines: bytes) -> Conduct:
-    with open_evidence() as evidence:
+    with open_evidence() as pipe:
         for line in lines:
-            os.write(evidence.descriptor, line + b"\n")
-    return evidence.conduct(submission, 1.5, computes=True)
+            os.write(pipe.descriptor, line + b"\n")
+    return pipe.conduct(submission, 1.5, computes=True)
 
 
 def say(**what: object) -> bytes:
@@ -155,14 +159,14 @@ def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None
 
 
 def test_the_pipe_holds_so_much_and_no_more(submission: Submission) -> None:
-    with open_evidence() as evidence:
-        os.set_blocking(evidence.descriptor, False)
+    with open_evidence() as pipe:
+        os.set_blocking(pipe.descriptor, False)
         sent = 0
         with pytest.raises(BlockingIOError):
             while True:
-                sent += os.write(evidence.descriptor, b"x" * 1000)
+                sent += os.write(pipe.descriptor, b"x" * 1000)
         assert sent <= MOST_BYTES
-    assert evidence.conduct(submission, 0.0, computes=True) == Conduct()
+    assert pipe.conduct(submission, 0.0, computes=True) == Conduct()
 
 
 def dump(submission: Submission, *frames: tuple[str, int, str]) -> list[bytes]:
@@ -178,6 +182,30 @@ def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
         assert conduct.stop.place is not None
         assert (conduct.stop.place.line, conduct.stop.place.text) == (1, "while True:")
         assert conduct.stop.time_s == 1.5
+
+
+def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
+    submission: Submission, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines = iter(dump(submission, (str(submission.root / "a.py"), 2, "<module>")))
+    with open_evidence() as pipe:
+        # each look finds it where the last one did; every fifth time it has come to a line more
+        looks = count(1)
+
+        def look(pid: int) -> usage.Usage:
+            number = next(looks)
+            line = next(lines, None) if number % 5 == 0 else None
+            if line is not None:
+                os.write(pipe.descriptor, line + b"\n")
+            return usage.Usage(0.0 if number < 20 else number, "R")
+
+        monkeypatch.setattr(evidence.usage, "look", look)
+        monkeypatch.setattr(evidence, "asking_signal", lambda: signal.SIGCONT)
+        monkeypatch.setattr(evidence, "QUIET_S", 0.01)
+        monkeypatch.setattr(evidence, "PATIENCE_S", 0.01)
+        pipe.ask(os.getpid())
+        said = pipe._data.splitlines()
+    assert len(said) == 2
 
 
 def test_what_lies_beside_a_submission_is_none_of_its_own(submission: Submission) -> None:
