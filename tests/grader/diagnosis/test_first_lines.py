@@ -15,7 +15,7 @@ from tests.submissions.beginners import MISTAKES
 
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=10))
 #: What loops for ever is not waited for as long as a student's imports would be.
-PATIENCE = Patience(stall_cpu_s=0.5, start_cpu_s=4.0)
+PATIENCE = Patience(stall_cpu_s=0.5, start_cpu_s=1.5)
 
 
 @pytest.mark.parametrize("name", MISTAKES)
