@@ -1,6 +1,5 @@
 """Whole runs in real time: nothing is lost at the start, and what is ours stays out of sight."""
 
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -9,12 +8,15 @@ from grader.recording.recording import Recording
 from grader.run import real_time
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
-from grader.submission.opening import EntryPoint, Submission, open_submission
+from grader.submission.opening import EntryPoint, Submission
+from tests import runs
 from turtlesim_py.world.events import CmdVel, SetPen
 
 PLAN = Plan(Limits(first_motion_s=3, rest_s=0.3, total_s=60))
-#: For whom waits four seconds for a name that is nobody's.
+#: For whom waits four seconds for a name that is nobody's, and for whom does nothing at all.
 LONGER = Plan(Limits(first_motion_s=12, rest_s=0.3, total_s=60))
+SHORTER = Plan(Limits(first_motion_s=1, rest_s=0.3, total_s=60))
+PLANS = {"wrong_topic": LONGER, "never_a_node": SHORTER}
 HEAD = """
 import time
 import rclpy
@@ -64,47 +66,33 @@ print(time.monotonic() - started < 20, flush=True)
 }
 
 
-def run(path: Path) -> Recording:
-    with open_submission(path) as submission:
-        return real_time.run(submission, LONGER if path.stem == "wrong_topic" else PLAN)
-
-
-@pytest.fixture(scope="module")
-def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Recording]:
-    """All of them, a few at a time: a crowded machine is late with everything."""
-    folder = tmp_path_factory.mktemp("handed_in")
-    for name, text in FILES.items():
-        (folder / f"{name}.py").write_text(text)
-    with ThreadPoolExecutor(3) as pool:
-        return dict(
-            zip(FILES, pool.map(run, [folder / f"{name}.py" for name in FILES]), strict=True)
-        )
+def recorded(name: str) -> Recording:
+    path = runs.written(FILES[name], f"{name}.py")
+    return runs.recorded(path, PLANS.get(name, PLAN), time="real")
 
 
 @pytest.mark.parametrize("name", ["commands_at_once", "starts_late"])
-def test_the_first_command_arrives(recordings: dict[str, Recording], name: str) -> None:
-    recording = recordings[name]
+def test_the_first_command_arrives(name: str) -> None:
+    recording = recorded(name)
     assert (recording.run.outcome, len(recording.trace.of_kind(CmdVel))) == ("finished", 1)
 
 
-def test_the_first_call_of_a_service_arrives(recordings: dict[str, Recording]) -> None:
-    assert len(recordings["calls_at_once"].trace.of_kind(SetPen)) == 1
+def test_the_first_call_of_a_service_arrives() -> None:
+    assert len(recorded("calls_at_once").trace.of_kind(SetPen)) == 1
 
 
-def test_a_wrong_name_costs_little_time(recordings: dict[str, Recording]) -> None:
-    assert recordings["wrong_topic"].output.endswith("True\n")
+def test_a_wrong_name_costs_little_time() -> None:
+    assert recorded("wrong_topic").output.endswith("True\n")
 
 
-def test_without_a_node_the_clock_of_the_run_starts_as_well(
-    recordings: dict[str, Recording],
-) -> None:
-    assert recordings["never_a_node"].run.outcome == "time_limit"
-    assert recordings["never_a_node"].run.simulated_s == pytest.approx(3.0, abs=0.1)
+def test_without_a_node_the_clock_of_the_run_starts_as_well() -> None:
+    assert recorded("never_a_node").run.outcome == "time_limit"
+    assert recorded("never_a_node").run.simulated_s == pytest.approx(1.0, abs=0.1)
 
 
-def test_a_traceback_shows_none_of_our_lines(recordings: dict[str, Recording]) -> None:
-    assert "ValueError: mine" in recordings["raises"].output
-    assert "grader/run" not in recordings["raises"].output
+def test_a_traceback_shows_none_of_our_lines() -> None:
+    assert "ValueError: mine" in recorded("raises").output
+    assert "grader/run" not in recorded("raises").output
 
 
 def started(root: Path, module: str, function: str) -> Recording:

@@ -150,21 +150,19 @@ def test_a_submission_s_own_module_is_what_it_imports(
         "import os, sys; sys.path.insert(0, os.path.join(os.path.dirname(__file__), 'lib'))\n"
         f"import {name}; print(getattr({name}, 'MINE', 'installed'))\n"
     )
-    recordings = []
-    for _ in range(2):
-        with open_submission(folder, "main") as submission:
-            recordings.append(virtual_time.run(submission, PLAN))
-        cold(monkeypatch)
-    warm, started = (recording.output for recording in recordings)
-    assert warm == started
     # rclpy has loaded numpy before, however it was started
-    assert warm == ("installed\n" if name == "numpy" else "mine\n")
+    expected = "installed\n" if name == "numpy" else "mine\n"
+    with open_submission(folder, "main") as submission:
+        assert virtual_time.run(submission, PLAN).output == expected
+        if name == "numpy":
+            cold(monkeypatch)
+            assert virtual_time.run(submission, PLAN).output == expected
 
 
 def test_a_second_grading_needs_no_new_start(tmp_path: Path, fresh: None) -> None:
     zygotes.warm()
     pids = [side.pid for side in zygotes._zygotes.values()]
-    for number in range(1, 4):
+    for number in (1, 2):
         recording = graded(f"print({number})", tmp_path)
         assert recording.output == f"{number}\n"
         assert [side.pid for side in zygotes._zygotes.values()] == pids
@@ -232,8 +230,9 @@ def test_a_zygote_that_never_comes_up_is_given_up(
         started.append(1)
         return original([sys.executable, "-S", "-c", "raise SystemExit(1)"], env)
 
+    monkeypatch.setattr(zygotes, "MOST_LOSSES", 1)
     monkeypatch.setattr(zygotes, "Zygote", broken)
-    for number in range(zygotes.MOST_LOSSES + 2):
+    for number in range(zygotes.MOST_LOSSES + 1):
         assert graded(f"print({number})", tmp_path).output == f"{number}\n"
     assert len(started) == zygotes.MOST_LOSSES
     assert zygotes.zygote(side) is None
@@ -341,11 +340,10 @@ for name in os.listdir("/proc"):
 """
 
 
+@pytest.mark.applies(os.geteuid() == 0, reason="only root is sure to get one")
 def test_a_submission_with_a_namespace_of_its_own_sees_no_zygote_but_itself(
     tmp_path: Path,
 ) -> None:
-    if os.geteuid() != 0:
-        pytest.skip("only root is sure to get one")
     # the namespace's first process, and itself: both are forks
     assert graded(REACHES, tmp_path).output == "1\n1\n"
 
