@@ -25,6 +25,7 @@ class Cluster:
         self.folder = folder
         self.address = ""
         self._processes: list[subprocess.Popen[bytes]] = []
+        self._held: list[psutil.Process] = []
 
     def __enter__(self) -> Self:
         return self
@@ -32,6 +33,9 @@ class Cluster:
     def __exit__(self, *_: object) -> None:
         for process in self._processes:
             kill(process)
+        for grading in self._held:  # what is stopped does not see that nobody is there any more
+            with suppress(psutil.NoSuchProcess):
+                grading.kill()
 
     def start_scheduler(self, **env: str) -> subprocess.Popen[bytes]:
         """Start one, at the address of the one before; returns when it listens."""
@@ -49,11 +53,27 @@ class Cluster:
         scratch = ["--local-directory", str(self.folder)]
         return self._start("worker", self.address, *one, *scratch, **env)
 
+    def held(self, worker: subprocess.Popen[bytes]) -> psutil.Process:
+        """The process that does a worker's task, as soon as there is one, stopped in the middle."""
+
+        def grades(child: psutil.Process) -> bool:  # others come and go while a worker starts
+            with suppress(psutil.Error):
+                return any("grader.batch" in word for word in child.cmdline())
+            return False
+
+        def look() -> psutil.Process | None:
+            return next(filter(grades, psutil.Process(worker.pid).children()), None)
+
+        grading: psutil.Process = until(look)
+        grading.suspend()
+        self._held.append(grading)
+        return grading
+
     def _start(self, what: str, *words: str, **env: str) -> subprocess.Popen[bytes]:
         with (self.folder / f"{len(self._processes)}.{what}.log").open("wb") as log:
             process = subprocess.Popen(
                 [sys.executable, "-P", "-m", f"distributed.cli.dask_{what}", *words],
-                env={**ENV, **env},
+                env={**ENV, "DASK_TEMPORARY_DIRECTORY": str(self.folder), **env},
                 cwd=self.folder,
                 stdout=log,
                 stderr=log,
@@ -89,22 +109,6 @@ class Call:
     def wait(self) -> int:
         """Wait for its end; the exit code."""
         return self.process.wait(DEADLINE_S)
-
-
-def held(worker: subprocess.Popen[bytes]) -> psutil.Process:
-    """The process that does a worker's task, as soon as there is one, stopped in the middle."""
-
-    def grades(child: psutil.Process) -> bool:  # others come and go while a worker starts
-        with suppress(psutil.Error):
-            return any("grader.batch" in word for word in child.cmdline())
-        return False
-
-    def look() -> psutil.Process | None:
-        return next(filter(grades, psutil.Process(worker.pid).children()), None)
-
-    grading: psutil.Process = until(look)
-    grading.suspend()
-    return grading
 
 
 def kill(process: subprocess.Popen[Any]) -> None:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import psutil
 import pytest
+from distributed import KilledWorker
 
 from grader.batch import cluster
 from grader.batch.entry import entries
 from grader.errors import UsageError
 from tests.grader.batch.classes import DEADLINE_S, Class, told
-from tests.grader.batch.clusters import Call, Cluster, held, kill
+from tests.grader.batch.clusters import Call, Cluster, kill
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -30,40 +32,30 @@ def call(small_class: Class, dask: Cluster, out: Path, *words: str) -> Call:
     return Call(small_class.command(out, *words), out.parent)
 
 
-def test_the_tasks_of_a_worker_that_is_killed_are_done_by_another(
-    small_class: Class, graded: Path, dask: Cluster, tmp_path: Path
-) -> None:
-    dask.start_scheduler()
-    first = dask.start_worker()
-    with call(small_class, dask, tmp_path / "out") as grading:
-        process = held(first)
-        kill(first)
-        process.resume()
-        # nobody is there to whom it could tell what came of it
-        assert psutil.wait_procs([process], DEADLINE_S)[1] == []
-        grading.wait_for("The scheduler has no worker.")
-        dask.start_worker()
-        dask.start_worker()
-        assert grading.wait() == 0, grading.text()
-    assert told(tmp_path / "out") == told(graded)
-
-
-def test_a_scheduler_that_is_killed_and_comes_back_goes_on_with_what_was_underway(
+def test_whatever_goes_a_worker_or_the_scheduler_each_is_graded_as_on_one_machine(
     small_class: Class, graded: Path, dask: Cluster, tmp_path: Path
 ) -> None:
     scheduler = dask.start_scheduler()
     first = dask.start_worker()
     with call(small_class, dask, tmp_path / "out") as grading:
-        held(first)
+        process = dask.held(first)
+        kill(first)
+        process.resume()
+        # nobody is there to whom it could tell what came of it
+        assert psutil.wait_procs([process], DEADLINE_S)[1] == []
+        grading.wait_for("The scheduler has no worker.")
+        second = dask.start_worker()
+        dask.held(second)
         kill(scheduler)
         grading.wait_for(f"The scheduler at {dask.address} is gone.")
-        kill(first)
+        kill(second)
         dask.start_scheduler()
         dask.start_worker()
         assert grading.wait() == 0, grading.text()
     assert told(tmp_path / "out") == told(graded)
 
 
+@pytest.mark.more("a client of its own proves the refusal")
 def test_a_worker_with_other_versions_is_refused(
     small_class: Class, dask: Cluster, tmp_path: Path
 ) -> None:
@@ -76,13 +68,14 @@ def test_a_worker_with_other_versions_is_refused(
     assert [entry.id for entry in entries(tmp_path / "out")] == ["nobody"]
 
 
+@pytest.mark.more("an interrupted call goes on without a cluster as well: test_batch")
 def test_ctrl_c_ends_it_and_the_same_call_goes_on(
     small_class: Class, graded: Path, dask: Cluster, tmp_path: Path
 ) -> None:
     dask.start_scheduler()
     first = dask.start_worker()
     with call(small_class, dask, tmp_path / "out") as grading:
-        process = held(first)
+        process = dask.held(first)
         grading.process.send_signal(signal.SIGINT)
         assert grading.wait() == 130, grading.text()
         assert "Traceback" not in grading.text()
@@ -93,13 +86,14 @@ def test_ctrl_c_ends_it_and_the_same_call_goes_on(
     assert told(tmp_path / "out") == told(graded)
 
 
+@pytest.mark.more("the answer to what ended its workers is proven without any")
 def test_what_ends_every_worker_is_told_as_failed_and_nobody_pays(
     small_class: Class, dask: Cluster, tmp_path: Path
 ) -> None:
     dask.start_scheduler(DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0")
     first = dask.start_worker()
     with call(small_class, dask, tmp_path / "out") as grading:
-        process = held(first)
+        process = dask.held(first)
         kill(first)
         process.resume()
         dask.start_worker()
@@ -108,6 +102,34 @@ def test_what_ends_every_worker_is_told_as_failed_and_nobody_pays(
     assert 1 <= len(failed) <= 3  # one, and what was waiting for the same worker
     assert {entry.message for entry in failed} == {"1 worker of the cluster ended while grading it"}
     assert {entry.score for entry in failed} == {None}
+
+
+class Fake:
+    """A client of a cluster whose only worker has another ROS."""
+
+    status = "running"
+
+    def run(self, call: Callable[[], dict[str, str]], on_error: str) -> dict[str, dict[str, str]]:
+        return {"tcp://10.0.0.1:7": {**call(), "ros_distro": "rolling"}}
+
+
+def test_a_cluster_with_other_versions_is_refused_before_anything_is_sent_to_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(cluster, "_connected", lambda *_: nullcontext(Fake()))
+    other = "the worker at tcp://10.0.0.1:7 has other versions: ros_distro rolling, and "
+    with pytest.raises(UsageError, match=other):
+        list(cluster.work([], "tcp://10.0.0.1:8", print))
+
+
+def test_a_task_that_ended_its_workers_is_answered_as_failed() -> None:
+    session = cluster._Session(Fake(), iter(()), "", print)  # type: ignore[arg-type]
+    ended = KilledWorker("task", None, 1)
+    answer = session._failure(ended)
+    told = "2 workers of the cluster ended while grading it"
+    assert (answer.state, answer.message) == ("failed", told)
+    answer = session._failure(ValueError("x"))
+    assert (answer.state, answer.message) == ("failed", "a worker failed: ValueError: x")
 
 
 def test_what_is_no_address_is_told() -> None:
