@@ -7,6 +7,8 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+import setuptools  # noqa: F401  once, and not by each copy of this process that runs a setup.py
+
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings, Run
 from grader.scenes.package.examining.main import look
