@@ -30,7 +30,13 @@ SHOWS_BY_ITSELF = {
 }
 #: Of each check one that spoils it; `make test-all` has the others.
 ONE_OF_EACH = (
-    *("no_stop", "circle", "drives_irregularly", "two_colours_only", "colour_on_every_pose"),
+    *(
+        "stops_in_the_middle",
+        "circle",
+        "drives_irregularly",
+        "two_colours_only",
+        "colour_on_every_pose",
+    ),
     *("pen_off", "random_colours", "draws_by_teleport", *SHOWS_BY_ITSELF),
 )
 more = pytest.mark.more("three whole runs of what tests/grader/exercises proves without ROS")
