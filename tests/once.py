@@ -12,6 +12,7 @@ import hashlib
 import os
 import shutil
 import sys
+import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -19,8 +20,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 PLACE = ROOT / ".pytest_cache" / "d" / "once"  # where pytest has its plugins keep theirs
 #: What decides how a submission is run and judged.
-TREE = ("grader", "interfaces", "robot_py", "tests/submissions", "tf2")
-TREE += ("turtlesim_challenge", "turtlesim_py")
+TREE = (
+    *("grader", "interfaces", "robot_py", "tests/submissions", "tf2"),
+    *("turtlesim_challenge", "turtlesim_py"),
+)
+OLD_S = 24 * 3600.0  # of another tree: not under the feet of a suite that still runs
 
 
 def folder(make: Callable[[Path], object], *key: object) -> Path:
@@ -52,10 +56,11 @@ def _state() -> str:
     """The tree, and what it runs with."""
     installed = sorted(each.name for way in sys.path for each in Path(way).glob("*.dist-info"))
     tree = _digest()
-    for older in PLACE.glob("*"):
-        if not older.name.startswith(f"{tree}-"):
-            shutil.rmtree(older, ignore_errors=True)
-    beside = hashlib.sha256(f"{sys.version} {sys.prefix} {installed}".encode()).hexdigest()[:16]
+    for other in PLACE.glob("*"):
+        if not other.name.startswith(tree) and time.time() - other.stat().st_mtime > OLD_S:
+            shutil.rmtree(other, ignore_errors=True)
+    words = f"{sys.version} {sys.prefix} {os.environ.get('ROS_DISTRO')} {installed}"
+    beside = hashlib.sha256(words.encode()).hexdigest()[:16]
     return f"{tree}-{beside}"
 
 
