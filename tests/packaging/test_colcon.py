@@ -15,6 +15,8 @@ import pytest
 from .conftest import ROOT, Environment, FindProgram, RunNode
 from .rosdep import KEYS, hide_all_but
 
+pytestmark = pytest.mark.more("builds with colcon, in three ways")
+
 
 @dataclass(frozen=True)
 class Workspace:

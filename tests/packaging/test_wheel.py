@@ -109,6 +109,7 @@ def test_every_file_of_the_packages_is_in_the_wheel(
         assert [name for name in names if name.endswith(f"/packages/{node}")] == []
 
 
+@pytest.mark.more("builds two wheels")
 @pytest.mark.parametrize(
     ("release", "expected"), [("jazzy", "turtlesim"), ("kilted", "turtlesim_msgs")]
 )
@@ -123,6 +124,7 @@ def test_the_reference_takes_the_messages_that_the_sourced_ros_has(
     assert f"from {expected}.srv import SetPen" in text
 
 
+@pytest.mark.more("builds two wheels")
 def test_a_deleted_module_is_not_in_the_next_wheel(
     checkout: Path, ros_sourced: Environment
 ) -> None:
@@ -240,7 +242,8 @@ def requirements_only(tmp_path: Path) -> Iterator[Path]:
 
 
 @pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="nothing is compiled there")
-@pytest.mark.timeout(300)  # compiles
+@pytest.mark.more("compiles; test_install looks at what is installed")
+@pytest.mark.timeout(300)
 def test_a_wheel_needs_no_compiler(
     checkout: Path,
     shell: Environment,

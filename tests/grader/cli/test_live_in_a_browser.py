@@ -20,7 +20,10 @@ pytestmark = needs_browser
 EXERCISE = "exercise: turtlesim_challenge\nvaried_runs:\n  count: 0\n"
 
 
-@pytest.mark.parametrize("width", [375, 1280])
+more = pytest.mark.more("a wide screen; the narrow one is in `make test`")
+
+
+@pytest.mark.parametrize("width", [375, pytest.param(1280, marks=more)])
 def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_path, width):
     (tmp_path / "one_run.yaml").write_text(EXERCISE)
     out = tmp_path / "out"

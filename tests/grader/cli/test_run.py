@@ -1,6 +1,6 @@
 """`grader run` on real submissions: real processes, real ROS, virtual time and real time.
 
-All runs of this module are started at once.
+Each submission is graded when the first test looks at it, and only once.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import sys
 import zipfile
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import jsonschema
@@ -22,6 +23,7 @@ import yaml
 from grader.result import json_file
 from grader.run.processes import ZYGOTE
 from grader.scenes.turtlesim.interfaces import adapted
+from tests import once
 from turtlesim_py.ros.interfaces import installed
 
 SUBMISSIONS = Path(__file__).parents[2] / "submissions"
@@ -69,6 +71,7 @@ class Graded:
     stdout: str
     stderr: str
     out: Path
+    left_running: tuple[str, ...] = ()
 
     @property
     def result(self):
@@ -92,41 +95,60 @@ def finish(process: subprocess.Popen[str], out: Path) -> Graded:
     return Graded(process.returncode, stdout, stderr, out)
 
 
-@pytest.fixture(scope="module")
-def exercise(tmp_path_factory) -> Path:
+def short_exercise() -> str:
     """The challenge with short limits and nominal runs only: a test suite is in a hurry."""
     source = ROOT / "grader/exercises/turtlesim_challenge/exercise.yaml"
     data = yaml.safe_load(source.read_text()) | {"limits": SHORT_LIMITS}
     data["varied_runs"]["count"] = 0
-    path = tmp_path_factory.mktemp("exercise") / "short.yaml"
-    path.write_text(yaml.safe_dump(data))
-    return path
+    return yaml.safe_dump(data)
 
 
 @pytest.fixture(scope="module")
-def graded(tmp_path_factory, exercise):
-    """Every submission of this module, graded at the same time."""
-    folder = tmp_path_factory.mktemp("graded")
-    paths = {"quick_spiral": SUBMISSIONS / "quick_spiral.py"}
-    for name, text in FILES.items():
-        paths[name] = folder / name / "turtle_controller.py"
-        paths[name].parent.mkdir()
-        paths[name].write_text(text)
-    paths["starter"] = folder / "starter"
-    new = [sys.executable, "-m", "grader", "new", str(paths["starter"])]
-    subprocess.run(new, check=True, capture_output=True, cwd=ROOT)
-    outs = {name: folder / f"out_{name}" for name in paths}
-    running = {
-        name: start(path, outs[name], "--exercise", str(exercise)) for name, path in paths.items()
-    }
-    outs["in_real_time"] = folder / "out_real"
-    running["in_real_time"] = start(paths["quick_spiral"], outs["in_real_time"], "--time", "real")
-    return {name: finish(process, outs[name]) for name, process in running.items()}
+def exercise(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("exercise") / "short.yaml"
+    path.write_text(short_exercise())
+    return path
+
+
+NAMES = ("quick_spiral", "in_real_time", "starter", *FILES)
+
+
+def _grade(name: str, folder: Path) -> None:
+    """Grade the submission of this name; the folder keeps all that became of it."""
+    submission = SUBMISSIONS / "quick_spiral.py"
+    if name in FILES:
+        submission = folder / name / "turtle_controller.py"
+        submission.parent.mkdir()
+        submission.write_text(FILES[name])
+    elif name == "starter":
+        submission = folder / name
+        new = [sys.executable, "-m", "grader", "new", str(submission)]
+        subprocess.run(new, check=True, capture_output=True, cwd=ROOT)
+    (folder / "short.yaml").write_text(short_exercise())
+    words = ["--exercise", str(folder / "short.yaml")]
+    words += ["--time", "real"] if name == "in_real_time" else []
+    run = finish(start(submission, folder / "out", *words), folder / "out")
+    lines = [" ".join(p.info["cmdline"] or []) for p in psutil.process_iter(["cmdline"])]
+    left = [line for line in lines if str(folder) in line]
+    kept = {"code": run.code, "stdout": run.stdout, "stderr": run.stderr, "left_running": left}
+    (folder / "kept.json").write_text(json.dumps(kept))
+
+
+@pytest.fixture(scope="module")
+def graded():
+    """What became of a submission, by its name; nobody changes it."""
+
+    def of(name: str) -> Graded:
+        key = (name, FILES.get(name), SHORT_LIMITS)
+        folder = once.folder(partial(_grade, name), "grader run", *key)
+        return Graded(**json.loads((folder / "kept.json").read_text()), out=folder / "out")
+
+    return of
 
 
 @pytest.mark.parametrize(("name", "time"), [("quick_spiral", "virtual"), ("in_real_time", "real")])
 def test_a_right_solution_gets_full_marks_by_either_clock(graded, name, time):
-    run = graded[name]
+    run = graded(name)
     assert run.code == 0, run.stderr
     assert (run.result["score"], run.result["max_score"]) == (100, 100)
     assert (run.result["run"]["outcome"], run.result["run"]["time"]) == ("finished", time)
@@ -134,7 +156,7 @@ def test_a_right_solution_gets_full_marks_by_either_clock(graded, name, time):
 
 @both
 def test_a_solution_for_newer_releases_of_ros_needs_nothing_but_to_be_graded(graded):
-    run, older = graded["for_lyrical"], graded["quick_spiral"]
+    run, older = graded("for_lyrical"), graded("quick_spiral")
     assert (run.code, run.result["score"]) == (0, 100)
     assert run.result["verdicts"] == older.result["verdicts"]
     assert run.result["run"]["trace_sha256"] == older.result["run"]["trace_sha256"]
@@ -145,10 +167,11 @@ def test_a_solution_for_newer_releases_of_ros_needs_nothing_but_to_be_graded(gra
     facts = json.loads((run.out / "recording" / "run.json").read_text())
     assert facts["run"]["interfaces"] == "turtlesim_msgs"
     for bag in ("recording.mcap", "metadata.yaml"):
-        pair = [(graded_.out / "recording" / bag).read_bytes() for graded_ in (run, older)]
+        pair = [(each.out / "recording" / bag).read_bytes() for each in (run, older)]
         assert pair[0] == pair[1]
 
 
+@pytest.mark.more("both the clock and the interfaces are in `make test`, not together")
 @both
 def test_it_is_graded_in_real_time_as_well(tmp_path, exercise):
     path = tmp_path / "turtle_controller.py"
@@ -160,12 +183,15 @@ def test_it_is_graded_in_real_time_as_well(tmp_path, exercise):
 
 
 def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(graded):
-    run = graded["starter"]
+    run = graded("starter")
     assert (run.code, run.result["score"]) == (0, 0)
     assert run.stdout.startswith(
         "First to mend: Your node published no velocity command on /turtle1/cmd_vel in 4.0 s"
     )
     assert run.result["run"]["outcome"] == "time_limit"
+
+
+stalls = pytest.mark.more("the patience with a node that is stuck is long; tests of runs prove it")
 
 
 @pytest.mark.parametrize(
@@ -174,35 +200,39 @@ def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(grade
         ("syntax_error", "crashed", "SyntaxError: expected ':' (turtle_controller.py, line 2)"),
         ("missing_import", "crashed", "No module named 'turtlesim_messages' (turtle_controller.py"),
         ("exits_at_once", "exited", "ended by itself"),
-        ("never_ends", "stalled", "no velocity command"),
+        pytest.param("never_ends", "stalled", "no velocity command", marks=stalls),
         ("wrong_topic", "time_limit", "/turtle/cmd_vel"),
     ],
 )
 def test_a_submission_that_cannot_draw_gets_zero_and_is_told_why(graded, name, outcome, words):
-    run = graded[name]
+    run = graded(name)
     assert (run.code, run.result["score"], run.result["run"]["outcome"]) == (0, 0, outcome)
     assert words in run.stdout
     assert "Traceback" not in run.stdout + run.stderr
 
 
 def test_what_a_submission_writes_and_prints_is_no_result(graded):
-    assert graded["forges"].result["score"] == 0
+    assert graded("forges").result["score"] == 0
 
 
 def test_a_submission_that_starts_processes_is_graded_in_real_time_and_the_result_says_why(graded):
-    run = graded["forks_away"].result["run"]
+    run = graded("forks_away").result["run"]
     assert run["time"] == "real"
     assert any("graded in real time" in flag for flag in run["flags"])
 
 
-def test_every_result_follows_the_schema_and_its_files_exist(graded):
-    for run in graded.values():
-        jsonschema.validate(run.result, json_file.schema("result"))
-        assert all((run.out / path).exists() for path in run.result["artifacts"].values())
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=stalls) if n == "never_ends" else n for n in NAMES]
+)
+def test_a_result_follows_the_schema_its_files_exist_and_no_process_is_left(graded, name):
+    run = graded(name)
+    jsonschema.validate(run.result, json_file.schema("result"))
+    assert all((run.out / path).exists() for path in run.result["artifacts"].values())
+    assert not run.left_running
 
 
 def test_the_page_of_a_run_is_the_one_that_report_makes_of_its_folder(graded):
-    for run in (graded["quick_spiral"], graded["missing_import"], graded["in_real_time"]):
+    for run in (graded("quick_spiral"), graded("missing_import"), graded("in_real_time")):
         page = run.out / "report.html"
         words = ["report", run.out / "result.json", "--format", "html"]
         again = subprocess.run(
@@ -214,14 +244,8 @@ def test_the_page_of_a_run_is_the_one_that_report_makes_of_its_folder(graded):
         assert page.read_bytes() == again.stdout
 
 
-def test_no_process_is_left_behind(graded):
-    lines = [" ".join(p.info["cmdline"] or []) for p in psutil.process_iter(["cmdline"])]
-    folders = [str(run.out.parent) for run in graded.values()]
-    assert not [line for line in lines if any(folder in line for folder in folders)]
-
-
 def test_a_score_below_the_mark_exits_with_1(graded, tmp_path):
-    recording = graded["starter"].out / "recording"
+    recording = graded("starter").out / "recording"
     words = [sys.executable, "-m", "grader", "check", str(recording), "--fail-under", "1"]
     done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.returncode == 1
@@ -230,7 +254,7 @@ def test_a_score_below_the_mark_exits_with_1(graded, tmp_path):
 def test_a_recording_judged_again_gets_the_same_verdicts(graded, tmp_path, exercise):
     for name in ("quick_spiral", "starter", *(["for_lyrical"] if has_both else [])):
         file = tmp_path / f"{name}.json"
-        words = ["check", graded[name].out / "recording", "--json", file, "--exercise", exercise]
+        words = ["check", graded(name).out / "recording", "--json", file, "--exercise", exercise]
         subprocess.run(
             [sys.executable, "-m", "grader", *map(str, words)],
             check=True,
@@ -238,8 +262,8 @@ def test_a_recording_judged_again_gets_the_same_verdicts(graded, tmp_path, exerc
             cwd=ROOT,
         )
         again = json.loads(file.read_text())
-        assert again["verdicts"] == graded[name].result["verdicts"]
-        assert again["run"] == graded[name].result["run"]
+        assert again["verdicts"] == graded(name).result["verdicts"]
+        assert again["run"] == graded(name).result["run"]
 
 
 def written_for_no_ros(folder):
