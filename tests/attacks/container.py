@@ -1,6 +1,6 @@
 """A container for attacks: what they do to the machine is done to a copy of it, which goes.
 
-    python -m tests.attacks.container
+    python -m tests.attacks.container EMPTY-FOLDER
 
 It has processes, network, IPC and terminals of its own, and the files of this machine below a layer
 that takes all that is written (overlayfs), so that even an attack that succeeds as root harms
@@ -21,7 +21,6 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -50,15 +49,16 @@ def run(job: dict[str, Any]) -> Any:
         NoContainer: there can be none here.
         RuntimeError: it has died.
     """
-    done = subprocess.run(
-        [sys.executable, "-P", "-m", "tests.attacks.container"],
-        input=json.dumps(job),
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"},
-    )
+    with tempfile.TemporaryDirectory() as folder:  # the mounts in it are not seen from here
+        done = subprocess.run(
+            [sys.executable, "-P", "-m", "tests.attacks.container", folder],
+            input=json.dumps(job),
+            capture_output=True,
+            text=True,
+            check=False,
+            cwd=ROOT,
+            env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"},
+        )
     try:
         answer = json.loads(done.stdout)
     except ValueError:
@@ -71,19 +71,16 @@ def run(job: dict[str, Any]) -> Any:
 def main() -> int:
     """Make it, and go on in it as its first process."""
     job = json.loads(sys.stdin.read())
-    folder = tempfile.mkdtemp()
+    folder = Path(sys.argv[1])
     try:
         _leave(CLONE_NEWNS | CLONE_NEWPID | CLONE_NEWIPC | CLONE_NEWNET | CLONE_NEWUTS)
         if child := os.fork():
             return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         _libc().prctl(PR_SET_PDEATHSIG, 9, 0, 0, 0)
-        layer = _enter(Path(folder), [ROOT, *map(Path, (sys.prefix, sys.base_prefix))])
+        layer = _enter(folder, [ROOT, *map(Path, (sys.prefix, sys.base_prefix))])
     except OSError as error:
         print(json.dumps({"refused": str(error)}))
         return 0
-    finally:
-        with suppress(OSError):
-            Path(folder).rmdir()  # the mounts in it are not seen from outside
     if job == PROBE:
         print(json.dumps("works"))
         return 0

@@ -2,16 +2,18 @@
 
 `attacks.ATTACKS` says what there is, `submissions/` what each does. Each is graded by the real
 command line, in a container that makes a machine of each kind out of this one (`levels`), among
-canaries (`observing`). TURTLESIM_ATTACKS=all tries every attack at every level.
+canaries (`observing`): at one level in `make test`, at every other in `make test-all`.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
-from tests.attacks import container, levels
+from tests.attacks import levels
 from tests.attacks.attacks import (
     AS_ROOT,
     AS_ROOT_BY_LANDLOCK,
@@ -23,14 +25,17 @@ from tests.attacks.attacks import (
     SIMULATOR,
     TRIED_ELSEWHERE,
 )
-from tests.attacks.conftest import Graded
+from tests.attacks.conftest import Graded, Told
 from tests.attacks.handed_in import SUBMISSIONS
 
 pytestmark = pytest.mark.timeout(900)  # the first waits for all that share its container
 
+BEST = "namespaces-user"
+EXAMPLES = int(os.environ.get("EXAMPLES") or 0)
 #: What no level changes is tried at one, which has all of them.
 EVERYWHERE_THE_SAME = {READING, RUBRIC, SIMULATOR, LINK}
 DIFFER = {name for name, each in ATTACKS.items() if each.about not in EVERYWHERE_THE_SAME}
+#: Where a level may matter most: tried first.
 TRIED = {
     "namespaces-user": ATTACKS.keys(),
     "namespaces-root": AS_ROOT,
@@ -42,18 +47,26 @@ TRIED = {
 NEVER = ("the grader failed", "the grading never ended", "the next submission", "an escape on")
 
 
-def chosen() -> list[tuple[str, str]]:
-    """Level and attack of each grading."""
-    is_all = os.environ.get("TURTLESIM_ATTACKS") == "all"
-    return [
-        (level, name)
-        for level in levels.LEVELS
-        for name in ATTACKS
-        if is_all or name in TRIED[level]
-    ]
+def applies(level: levels.Level) -> pytest.MarkDecorator:
+    """Whether a machine of a kind can be made out of this one."""
+    can_be_made = (levels.can_filter() or not level.is_confined) and (
+        os.getuid() == 0 or not level.is_root
+    )
+    return pytest.mark.applies(can_be_made, reason="nobody but root can grade as root")
 
 
-GRADINGS = chosen()
+def chosen() -> Iterator[Any]:
+    """Level and attack of each grading: all at one level, and EXAMPLES at each of the others."""
+    for level, kind in levels.LEVELS.items():
+        marks = [applies(kind)]
+        names = sorted(ATTACKS, key=lambda name: name not in TRIED[level])
+        if level != BEST:
+            marks.append(pytest.mark.more("the same attack on another kind of machine"))
+            names = names[: EXAMPLES or None]
+        yield from (pytest.param(level, name, marks=marks) for name in names)
+
+
+GRADINGS = list(chosen())
 
 
 @pytest.mark.parametrize(("level", "attack"), GRADINGS)
@@ -75,8 +88,9 @@ def test_it_earns_no_points(graded: Graded, level: str, attack: str) -> None:
     assert not set(outcome.passed) & set(ATTACKS[attack].lacks), outcome.told
 
 
-@pytest.mark.parametrize("attack", ["has_privileges"])
-@pytest.mark.parametrize("level", list(levels.LEVELS))
+@pytest.mark.parametrize(
+    ("level", "attack"), [each for each in GRADINGS if each.values[1] == "has_privileges"]
+)
 def test_the_result_names_the_level(graded: Graded, level: str, attack: str) -> None:
     outcome = graded(level, attack)
     assert outcome.isolation.startswith(levels.LEVELS[level].grader), outcome.told
@@ -97,22 +111,13 @@ UNCONFINED = {
 }
 
 
-@pytest.fixture(scope="module")
-def unconfined(no_container: str) -> dict[str, list[str]]:
-    """What is seen when these are run by Python alone: sentences, for each attack."""
-    if no_container:
-        pytest.skip(no_container)
-    told = container.run({"level": "unconfined", "attacks": list(UNCONFINED)})
-    return {each["attack"]: each["harm"] for each in told}
-
-
-@pytest.mark.parametrize("attack", UNCONFINED)
-def test_the_canaries_sing_where_nothing_confines_an_attack(unconfined, attack: str) -> None:
-    assert any(each.startswith(UNCONFINED[attack]) for each in unconfined[attack]), unconfined
+@pytest.mark.parametrize("alone", UNCONFINED)
+def test_the_canaries_sing_where_nothing_confines_an_attack(told: Told, alone: str) -> None:
+    seen = told("unconfined", list(UNCONFINED))
+    assert any(harm.startswith(UNCONFINED[alone]) for harm in seen[alone]["harm"]), seen
 
 
 def test_every_submission_is_tried() -> None:
     there = {path.stem for path in SUBMISSIONS.glob("*.py")} - {"tools"}
     tried = {attack.program or name for name, attack in ATTACKS.items()}
     assert there <= tried, there - tried
-    assert len(ATTACKS) >= 40
