@@ -37,6 +37,30 @@ FindProgram = Callable[[str, str, Environment], Path]
 RunNode = Callable[..., str]
 
 
+class System:
+    """A machine with few commands; `add` gives it more, or replaces one."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.env = {"PATH": str(folder), "CC": "cc", "CXX": "c++"}
+
+    def add(self, name: str, script: str = "") -> None:
+        path = self.folder / name
+        path.write_text(f"#!/bin/sh\n{script}\n")
+        path.chmod(0o755)
+
+    def check(self) -> subprocess.CompletedProcess[str]:
+        script = ROOT / "scripts" / "check_setup.sh"
+        return subprocess.run(["/bin/sh", script], env=self.env, capture_output=True, text=True)
+
+    def complaint(self) -> str:
+        result = self.check()
+        assert result.returncode == 1
+        assert result.stdout == ""
+        (line,) = result.stderr.splitlines()
+        return line
+
+
 @pytest.fixture
 def shell() -> Environment:
     """A user's environment: not that of this Python, and on no one else's ROS graph."""

@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -112,3 +113,57 @@ def test_a_sourced_workspace_goes_before_the_environment(shell: Environment) -> 
     env = shell | {"AMENT_PREFIX_PATH": "/workspace/install"}
     path = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
     assert path.stdout.strip() == f"/workspace/install{os.pathsep}{sys.prefix}"
+
+
+#: Imports what students import, and names what of the environment it had to compile.
+PROBE = f"""\
+import sys
+import math, random, threading, time
+from enum import Enum
+import numpy, rclpy, yaml
+import rclpy.action, rclpy.callback_groups, rclpy.duration, rclpy.executors, rclpy.parameter
+from geometry_msgs.msg import PoseStamped, Twist
+from nav_msgs.msg import Odometry, Path
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState, LaserScan
+from std_msgs.msg import String
+from std_srvs.srv import Empty
+from turtlesim.action import RotateAbsolute
+from turtlesim.msg import Color, Pose
+from turtlesim.srv import SetPen, Spawn
+import tf2_ros
+
+import os
+from importlib.util import MAGIC_NUMBER, cache_from_source
+
+def is_compiled(path):
+    try:
+        with open(cache_from_source(path), "rb") as file:
+            head = file.read(16)
+    except OSError:
+        return False
+    stat = os.stat(path)
+    numbers = (0, int(stat.st_mtime) & 0xFFFFFFFF, stat.st_size & 0xFFFFFFFF)
+    return head == MAGIC_NUMBER + b"".join(number.to_bytes(4, "little") for number in numbers)
+
+files = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
+files = [path for path in files if path.startswith({sys.prefix!r}) and path.endswith(".py")]
+main = {os.path.join("student", "virtual_main.py")!r}
+print("looked at", len(files), "compiled", [
+    path for path in files if not path.endswith(main) and not is_compiled(path)
+])
+"""
+
+
+@pytest.mark.skipif("ROS_DISTRO" in os.environ, reason="the packages of apt are apt's to compile")
+def test_a_confined_run_compiles_no_module_of_the_environment(
+    shell: Environment, tmp_path: Path
+) -> None:
+    (tmp_path / "probe.py").write_text(PROBE)
+    grader = Path(sys.prefix, "bin", "grader")
+    env = {name: value for name, value in shell.items() if name != "PYTHONPATH"}
+    subprocess.run(
+        [grader, "run", "probe.py", "--out", "out"], cwd=tmp_path, env=env, capture_output=True
+    )
+    (line,) = (tmp_path / "out" / "output.txt").read_text().splitlines()
+    assert re.fullmatch(r"looked at \d{3,} compiled \[\]", line)

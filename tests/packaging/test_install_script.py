@@ -1,0 +1,199 @@
+"""scripts/install.sh: what it asks pip or uv for, when, and what it says where they fail."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from .conftest import ROOT, System
+
+PYTHON = str(Path(sys.executable).resolve())
+#: Answers as the Python of .venv does, and notes what it was asked.
+VENV_PYTHON = f"""\
+[ "$*" = "-c " ] || echo "$*" >>calls
+case "$*" in
+*requirements.py*) exec {PYTHON} "$@" ;;
+*pip*install*) [ ! -e says ] || {{ cat says; exit 1; }} ;;
+esac"""
+UV = """\
+[ "$1" = --version ] || echo "uv $*" >>calls
+case "$*" in *install*) [ ! -e says ] || { cat says; exit 1; } ;; esac"""
+
+
+class Install:
+    """A checkout whose .venv has been made, with a pip that installs nothing."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        shutil.copytree(ROOT / "scripts", folder / "scripts")
+        shutil.copy(ROOT / "Makefile", folder)
+        python = System(folder / ".venv" / "bin")
+        python.folder.mkdir(parents=True)
+        python.add("python", VENV_PYTHON)
+        self.commands = System(folder.parent / "commands")
+        self.commands.folder.mkdir()
+        self.env = {"PATH": f"{self.commands.folder}:{os.environ['PATH']}"}
+        self.made_for("no ROS")
+
+    def made_for(self, ros: str) -> None:
+        (self.folder / ".venv" / "made-in").write_text(f"{self.folder} {ros}\n")
+
+    def run(self, target: str = "install") -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            ["make", "-C", self.folder, target], env=self.env, capture_output=True, text=True
+        )
+
+    def calls(self, target: str = "install") -> list[str]:
+        """What is asked of pip, uv and Python, but for the requirements' names."""
+        (self.folder / "calls").write_text("")
+        result = self.run(target)
+        assert result.returncode == 0, result.stderr
+        lines = (self.folder / "calls").read_text().splitlines()
+        return [line for line in lines if "requirements.py" not in line]
+
+    def complaint(self, said: str) -> list[str]:
+        """What is said where pip or uv fails with `said`."""
+        (self.folder / "says").write_text(said)
+        result = self.run()
+        assert result.returncode != 0
+        return [line for line in result.stderr.splitlines() if not line.startswith("make")]
+
+
+@pytest.fixture
+def install(checkout: Path) -> Install:
+    """Without uv, wherever the tests run."""
+    install = Install(checkout)
+    install.commands.add("uv", "exit 127")
+    return install
+
+
+def packages(calls: list[str]) -> list[str]:
+    """Whose packages: `pip` or `uv`, and `.` for the project's own."""
+    return [
+        f"{'uv' if call.startswith('uv') else 'pip'} {'.' if call.endswith(' .') else 'needs'}"
+        for call in calls
+        if " install " in call
+    ]
+
+
+def test_the_project_goes_in_after_what_it_needs_and_then_byte_code_is_made(
+    install: Install,
+) -> None:
+    calls = install.calls()
+    assert packages(calls) == ["pip needs", "pip ."]
+    assert all("--no-compile" in call for call in calls[:2])
+    assert calls[2:] == ["scripts/compile.py"]
+
+
+@pytest.mark.parametrize("target", ["install", "tools"])
+def test_with_nothing_to_do_nothing_is_done(install: Install, target: str) -> None:
+    install.calls(target)
+    assert install.calls(target) == []
+
+
+@pytest.mark.parametrize("change", ["changed", "added", "deleted", "renamed"])
+def test_a_file_that_is_not_as_it_was_is_noticed(install: Install, change: str) -> None:
+    install.calls()
+    path = install.folder / "grader" / "errors.py"
+    if change == "changed":
+        stat = path.stat()
+        path.write_bytes(path.read_bytes().swapcase())
+        os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    elif change == "added":
+        path.with_name("zzz.py").touch()
+    elif change == "deleted":
+        path.unlink()
+    else:
+        path.rename(path.with_name("zzz.py"))
+    assert packages(install.calls()) == ["pip ."]
+
+
+def test_what_failed_is_tried_again(install: Install) -> None:
+    install.complaint("ERROR: no space left")
+    (install.folder / "says").unlink()
+    assert packages(install.calls()) == ["pip needs", "pip ."]
+
+
+def test_only_tests_and_linters_get_what_they_need_besides(install: Install) -> None:
+    install.calls()
+    assert packages(install.calls("tools")) == ["pip needs"]
+    assert install.calls("install") == []
+
+
+def test_what_the_tests_need_holds_all_that_the_project_needs() -> None:
+    """So pip changes nothing of it for their sake."""
+    few, all_ = (
+        subprocess.run(
+            [sys.executable, ROOT / "scripts" / "requirements.py", *level],
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout.splitlines()
+        for level in ([], ["test"])
+    )
+    assert set(few) < set(all_)
+    assert not [line for line in few if line.startswith(("pytest", "mypy", "ruff", "playwright"))]
+
+
+def test_uv_is_used_where_it_is(install: Install) -> None:
+    install.commands.add("uv", UV)
+    assert packages(install.calls()) == ["uv needs", "uv ."]
+
+
+def test_who_wants_pip_beside_uv_gets_it(install: Install) -> None:
+    install.commands.add("uv", UV)
+    install.env["UV"] = ""
+    assert packages(install.calls()) == ["pip needs", "pip ."]
+
+
+def test_beside_a_sourced_ros_uv_is_not_used(install: Install) -> None:
+    install.commands.add("uv", UV)
+    install.made_for("jazzy")
+    install.env["ROS_DISTRO"] = "jazzy"
+    assert packages(install.calls()) == ["pip needs", "pip ."]
+
+
+def test_a_compiler_that_is_gone_since_is_said_in_one_line(install: Install) -> None:
+    said = "╰─> [1 lines of output]\n      Cannot install: missing: cc\nerror: subprocess-exited"
+    assert install.complaint(said) == ["Cannot install: missing: cc"]
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "WARNING: Retrying ... NewConnectionError('<pip._vendor...>: Failed to establish')",
+        "ERROR: Could not install packages due to an OSError: ProxyError('Cannot connect')",
+    ],
+)
+def test_a_network_that_fails_is_said_in_one_line(install: Install, said: str) -> None:
+    (line,) = install.complaint(said)
+    assert line.startswith("Cannot install: pip does not reach the package index")
+
+
+def test_where_uv_has_no_network_pip_may_know_a_way(install: Install) -> None:
+    install.commands.add("uv", UV)
+    first, second = install.complaint(
+        "error: Failed to fetch: `https://pypi.org/simple/xacro/`\n"
+        "  Caused by: error sending request for url (https://pypi.org/simple/xacro/)"
+    )
+    assert first.startswith("Cannot install: uv does not reach the package index")
+    assert "`make UV= ...`" in second
+
+
+def test_byte_code_is_made_for_all_packages_and_not_again(tmp_path: Path) -> None:
+    def make() -> list[tuple[Path, int]]:
+        python, script = tmp_path / "env" / "bin" / "python", ROOT / "scripts" / "compile.py"
+        subprocess.run([python, "-E", script], check=True)
+        return [(path, path.stat().st_mtime_ns) for path in tmp_path.rglob("spiral/**/*.pyc")]
+
+    subprocess.run([PYTHON, "-m", "venv", "--without-pip", tmp_path / "env"], check=True)
+    (purelib,) = tmp_path.glob("env/lib/*/site-packages")
+    (purelib / "spiral" / "inner").mkdir(parents=True)
+    for name in ("__init__.py", "arms.py", "inner/turns.py"):
+        (purelib / "spiral" / name).write_text("TURNS = 3\n")
+    made = make()
+    assert len(made) == 3
+    assert make() == made
