@@ -49,8 +49,8 @@ tools:
 needs: tools
 	@$(BIN)/python tests/needs.py | sh -ex
 
-# a worker for each core, of which each takes a module at a time
-PYTEST = -m pytest --numprocesses=logical --dist=loadscope
+# a worker for each core, modules in one piece; who has nothing left takes from the end of the other
+PYTEST = -m pytest --numprocesses=logical --dist=worksteal
 
 test: tools
 	@echo "== running the tests"
