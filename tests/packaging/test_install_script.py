@@ -176,8 +176,8 @@ def test_a_network_that_fails_is_said_in_one_line(install: Install, said: str) -
 def test_where_uv_has_no_network_pip_may_know_a_way(install: Install) -> None:
     install.commands.add("uv", UV)
     first, second = install.complaint(
-        "error: Failed to fetch: `https://pypi.org/simple/xacro/`\n"
-        "  Caused by: error sending request for url (https://pypi.org/simple/xacro/)"
+        "error: Request failed after 3 retries in 5.5s\n"
+        "  cause: error sending request for url (https://pypi.org/simple/xacro/)"
     )
     assert first.startswith("Cannot install: uv does not reach the package index")
     assert "`make UV= ...`" in second
