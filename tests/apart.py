@@ -6,7 +6,6 @@ session fails where a process, a file of that folder or a segment of shared memo
 
 from __future__ import annotations
 
-import ctypes
 import fcntl
 import os
 import re
@@ -19,7 +18,6 @@ from pathlib import Path
 import psutil
 import pytest
 
-PR_SET_CHILD_SUBREAPER = 36
 SHARED_MEMORY = Path("/dev/shm")
 #: A user's for good: the locks of domains and cores, and LTTng's page, which `import rclpy` makes.
 STAYS = re.compile(r"turtlesim-grader-\w+(/(domain|core)-\d+\.lock)?|lttng-ust-wait-\S+")
@@ -47,6 +45,7 @@ def pytest_configure(config: pytest.Config) -> None:
         # where the folders of failing tests stay to be looked at
         os.environ["PYTEST_DEBUG_TEMPROOT"] = tempfile.gettempdir()
         folder = tempfile.mkdtemp(prefix="t")  # short: addresses of sockets end after 107 bytes
+        Path(folder).chmod(0o1777)  # as the system's: some tests go on as another user
         _open.callback(shutil.rmtree, folder, ignore_errors=True)
         os.environ["TMPDIR"] = tempfile.tempdir = folder
     os.environ["ROS_DOMAIN_ID"] = str(number)
@@ -64,7 +63,6 @@ class Leftovers:
     """Looks round at the end of a session, when its workers have gone."""
 
     def __init__(self) -> None:
-        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)  # orphans come to us, and are seen
         self._segments = set(SHARED_MEMORY.glob("*"))
 
     @pytest.hookimpl(trylast=True)
@@ -91,11 +89,14 @@ class Leftovers:
 
 
 def _processes() -> Iterator[str]:
-    for process in psutil.Process().children(recursive=True):
-        with suppress(psutil.NoSuchProcess):
-            if process.status() != psutil.STATUS_ZOMBIE:
-                words = " ".join(process.cmdline())[:200]
-                yield f"process {process.pid}, {process.status()}: {words}"
+    """Those that were told where this session's temporary files lie."""
+    folder = tempfile.gettempdir()
+    for process in psutil.process_iter():
+        with suppress(psutil.Error):
+            words = " ".join(process.cmdline())
+            is_ours = folder in words or folder in " ".join(process.environ().values())
+            if is_ours and process.pid != os.getpid() and process.status() != psutil.STATUS_ZOMBIE:
+                yield f"process {process.pid}, {process.status()}: {words[:200]}"
                 process.kill()
 
 
