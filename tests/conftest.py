@@ -15,8 +15,9 @@ from tests.programs import Program
 # Before anything of ROS is imported: the wheels take an int in a float field for other bits.
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-# whatever the locale of who runs them
+# whatever the locale and the terminal of who runs them
 os.environ["LANGUAGE"] = "en"
+os.environ.pop("COLUMNS", None)
 
 pytest_plugins = ["tests.apart", "tests.needs"]
 
