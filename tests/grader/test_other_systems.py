@@ -6,6 +6,7 @@ What these systems really do has not been seen: docs/your-machine.md says what w
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 import subprocess
@@ -18,11 +19,12 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 LACKING = Path(__file__).with_name("lacking.py")
-#: Ends soon, in real time as well.
+#: One run that ends soon, in real time as well.
 SHORT = """
 exercise: turtlesim_challenge
 points: {moves: 100}
 limits: {first_motion_s: 8, rest_s: 0.5, total_s: 20}
+varied_runs: {count: 0}
 """
 DRIVES = """
 import time
@@ -47,10 +49,14 @@ class Elsewhere:
         words = shlex.join([sys.executable, str(LACKING), system, str(self._python)])
         self._python.write_text(f'#!/bin/sh\nexec {words} "$@"\n')
         self._python.chmod(0o755)
+        # the folders of a grader that is killed go with the test's
+        self._env = {**os.environ, "TMPDIR": str(folder)}
 
     def run(self, *words: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
         command = [str(self._python), *words]
-        return subprocess.run(command, capture_output=True, text=True, check=False, cwd=cwd)
+        return subprocess.run(
+            command, capture_output=True, text=True, check=False, cwd=cwd, env=self._env
+        )
 
 
 @pytest.fixture(params=["macos", "windows"])

@@ -38,7 +38,7 @@ def read_only(folder: Path) -> None:
 def deep(folder: Path) -> None:
     """Deeper than Python recurses, and than a process may have open files."""
     here = os.open(folder, os.O_RDONLY)
-    for _ in range(3000):
+    for _ in range(sys.getrecursionlimit() + 200):
         os.mkdir("x" * 50, dir_fd=here)
         inner = os.open("x" * 50, os.O_RDONLY, dir_fd=here)
         os.close(here)
