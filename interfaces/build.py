@@ -126,7 +126,9 @@ def _configure(ext: Extension, package: str, generated: Path) -> None:
     import numpy
 
     prefix = ros_prefix()
-    ext.sources = [str(HERE / "dispatch.c"), *_unity_sources(generated)]
+    ext.sources = _unity_sources(generated)
+    # its object file is a package's own: each is compiled with other names, side by side
+    ext.sources.append(str(shutil.copyfile(HERE / "dispatch.c", generated / "dispatch.c")))
     ext.define_macros += [
         (
             f"rosidl_typesupport_c__get_{kind}_typesupport_handle_function",

@@ -71,6 +71,16 @@ def test_one_package_that_cannot_be_built_fails_the_build(built, monkeypatch):
 
 
 @pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="nothing is built there")
+def test_packages_that_are_built_side_by_side_share_no_source_and_so_no_object_file(tmp_path):
+    sources = []
+    for extension, package in zip(build.extensions(), build.PACKAGES, strict=True):
+        (tmp_path / package).mkdir()
+        build._configure(extension, package, tmp_path / package)
+        sources += extension.sources
+    assert len(sources) == len(set(sources)) >= 3 * len(build.PACKAGES)
+
+
+@pytest.mark.applies("ROS_DISTRO" not in os.environ, reason="nothing is built there")
 def test_what_is_linked_comes_with_what_a_build_asks_for():
     """A build for a wheel has nothing else; that of `make install` has all."""
     pyproject = tomllib.loads((build.HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))
