@@ -13,7 +13,6 @@ import os
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +29,8 @@ def _there(*programs: str) -> Callable[[], bool]:
 
 
 def _apt(*packages: str) -> str:
-    return f"{'' if AS_ROOT else 'sudo '}apt-get install -y {' '.join(packages)}"
+    sudo = "" if AS_ROOT else "sudo "
+    return f"{sudo}apt-get update -q && {sudo}apt-get install -qy {' '.join(packages)}"
 
 
 #: Name -> whether it is there, and what installs it; each after what it needs itself.
@@ -46,7 +46,6 @@ NEEDS: dict[str, tuple[Callable[[], bool], str]] = {
     ),
     "root": (lambda: AS_ROOT, "sudo make test"),
     "shellcheck": (_there("shellcheck"), _apt("shellcheck")),
-    "trimesh": (lambda: bool(find_spec("trimesh")), ".venv/bin/pip install 'trimesh>=4.4'"),
 }
 
 
@@ -97,4 +96,4 @@ def pytest_terminal_summary(terminalreporter: Any) -> Iterator[None]:
 
 if __name__ == "__main__":
     # root is not to be had by a line of a shell
-    print(*(NEEDS[name][1] for name in missing(NEEDS.keys() - {"root"})), sep="\n")
+    print(*(NEEDS[name][1] for name in missing(NEEDS) if name != "root"), sep="\n")

@@ -43,7 +43,7 @@ def test_the_last_lines_tell_each_need_how_many_tests_and_the_command(tmp_path):
     *_, git, pdftotext, end = done.stdout.splitlines()
     assert done.returncode == 0, done.stdout
     assert git.startswith("git: 2 tests. To run them: ")
-    assert git.endswith("apt-get install -y git")
+    assert git.endswith("apt-get install -qy git")
     assert pdftotext.startswith("pdftotext: 1 test. ")
     assert "1 passed, 2 skipped" in end
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from grader.scenes.package.examining import surfaces
-from tests.needs import needs
 
 ONE = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
 
@@ -81,7 +80,6 @@ def test_a_fine_mesh_becomes_coarse_and_keeps_its_shape(tmp_path):
     assert np.abs(np.sqrt((made**2).sum(axis=2)) - 1).max() < 0.1
 
 
-@needs("trimesh")
 def test_another_kind_is_read_where_trimesh_is(tmp_path):
     obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
     assert read(tmp_path, obj, "a.obj").tolist() == ONE.tolist()
