@@ -16,7 +16,7 @@ SANDBOX = ("namespaces", "landlock")
 NAMESPACES = ("namespaces",)
 #: Points and limits of a short grading of one run, in which moving is all that is asked for.
 MOVES = """points: {moves: 100}
-limits: {first_motion_s: 3, rest_s: 0.5, total_s: 10}
+limits: {first_motion_s: 3, rest_s: 0.5, total_s: 5}
 varied_runs: {count: 0}
 """
 

@@ -1,4 +1,4 @@
-"""In the container: canaries are set out, the grader grades attacks, and what has changed is told.
+"""In the container: canaries are set out, attacks are graded, and what has changed is told.
 
 The observer is the container's first process: root of the container, if anybody is, out of reach
 of signals, and the parent of all that nobody else waits for. Nothing that a submission says is
@@ -7,10 +7,8 @@ believed but that it has achieved something.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
-import pty
 import pwd
 import secrets
 import shutil
@@ -19,29 +17,19 @@ import socket
 import stat
 import subprocess
 import sys
-import termios
-import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tests.attacks import bystander, handed_in, levels
+from tests.attacks import bystander, handed_in, levels, runners
 from tests.attacks.attacks import ATTACKS, LEFTOVERS, MOVES
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
-#: So long a grading may take before it counts as one that never ends, and what it leaves may take
-#: to go [s].
-PATIENCE_S, LINGERS_S = 100.0, 5.0
 #: The memory that a process of a grading may have at most, what its results may take [bytes],
 #: and how many processes there may be.
 MOST_MEMORY, MOST_RESULTS, MOST_PROCESSES = 1400 << 20, 32 << 20, 400
-START = (
-    "import sys; sys.path.insert(0, sys.argv.pop(1)); sys.argv[0] = 'grader'; "
-    "from grader.cli import main; sys.exit(main())"
-)
 TOKENS = ("GITHUB_TOKEN", "AWS_SECRET_ACCESS_KEY", "CI_JOB_TOKEN", "COURSE_TOKEN", "GRADER_SECRET")
 HONEST = """
 import time
@@ -58,7 +46,7 @@ for _ in range(20):
 
 
 def observe(job: dict[str, Any], layer: int) -> list[dict[str, Any]]:
-    """Grade attacks one after the other, and an honest submission at the end.
+    """Grade attacks one after the other, and an honest submission before and after them.
 
     What is about that which is left behind is followed by an honest one at once.
 
@@ -67,88 +55,179 @@ def observe(job: dict[str, Any], layer: int) -> list[dict[str, Any]]:
             alone, and nothing is graded; and `attacks`, a list of keys of `ATTACKS`.
         layer: a folder in which all is that was written: see `container`.
     """
-    level = levels.LEVELS.get(job["level"], levels.UNCONFINED)
+    place = _Place(levels.LEVELS.get(job["level"], levels.UNCONFINED))
     told = []
     for name in job["attacks"]:
         is_followed = name == job["attacks"][-1] or ATTACKS[name].about == LEFTOVERS
-        told.append(_Trial(level, name, layer).run(is_followed=is_followed))
+        told.append(_Trial(place, name, layer).run(is_followed=is_followed))
+        if told[-1]["harm"]:
+            place.clear()
+    told[-1]["harm"] += place.clear()
     return told
 
 
-@dataclass
-class _Home:
-    """The folders of whoever grades."""
+class NotWell(Exception):
+    """An honest submission did not get its points; the text says how it ended."""
 
-    path: Path
-    class_: Path = field(init=False)
 
-    def __post_init__(self) -> None:
-        self.class_ = self.path / "class"
+class _Place:
+    """Who grades, where, and what lies there in all trials.
 
-    @property
-    def tree(self) -> Path:
-        return self.path / "checkout"
+    Attributes:
+        uid, user: who grades.
+        path: the home of that user.
+        class_: the folder of a class.
+        tree: a checkout of the grader.
+        secrets: canaries that are the same in all trials.
+    """
+
+    def __init__(self, level: levels.Level) -> None:
+        self.level = level
+        self.uid = level.uid if os.getuid() == 0 else os.getuid()
+        self.user = self._name_of_user()
+        self.path = Path(pwd.getpwuid(self.uid).pw_dir)
+        self.class_, self.tree = self.path / "class", self.path / "checkout"
+        self.secrets = {"environment": _secret("environment")}
+        self._runner: runners.Runner | None = None
+
+    def _name_of_user(self) -> str:
+        with suppress(KeyError):
+            return pwd.getpwuid(self.uid).pw_name
+        name = levels.NAMES[self.uid]
+        with Path("/etc/passwd").open("a") as file:
+            file.write(f"{name}:x:{self.uid}:{self.uid}::/home/{name}:/bin/sh\n")
+        Path("/home", name).mkdir(parents=True, exist_ok=True)
+        return name
+
+    def give_to_user(self) -> None:
+        """All that lies in the user's home is the user's."""
+        if os.getuid() == 0 and self.uid:
+            for each in (self.path, *self.path.rglob("*")):
+                os.chown(each, self.uid, self.uid, follow_symlinks=False)
+
+    def runner(self, apart: Collection[int] = ()) -> runners.Runner:
+        """Who runs submissions: as before, unless that has ended.
+
+        Args:
+            apart: processes that are not its own and no submission's.
+
+        Raises:
+            NotWell: it fails an honest submission, which is the first.
+        """
+        if self._runner is not None and self._runner.is_spent:
+            self._end()
+        if self._runner is None:
+            self._runner = self._start(apart)
+        self._runner.apart = set(apart)
+        return self._runner
+
+    def clear(self) -> list[str]:
+        """What lies about is not for the next one; what was left by who has run submissions."""
+        left = self._end()
+        for each in Path("/tmp").glob("turtlesim-grader*"):
+            with suppress(OSError):
+                shutil.rmtree(each) if each.is_dir() and not each.is_symlink() else each.unlink()
+        shutil.rmtree(self.tree, ignore_errors=True)
+        return left
+
+    def _end(self) -> list[str]:
+        left = self._runner.close() if self._runner else []
+        self._runner = None
+        return [f"left running by the grader itself: {line}" for line in left]
+
+    def _start(self, apart: Collection[int]) -> runners.Runner:
+        if self.level == levels.UNCONFINED:
+            return runners.Python(self.level, self.uid, self._environment())
+        for package in PACKAGES:
+            shutil.copytree(ROOT / package, self.tree / package, dirs_exist_ok=True)
+        self.class_.mkdir(exist_ok=True)
+        started = runners.Grader(
+            *(self.level, self.uid, self._environment(), self.tree, self.class_)
+        )
+        started.apart = set(apart)
+        try:
+            self.grade_honest(started)
+        except NotWell:
+            started.close()
+            raise
+        return started
+
+    def grade_honest(self, runner: runners.Runner) -> None:
+        """Have an honest submission graded, which gets its points and leaves nothing.
+
+        Raises:
+            NotWell: it does not.
+        """
+        files = {"honest.py": HONEST, "honest.yaml": "exercise: turtlesim_challenge\n" + MOVES}
+        for name, text in files.items():
+            (self.class_ / name).write_text(text)
+        self.give_to_user()
+        out = self.class_ / "graded" / "honest"
+        words = ["run", "honest.py", "--exercise", "honest.yaml", "--out", str(out)]
+        graded = {**runner.run(words, self.class_), **_result(out)}
+        if (graded["code"], graded["score"]) != (0, 100):
+            raise NotWell(_short(graded))
+
+    def _environment(self) -> dict[str, str]:
+        kept = (
+            ("ROS_", "AMENT_", "PYTHONPATH", "LD_LIBRARY_PATH")
+            if "ROS_DISTRO" in os.environ
+            else ()
+        )
+        return {
+            **{name: value for name, value in os.environ.items() if name.startswith(kept)},
+            **dict.fromkeys(TOKENS, self.secrets["environment"]),
+            "HOME": str(self.path),
+            "USER": self.user,
+            "PATH": "/usr/local/bin:/usr/bin:/bin",
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "TERM": "xterm",
+        }
 
 
 class _Trial:
     """One attack, with canaries of its own."""
 
-    def __init__(self, level: levels.Level, name: str, layer: int) -> None:
-        self._level, self._name, self._layer = level, name, layer
+    def __init__(self, place: _Place, name: str, layer: int) -> None:
+        self._place, self._name, self._layer = place, name, layer
         self._attack = ATTACKS[name]
-        self._uid = level.uid if os.getuid() == 0 else os.getuid()
-        self._user = self._name_of_user()
-        self._home = _Home(Path(pwd.getpwuid(self._uid).pw_dir))
-        self._secrets: dict[str, str] = {}
+        self._secrets = dict(place.secrets)
         self._harm: list[str] = []
 
     def run(self, *, is_followed: bool) -> dict[str, Any]:
         """Grade it, and perhaps an honest one after it."""
         with ExitStack() as held:
+            self._bystander = self._start_bystander(held)
+            self._runner = self._place.runner([self._bystander.pid])
             self._set_out(held)
             submission = self._hand_in()
-            self._give_to_user(self._home.path)
+            self._place.give_to_user()
             before = self._files()
-            out = (submission if self._attack.out else self._home.class_ / "graded") / (
+            out = (submission if self._attack.out else self._place.class_ / "graded") / (
                 self._attack.out or "attacker"
             )
             graded = self._grade(submission, out)
             self._look(before, out, graded)
-            if is_followed and self._level != levels.UNCONFINED:
+            if is_followed and self._place.level != levels.UNCONFINED:
                 self._harm += self._grade_another(before)
             self._clear()
         return {"attack": self._name, "harm": sorted(set(self._harm)), **graded}
 
     def _grade_another(self, before: dict[str, Any]) -> Iterator[str]:
         """An honest submission; what it suffers from the one before."""
-        honest = self._home.class_ / "honest.py"
-        honest.write_text(HONEST)
-        self._give_to_user(honest)
-        graded = self._grade(honest, self._home.class_ / "graded" / "honest")
-        if (graded["code"], graded["score"]) != (0, 100):
-            yield f"the next submission: {_short(graded)}"
+        try:
+            # another grader, if the attack has ended the former
+            self._place.grade_honest(self._place.runner([self._bystander.pid]))
+        except NotWell as why:
+            yield f"the next submission: {why}"
         for harm in self._changed(before):
             if harm not in self._harm:
                 yield f"later: {harm}"
 
     # -- what is there --------------------------------------------------------------------------
 
-    def _name_of_user(self) -> str:
-        with suppress(KeyError):
-            return pwd.getpwuid(self._uid).pw_name
-        name = levels.NAMES[self._uid]
-        with Path("/etc/passwd").open("a") as file:
-            file.write(f"{name}:x:{self._uid}:{self._uid}::/home/{name}:/bin/sh\n")
-        Path("/home", name).mkdir(parents=True, exist_ok=True)
-        return name
-
     def _secret(self, where: str) -> str:
-        return self._secrets.setdefault(where, f"CANARY-{where}-{secrets.token_hex(8)}")
-
-    def _give_to_user(self, path: Path) -> None:
-        if os.getuid() == 0 and self._uid:
-            for each in (path, *path.rglob("*")):
-                os.chown(each, self._uid, self._uid, follow_symlinks=False)
+        return self._secrets.setdefault(where, _secret(where))
 
     def _write(self, path: Path, text: str) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -157,9 +236,8 @@ class _Trial:
         return path
 
     def _set_out(self, held: ExitStack) -> None:
-        home = self._home.path
-        for place in (home / "class", home / "checkout"):
-            shutil.rmtree(place, ignore_errors=True)
+        home = self._place.path
+        shutil.rmtree(home / "class", ignore_errors=True)
         self._canaries: list[Path] = []
         for name in (".netrc", ".ssh/id_ed25519", "notes.txt"):
             self._write(home / name, self._secret("home"))
@@ -169,10 +247,6 @@ class _Trial:
         self._write(home / "class/graded/neighbour/result.json", f'"{self._secret("results")}"')
         exercise = f"# {self._secret('exercise')}\nexercise: turtlesim_challenge\n"
         self._write(home / "class/exercise.yaml", exercise + self._attack.exercise)
-        self._write(home / "class/honest.yaml", "exercise: turtlesim_challenge\n" + MOVES)
-        for package in PACKAGES:
-            shutil.copytree(ROOT / package, self._home.tree / package)
-        self._give_to_user(home)
         self._tcp = held.enter_context(socket.create_server(("127.0.0.1", 0)))
         self._udp = held.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         self._udp.bind(("0.0.0.0", 0))
@@ -188,32 +262,26 @@ class _Trial:
         for listener in (self._tcp, self._udp, *self._unix):
             listener.setblocking(False)
         self._path.chmod(0o666)
-        self._master, self._slave = pty.openpty()
-        held.callback(os.close, self._master)
-        held.callback(os.close, self._slave)
-        self._terminal = os.ttyname(self._slave)
-        if os.getuid() == 0:
-            os.chown(self._terminal, self._uid, -1)
-        os.set_blocking(self._master, False)
-        raw = termios.tcgetattr(self._slave)
-        raw[3] &= ~(termios.ECHO | termios.ICANON)
-        termios.tcsetattr(self._slave, termios.TCSANOW, raw)
-        self._bystander = held.enter_context(
+
+    def _start_bystander(self, held: ExitStack) -> subprocess.Popen[str]:
+        words = [sys.executable, "-I", "-S", bystander.__file__, "bystander", self._secret("args")]
+        process = held.enter_context(
             subprocess.Popen(
-                [sys.executable, "-I", "-S", bystander.__file__, "bystander", self._secret("args")],
+                words,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 text=True,
                 env={"COURSE_TOKEN": self._secret("environ")},
-                preexec_fn=lambda: levels.become(self._level),
+                preexec_fn=lambda: levels.become(self._place.level),
             )
         )
-        held.callback(self._bystander.kill)
-        assert self._bystander.stdout is not None
-        self._address = int(self._bystander.stdout.readline())
+        held.callback(process.kill)
+        assert process.stdout is not None
+        self._address = int(process.stdout.readline())
+        return process
 
     def _hand_in(self) -> Path:
-        home, target = self._home, self._home.class_ / "attacker"
+        home, target = self._place, self._place.class_ / "attacker"
         for left in (target.with_suffix(".py"), target.with_suffix(".zip")):
             left.unlink(missing_ok=True)
         if self._attack.make is not None:
@@ -228,8 +296,8 @@ class _Trial:
             "EXERCISE": str(home.class_ / "exercise.yaml"),
             "TREE": str(home.tree),
             "TEMP": "/tmp",
-            "USER": self._user,
-            "UID": self._uid,
+            "USER": home.user,
+            "UID": home.uid,
             "BYSTANDER": self._bystander.pid,
             "BYSTANDER_ADDRESS": self._address,
             "TCP": self._tcp.getsockname()[1],
@@ -237,7 +305,7 @@ class _Trial:
             "ADDRESS": "127.0.0.1",
             "UNIX": str(self._path),
             "ABSTRACT": self._abstract,
-            "TERMINAL": self._terminal,
+            "TERMINAL": self._runner.terminal.name,
         }
         text = "".join(f"{name} = {value!r}\n" for name, value in known.items())
         submission = handed_in.folder(self._attack.program or self._name, target, text)
@@ -247,93 +315,15 @@ class _Trial:
 
     # -- a grading ------------------------------------------------------------------------------
 
-    def _environment(self) -> dict[str, str]:
-        kept = (
-            ("ROS_", "AMENT_", "PYTHONPATH", "LD_LIBRARY_PATH")
-            if "ROS_DISTRO" in os.environ
-            else ()
-        )
-        return {
-            **{name: value for name, value in os.environ.items() if name.startswith(kept)},
-            **{name: self._secret("environment") for name in TOKENS},
-            "HOME": str(self._home.path),
-            "USER": self._user,
-            "PATH": "/usr/local/bin:/usr/bin:/bin",
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "TERM": "xterm",
-        }
-
     def _grade(self, submission: Path, out: Path) -> dict[str, Any]:
-        """Run the real command line, as the user, on a terminal of its own."""
-        streams = [os.memfd_create(name) for name in ("stdout", "stderr")]
-        is_honest = submission.name == "honest.py"
-        exercise = "honest.yaml" if is_honest else "exercise.yaml"
-        words = ["run", str(submission), "--exercise", exercise, "--out", str(out)]
-        words += [] if is_honest else ["--time", self._attack.time]
-
-        command = [sys.executable, "-P", "-c", START, str(self._home.tree), *words]
-        if self._level == levels.UNCONFINED:
-            command = [sys.executable, str(submission / "turtle_controller.py")]
-
-        def begin() -> None:
-            os.setsid()
-            fcntl.ioctl(0, termios.TIOCSCTTY, 0)
-            levels.become(self._level)
-
-        most, memory, hung, deadline = 0, 0, False, time.monotonic() + PATIENCE_S
-        with subprocess.Popen(
-            command,
-            stdin=self._slave,
-            stdout=streams[0],
-            stderr=streams[1],
-            cwd=self._home.class_,
-            env=self._environment(),
-            preexec_fn=begin,
-        ) as process:
-            while process.poll() is None:
-                others = self._others()
-                most = max(most, len(others))
-                memory = max(memory, *map(_memory, others), 0)
-                if time.monotonic() > deadline:
-                    hung = True
-                    process.kill()
-                    self._end_others()
-                with suppress(subprocess.TimeoutExpired):
-                    process.wait(0.05)
-        left = self._left()
-        graded: dict[str, Any] = {
-            "code": None if hung else process.returncode,
-            "hung": hung,
-            "left": left,
-            "said": "".join(_text(fd) for fd in streams),
-            "most_processes": most,
-            "most_memory": memory,
-            **_result(out),
-        }
-        for fd in streams:
-            os.close(fd)
-        return graded
-
-    def _left(self) -> list[str]:
-        """What still runs a while after the grader has ended; it is ended."""
-        deadline = time.monotonic() + LINGERS_S
-        while (left := self._others()) and time.monotonic() < deadline:
-            _reap(left)
-            time.sleep(0.02)
-        names = [_command_line(pid) for pid in left]
-        self._end_others()
-        return names
-
-    def _others(self) -> list[int]:
-        return [pid for pid in _processes() if pid != self._bystander.pid]
-
-    def _end_others(self) -> None:
-        while others := self._others():
-            for pid in others:
-                with suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGKILL)
-            _reap(others)
-            time.sleep(0.01)
+        """Call the real command line, as the user."""
+        folder = self._place.class_
+        if self._place.level == levels.UNCONFINED:
+            words = [str(submission / "turtle_controller.py")]
+        else:
+            words = ["run", str(submission), "--exercise", "exercise.yaml", "--out", str(out)]
+            words += ["--time", self._attack.time]
+        return {**self._runner.run(words, folder), **_result(out)}
 
     # -- what has changed -----------------------------------------------------------------------
 
@@ -369,11 +359,10 @@ class _Trial:
             harm.append(f"results of {graded['size']} bytes: {graded['largest']}")
         harm += self._heard()
         harm += self._changed(before)
-        with suppress(BlockingIOError, OSError):
-            harm.append(f"wrote to the terminal: {os.read(self._master, 200)!r}")
-        os.set_blocking(self._slave, False)
-        with suppress(BlockingIOError, OSError):
-            harm.append(f"typed into the terminal: {os.read(self._slave, 200)!r}")
+        if text := self._runner.terminal.written():
+            harm.append(f"wrote to the terminal: {text!r}")
+        if text := self._runner.terminal.typed():
+            harm.append(f"typed into the terminal: {text!r}")
         harm += self._asked_bystander()
 
     def _heard(self) -> Iterator[str]:
@@ -435,12 +424,12 @@ class _Trial:
 
     def _is_ours(self, path: str, after: dict[str, Any]) -> bool:
         """Whether a grading may leave this: results, and empty files for locks."""
-        graded = self._home.class_ / "graded"
-        if path == f"{self._home.class_}/honest.py" or path.startswith(
-            (f"{graded}/attacker", f"{graded}/honest")
-        ):
+        class_ = self._place.class_
+        if path.startswith((f"{class_}/graded/attacker", f"{class_}/graded/honest")):
             return True
-        if self._attack.out and path.startswith(f"{self._home.class_}/attacker/{self._attack.out}"):
+        if path in (f"{class_}/honest.py", f"{class_}/honest.yaml"):
+            return True
+        if self._attack.out and path.startswith(f"{class_}/attacker/{self._attack.out}"):
             return True
         if path.startswith("/dev/shm/lttng-ust-wait-"):
             return True  # of every process with rclpy in it
@@ -458,51 +447,12 @@ class _Trial:
             for each in Path(place).glob("*attack*"):
                 with suppress(OSError):
                     each.unlink() if not each.is_dir() or each.is_symlink() else shutil.rmtree(each)
-        for each in Path("/tmp").glob("turtlesim-grader*"):
-            with suppress(OSError):
-                shutil.rmtree(each) if each.is_dir() and not each.is_symlink() else each.unlink()
         with suppress(OSError):
-            each_home = self._home.path
+            each_home = self._place.path
             for name in (".bash_login", "attacked", "owned", ".ssh2", "pictures"):
                 shutil.rmtree(each_home / name, ignore_errors=True)
                 (each_home / name).unlink(missing_ok=True)
         subprocess.run(["ipcrm", "--all"], check=False, capture_output=True)
-
-
-def _processes() -> list[int]:
-    names = [each.name for each in Path("/proc").iterdir()]
-    return [pid for pid in map(int, filter(str.isdigit, names)) if pid != 1]
-
-
-def _memory(pid: int) -> int:
-    """What of its memory is its own alone [bytes]."""
-    with suppress(OSError, IndexError, ValueError):
-        words = Path(f"/proc/{pid}/statm").read_text().split()
-        return (int(words[1]) - int(words[2])) * os.sysconf("SC_PAGE_SIZE")
-    return 0
-
-
-def _reap(pids: list[int]) -> None:
-    """Take leave of those that were left to us; not of our own children, whom others wait for."""
-    for pid in pids:
-        with suppress(ChildProcessError):
-            os.waitpid(pid, os.WNOHANG)
-
-
-def _command_line(pid: int) -> str:
-    with suppress(OSError):
-        return (
-            Path(f"/proc/{pid}/cmdline")
-            .read_bytes()
-            .replace(b"\0", b" ")
-            .decode(errors="replace")[-120:]
-        )
-    return "?"
-
-
-def _text(fd: int) -> str:
-    size = os.fstat(fd).st_size
-    return os.pread(fd, min(size, 1 << 20), 0).decode("utf-8", "replace")
 
 
 def _result(out: Path) -> dict[str, Any]:
@@ -528,6 +478,10 @@ def _result(out: Path) -> dict[str, Any]:
         }
     except (ValueError, KeyError) as error:
         return {**nothing, "outcome": f"no result: {error!r}"}
+
+
+def _secret(where: str) -> str:
+    return f"CANARY-{where}-{secrets.token_hex(8)}"
 
 
 def _short(graded: dict[str, Any]) -> str:
