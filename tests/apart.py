@@ -78,12 +78,13 @@ class Leftovers:
         session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED
 
     def _unused_segments(self) -> Iterator[str]:
-        mapped = set()
+        used = set()
         for process in Path("/proc").glob("[0-9]*"):
             with suppress(OSError):
-                mapped.update(re.findall(r"/dev/shm/\S+", (process / "maps").read_text()))
+                used.update(re.findall(r"/dev/shm/\S+", (process / "maps").read_text()))
+                used.update(str(each.readlink()) for each in (process / "fd").iterdir())
         for path in SHARED_MEMORY.glob("*"):
-            is_unused = path not in self._segments and str(path) not in mapped
+            is_unused = path not in self._segments and str(path) not in used
             if is_unused and not STAYS.fullmatch(path.name):
                 yield f"shared memory {path}"
 
