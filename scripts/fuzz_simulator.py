@@ -268,16 +268,17 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
         "",  # nobody looks on
     ]
     # a pipe that nobody reads would stop it
-    log = tempfile.TemporaryFile()  # noqa: SIM115 - its context is below
+    log = tempfile.TemporaryFile()  # noqa: SIM115 - the contexts of both are below
+    place = tempfile.TemporaryDirectory()  # it is asked to save its canvas, too
     process = subprocess.Popen(
         [sys.executable, "-m", "grader.run.simulator.virtual_main", *words],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
-        cwd=tempfile.gettempdir(),
+        cwd=place.name,
         pass_fds=fds,
         stdout=subprocess.DEVNULL,
         stderr=log,
     )
-    with log, process, ours, control:
+    with log, place, process, ours, control:
         theirs.close()
         controlled.close()
         os.close(recording)

@@ -15,6 +15,8 @@ from tests.programs import Program
 # Before anything of ROS is imported: the wheels take an int in a float field for other bits.
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+# A program that is killed leaves its shared memory behind, and tests kill some.
+os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
 # whatever the locale and the terminal of who runs them
 os.environ["LANGUAGE"] = "en"
 os.environ.pop("COLUMNS", None)

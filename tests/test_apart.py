@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -10,10 +11,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+OWN = f"/dev/shm/left-{os.getpid()}"
 LEAVING = {
     "process": "import os; os.posix_spawn('/bin/sleep', ['sleep', '9999'], os.environ)",
     "file": "import tempfile; tempfile.mkdtemp(prefix='left-')",
-    "shared memory": "open('/dev/shm/left-by-a-test', 'w').close()",
+    "shared memory": f"open({OWN!r}, 'w').close()",
     "": "import tempfile; tempfile.TemporaryDirectory().cleanup()",
 }
 
@@ -31,9 +33,9 @@ def test_what_a_test_leaves_behind_fails_the_session(tmp_path, kind):
             check=False,
         )
     finally:
-        Path("/dev/shm/left-by-a-test").unlink(missing_ok=True)
-    # other sessions on this machine may leave shared memory meanwhile
-    told = [line for line in done.stdout.splitlines() if "/dev/shm/fastrtps" not in line]
+        Path(OWN).unlink(missing_ok=True)
+    # others may leave shared memory meanwhile
+    told = [line for line in done.stdout.splitlines() if "/dev/shm/" not in line or OWN in line]
     found = {
         each for each in filter(None, LEAVING) if any(map(re.compile(f"{each} .*").match, told))
     }
