@@ -76,7 +76,8 @@ class Leftovers:
         found = [*_processes(), *_files(), *self._unused_segments()]
         if not found or reporter is None:
             return
-        text = "\n".join(("left behind by the tests:", *sorted(found)))
+        lines = sorted(found)[:20]
+        text = "\n".join((f"left behind by the tests, {len(found)} in all:", *lines))
         report = pytest.CollectReport("what the tests leave behind", "failed", text, [])
         reporter.stats.setdefault("error", []).append(report)
         session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED
