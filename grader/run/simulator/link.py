@@ -244,6 +244,9 @@ class StudentLink:
             seen, now = usage.look(self._pid), time.monotonic()
             self._count_sleep(seen, before)
             before = now
+            if seen.state in HAS_ENDED and not poll.poll(0):  # a descendant holds the link
+                self.silence = "gone"
+                return False
             if seen.cpu_s - used_s > self._stall_cpu_s:
                 self.silence = "stalled"
                 return False
@@ -253,9 +256,6 @@ class StudentLink:
             if is_too_long or self._asleep_s > patience.all_asleep_s:
                 if seen.is_stopped:
                     self.silence = "stopped"
-                    return False
-                if seen.state in HAS_ENDED:  # a descendant holds the link
-                    self.silence = "gone"
                     return False
                 raise Refused(ELSEWHERE)
         return not self._is_slow()

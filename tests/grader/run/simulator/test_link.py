@@ -168,6 +168,16 @@ def test_a_process_that_somebody_has_stopped_is_not_waited_for(
 NAPS = "import time\nwhile True:\n time.sleep(0.3)\n for _ in range(100_000): pass"
 
 
+def test_a_process_that_has_ended_is_gone_although_a_descendant_holds_the_link(
+    ends: tuple[socket.socket, socket.socket],
+) -> None:
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
+        heard = StudentLink(ends[0], process.pid, Patience(asleep_s=1000.0))
+        assert heard.receive() is None
+    assert heard.silence == "gone"
+
+
 def test_sleeping_is_added_up_however_often_it_is_interrupted(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
