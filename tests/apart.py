@@ -10,6 +10,7 @@ import fcntl
 import os
 import re
 import shutil
+import signal
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -43,6 +44,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
     if not is_worker(config):
         config.pluginmanager.register(Leftovers(), "leftovers")
+    # `nohup make test &` has them ignored, and so would all that is started here
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     # held among all of this user's sessions, and then among all runs of this one
     number = _open.enter_context(domain.reserve_domain())
     if not is_worker(config):

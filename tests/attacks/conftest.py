@@ -17,7 +17,7 @@ from tests import once
 from tests.attacks import container, observing
 
 #: So many attacks share a container, and the grader in it.
-TOGETHER = 16
+TOGETHER = 24
 #: What decides how they go, beside the tree.
 SOURCES = hashlib.sha256(
     b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.rglob("*.py")))

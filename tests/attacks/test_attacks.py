@@ -44,6 +44,11 @@ TRIED = {
     "landlock-root": AS_ROOT_BY_LANDLOCK,
     "limits-user": AT_LIMITS,
 }
+#: What the grader waits for as long as it would for anybody.
+SLOW = {
+    "outlives_main": "half a minute of sleep, which is waited for at every level",
+    "stops_itself": "waits as long as for `stops_all`, and dies of the same",
+}
 #: What is wrong wherever it happens, whatever the level lets through.
 NEVER = ("the grader failed", "the grading never ended", "the next submission", "an escape on")
 
@@ -68,14 +73,16 @@ def chosen() -> Iterator[Any]:
         if level != BEST:
             marks.append(pytest.mark.more("the same attack on another kind of machine"))
             names = names[: EXAMPLES or None]
-        yield from (pytest.param(level, name, marks=marks) for name in names)
+        for name in names:
+            slow = (pytest.mark.more(SLOW[name]),) if name in SLOW else ()
+            yield pytest.param(level, name, marks=(*marks, *slow))
 
 
 GRADINGS = list(chosen())
 
 
 @pytest.mark.parametrize(("level", "attack"), GRADINGS)
-def test_it_does_no_harm(graded: Graded, level: str, attack: str) -> None:
+def test_it_does_no_harm_and_earns_no_points(graded: Graded, level: str, attack: str) -> None:
     outcome = graded(level, attack)
     harm = outcome.harm
     if levels.LEVELS[level].grader not in ATTACKS[attack].stopped_by:
@@ -84,11 +91,6 @@ def test_it_does_no_harm(graded: Graded, level: str, attack: str) -> None:
     assert outcome.code in ATTACKS[attack].codes, outcome.told
     if expected := ATTACKS[attack].outcome:
         assert outcome.told["outcome"] == expected, outcome.told
-
-
-@pytest.mark.parametrize(("level", "attack"), GRADINGS)
-def test_it_earns_no_points(graded: Graded, level: str, attack: str) -> None:
-    outcome = graded(level, attack)
     assert (outcome.score or 0) <= ATTACKS[attack].most, outcome.told
     assert not set(outcome.passed) & set(ATTACKS[attack].lacks), outcome.told
 
