@@ -11,6 +11,7 @@ import os
 import re
 import shutil
 import signal
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -44,6 +45,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
     if not is_worker(config):
         config.pluginmanager.register(Leftovers(), "leftovers")
+    # hundreds of processes import this checkout: each would compile it for itself
+    sys.dont_write_bytecode = False
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     # `nohup make test &` has them ignored, and so would all that is started here
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
