@@ -348,7 +348,7 @@ class Workspace:
         told.write_text("")
         wanted.write_text(json.dumps(only))
         shutil.rmtree(self.tmp, ignore_errors=True)
-        self.tmp.mkdir()
+        self.tmp.mkdir(exist_ok=True)  # a killed test may leave what cannot be removed
         python = str(self.tree / ".venv" / "bin" / "python")
         command = [python, __file__, "pytest", str(told), str(wanted), *words]
         if self.is_boxed:
