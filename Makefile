@@ -47,7 +47,7 @@ tools:
 
 # of the machine, not of .venv: see tests/needs.py
 needs: tools
-	@$(BIN)/python tests/needs.py | sh -ex
+	@$(BIN)/python -m tests.needs | sh -ex
 
 # a worker for each core, modules in one piece; who has nothing left takes from the end of the other
 PYTEST = -m pytest --numprocesses=logical --dist=worksteal

@@ -19,6 +19,9 @@ if [ -n "${_ROS_WHEELS_BOOTSTRAP_COMPLETE:-}" ]; then
     unset LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 fi
 
+# what is installed, and what builds it, is compiled once
+unset PYTHONDONTWRITEBYTECODE
+
 # one at a time: two `make` in one folder wait for each other
 exec 9<Makefile
 flock 9

@@ -4,7 +4,7 @@ On a newcomer's laptop such tests are left out, and the last lines of the call s
 Where the environment variable CI is set, what is missing is a failure. As a program this prints the
 commands for what is missing, for a shell:
 
-    .venv/bin/python tests/needs.py | sh -ex
+    .venv/bin/python -m tests.needs | sh -ex
 """
 
 from __future__ import annotations
@@ -13,10 +13,13 @@ import os
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from tests.attacks import container
 
 ROSLIBJS = Path("tests", "turtlesim_py", "live", "roslibjs")
 AS_ROOT = os.geteuid() == 0
@@ -33,9 +36,20 @@ def _apt(*packages: str) -> str:
     return f"{sudo}apt-get update -q && {sudo}apt-get install -qy {' '.join(packages)}"
 
 
+@cache
+def _can_contain() -> bool:
+    try:
+        return container.run(container.PROBE) == "works"
+    except container.NoContainer:
+        return False
+
+
+#: For what no line of a shell can install.
+BY_ROOT = "sudo make test"
 #: Name -> whether it is there, and what installs it; each after what it needs itself.
 NEEDS: dict[str, tuple[Callable[[], bool], str]] = {
     "chromium": (_there(*BROWSERS), _apt("chromium")),
+    "container": (_can_contain, BY_ROOT),
     "git": (_there("git"), _apt("git")),
     "node": (_there("node"), _apt("nodejs", "npm")),
     "pdftotext": (_there("pdftotext"), _apt("poppler-utils")),
@@ -44,7 +58,7 @@ NEEDS: dict[str, tuple[Callable[[], bool], str]] = {
         (Path(__file__).parents[1] / ROSLIBJS / "node_modules" / "roslib").is_dir,
         f"npm install --prefix {ROSLIBJS} --no-audit --no-fund --no-package-lock",
     ),
-    "root": (lambda: AS_ROOT, "sudo make test"),
+    "root": (lambda: AS_ROOT, BY_ROOT),
     "shellcheck": (_there("shellcheck"), _apt("shellcheck")),
 }
 
@@ -95,5 +109,5 @@ def pytest_terminal_summary(terminalreporter: Any) -> Iterator[None]:
 
 
 if __name__ == "__main__":
-    # root is not to be had by a line of a shell
-    print(*(NEEDS[name][1] for name in missing(NEEDS) if name != "root"), sep="\n")
+    commands = (NEEDS[name][1] for name in missing(NEEDS))
+    print(*(command for command in commands if command != BY_ROOT), sep="\n")

@@ -28,8 +28,12 @@ from tests.attacks.attacks import (
 )
 from tests.attacks.conftest import Graded, Told
 from tests.attacks.handed_in import SUBMISSIONS
+from tests.needs import needs
 
-pytestmark = pytest.mark.timeout(900)  # the first waits for all that share its container
+pytestmark = [
+    pytest.mark.timeout(900),  # the first waits for all that share its container
+    needs("container"),
+]
 
 BEST = "namespaces-user"
 EXAMPLES = int(os.environ.get("EXAMPLES") or 0)
