@@ -19,6 +19,7 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.resources import files
 from itertools import count
@@ -247,6 +248,19 @@ def _ours() -> Mapping[str, Path]:
 
 def _entry_points() -> Mapping[str, list[EntryPoint]]:
     """By name; a distribution that is found twice on the path counts once."""
+    # an installation changes the folder; reading all that is installed takes longer than the rest
+    return _entry_points_of(tuple((folder, _changed_ns(folder)) for folder in sys.path))
+
+
+def _changed_ns(folder: str) -> int:
+    try:
+        return os.stat(folder or ".").st_mtime_ns
+    except OSError:
+        return 0
+
+
+@lru_cache(maxsize=2)
+def _entry_points_of(_path: tuple[tuple[str, int], ...]) -> Mapping[str, list[EntryPoint]]:
     found: dict[str, dict[str, EntryPoint]] = {}
     for point in entry_points(group=GROUP):
         found.setdefault(point.name, {}).setdefault(_told(point), point)

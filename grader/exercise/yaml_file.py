@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Iterable, Iterator, Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -65,10 +67,7 @@ def read_yaml(path: Path) -> YamlFile:
     raw = path.read_bytes()
     try:
         text = raw.decode("utf-8-sig")
-        loader = yaml.SafeLoader(text)
-        root = loader.get_single_node()
-        lines = dict(_lines(root, ())) if root is not None else {}
-        data = loader.construct_document(root) if root is not None else None
+        data, lines = deepcopy(_parsed(text))
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise ExerciseError(
@@ -92,6 +91,17 @@ def read_yaml(path: Path) -> YamlFile:
     except ExerciseError as error:
         raise ExerciseError(joined([path.name, error.message], ", ")) from None
     return YamlFile(path.name, data, lines)
+
+
+@lru_cache(maxsize=16)  # whoever judges a class reads the same rubric for each of them
+def _parsed(text: str) -> tuple[Any, dict[Keys, int]]:
+    """The data, and where its keys stand."""
+    loader = yaml.SafeLoader(text)
+    root = loader.get_single_node()
+    if root is None:
+        return None, {}
+    lines = dict(_lines(root, ()))  # finds keys that stand there twice
+    return loader.construct_document(root), lines
 
 
 def _lines(node: yaml.Node, above: Keys) -> Iterator[tuple[Keys, int]]:
