@@ -16,18 +16,21 @@ LEAVING = {
     "process": "import os; os.posix_spawn('/bin/sleep', ['sleep', '9999'], os.environ)",
     "file": "import tempfile; tempfile.mkdtemp(prefix='left-')",
     "shared memory": f"open({OWN!r}, 'w').close()",
-    "": "import tempfile; tempfile.TemporaryDirectory().cleanup()",
 }
+CLEAN = "import tempfile; tempfile.TemporaryDirectory().cleanup()"
 
 
-@pytest.mark.parametrize("kind", LEAVING)
-def test_what_a_test_leaves_behind_fails_the_session(tmp_path, kind):
-    (tmp_path / "test_it.py").write_text(f"def test_it():\n    {LEAVING[kind]}\n")
-    command = [sys.executable, "-m", "pytest", "-p", "tests.apart", "-n", "1", "-q"]
+@pytest.mark.parametrize("kinds", [(), tuple(LEAVING)], ids=["nothing", "all kinds"])
+def test_what_a_test_leaves_behind_fails_the_session(tmp_path, kinds):
+    does = [LEAVING[kind] for kind in kinds] or [CLEAN]
+    tests = (f"def test_{number}():\n    {line}\n" for number, line in enumerate(does))
+    (tmp_path / "test_it.py").write_text("".join(tests))
+    command = [sys.executable, "-m", "pytest", "-p", "xdist", "-p", "tests.apart", "-n", "1", "-q"]
     try:
         done = subprocess.run(
             [*command, "-c", "/dev/null", f"--basetemp={tmp_path / 'its'}", str(tmp_path)],
             cwd=ROOT,
+            env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
             capture_output=True,
             text=True,
             check=False,
@@ -36,8 +39,6 @@ def test_what_a_test_leaves_behind_fails_the_session(tmp_path, kind):
         Path(OWN).unlink(missing_ok=True)
     # others may leave shared memory meanwhile
     told = [line for line in done.stdout.splitlines() if "/dev/shm/" not in line or OWN in line]
-    found = {
-        each for each in filter(None, LEAVING) if any(map(re.compile(f"{each} .*").match, told))
-    }
-    assert found == ({kind} if kind else set()), done.stdout + done.stderr
-    assert done.returncode == 1 or not kind
+    found = {each for each in LEAVING if any(map(re.compile(f"{each} .*").match, told))}
+    assert found == {*kinds}, done.stdout + done.stderr
+    assert done.returncode == 1 or not kinds

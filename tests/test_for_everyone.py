@@ -35,7 +35,7 @@ FAULT = verdict("stops", "failed", 0, evidence=[evidence("too far", 30.0, run=1)
 
 
 def report_of_turtles(folder) -> str:
-    good = drive(Spiral())
+    good = drive(Spiral(), 700)
     verdicts = (verdict("starts", evidence=[evidence("it starts", 0.16)]), FAULT)
     return html.render(
         Report.read(samples.graded(folder, good, *verdicts, varied=(good, good), output="one"))
