@@ -51,10 +51,12 @@ def start(*words: str | Path) -> subprocess.Popen[str]:
 
 
 def batch(*words: str | Path) -> tuple[int, str]:
-    """The verb in this process, its workers in theirs; the exit code, and what it said."""
+    """The verb in this process, its worker in its own; the exit code, and what it said."""
     said = io.StringIO()
+    # a start of a worker takes longer than what most of these calls leave it to do
+    jobs = () if "--merge" in words else ("--jobs", "1")
     with redirect_stdout(said), redirect_stderr(said):
-        code = main(["batch", *map(str, words)])
+        code = main(["batch", *map(str, words), *jobs])
     return code, said.getvalue()
 
 

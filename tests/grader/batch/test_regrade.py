@@ -157,6 +157,17 @@ def found(whole, changed) -> Regrade:
         return judging.regrade(whole, changed, 1)
 
 
+@pytest.fixture(scope="module")
+def in_force(whole, changed, tmp_path_factory) -> Path:
+    """The class with the changed rubric applied; nobody changes it further."""
+    out = tmp_path_factory.mktemp("applied") / "out"
+    shutil.copytree(whole, out)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setattr(pool, "work", work)
+        assert applied(out, changed) == 0
+    return out
+
+
 def tree(folder: Path) -> dict[str, bytes]:
     paths = (path for path in folder.rglob("*") if path.is_file())
     return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
@@ -337,10 +348,9 @@ def applied(out: Path, changed: str) -> int:
 
 
 def test_applied_everybody_has_the_new_result_and_the_old_one_is_beside(
-    out, changed, expected, in_process
+    whole, in_force, changed, expected
 ):
-    before, exercise = tree(out), load_exercise(changed)
-    assert applied(out, changed) == 0
+    before, out, exercise = tree(whole), in_force, load_exercise(changed)
     for entry in entries(out):
         assert entry.exercise_sha256 == exercise.sha256
         assert entry.max_score == 100
@@ -356,25 +366,22 @@ def test_applied_everybody_has_the_new_result_and_the_old_one_is_beside(
         assert kept[name] == before[name]
 
 
-def test_who_has_no_result_stays_so(out, changed, in_process):
-    applied(out, changed)
-    states = {entry.id: (entry.state, entry.score, entry.message) for entry in entries(out)}
+def test_who_has_no_result_stays_so(in_force):
+    states = {entry.id: (entry.state, entry.score, entry.message) for entry in entries(in_force)}
     assert states["nobody"] == ("nothing", 0.0, NOTHING)
     assert states["unlucky"] == ("failed", None, "A disk was full.")
 
 
-def test_what_is_applied_is_applied_once(out, changed, in_process, capsys):
-    applied(out, changed)
-    capsys.readouterr()
-    call(out, changed, jobs=1)
+def test_what_is_applied_is_applied_once(in_force, changed, in_process, tmp_path, capsys):
+    call(in_force, changed, jobs=1, into=tmp_path)
     assert capsys.readouterr().out.startswith("None of 6 changes.")
 
 
 def test_a_second_regrade_is_kept_beside_the_first_and_the_way_back_leads_to_the_same_results(
-    out, original, changed, in_process
+    whole, in_force, original, in_process, tmp_path
 ):
-    before = {entry.id: entry.result for entry in entries(out)}
-    applied(out, changed)
+    before = {entry.id: entry.result for entry in entries(whole)}
+    out = Path(shutil.copytree(in_force, tmp_path / "out"))
     applied(out, original)
     assert {entry.id: entry.result for entry in entries(out)} == before
     assert names(out / "before") == ["1", "2"]

@@ -8,8 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 import yaml
 
+from grader.cli import main
 from grader.exercise.loading import load_exercise
 from grader.testing.solutions import read_solutions
 from tests.grader.testing import exercises
@@ -17,19 +19,31 @@ from tests.grader.testing import exercises
 ROOT = Path(__file__).parents[3]
 
 
-def check(folder, *more):
-    return subprocess.run(
-        [sys.executable, "-m", "grader", "check-exercise", folder.name, *map(str, more)],
+@pytest.fixture
+def check(monkeypatch, capsys):
+    """Calls it in this process, in the exercise's parent folder."""
+
+    def called(folder):
+        monkeypatch.chdir(folder.parent)
+        monkeypatch.setenv("COLUMNS", "100")
+        code = main(["check-exercise", folder.name])
+        return code, *capsys.readouterr()
+
+    return called
+
+
+def test_an_exercise_in_order_gets_a_table_and_exit_code_0(tmp_path):
+    folder = exercises.write(tmp_path / "ahead")
+    done = subprocess.run(
+        [
+            *(sys.executable, "-m", "grader", "check-exercise", folder.name),
+            *("--json", "it.json", "--markdown", "it.md"),
+        ],
         cwd=folder.parent,
         env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"},
         capture_output=True,
         text=True,
     )
-
-
-def test_an_exercise_in_order_gets_a_table_and_exit_code_0(tmp_path):
-    folder = exercises.write(tmp_path / "ahead")
-    done = check(folder, "--json", tmp_path / "it.json", "--markdown", tmp_path / "it.md")
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.endswith("All is fine: 2 checks, 2 mutants, each caught.\n")
     assert sorted(line.split()[0] for line in done.stderr.splitlines()) == [
@@ -40,24 +54,24 @@ def test_an_exercise_in_order_gets_a_table_and_exit_code_0(tmp_path):
     assert not list(folder.rglob("*.pyc"))
 
 
-def test_what_is_to_mend_is_named_with_exit_code_1(tmp_path):
+def test_what_is_to_mend_is_named_with_exit_code_1(tmp_path, check):
     mutants = {"right": {"solution": "silent.py"}, "mutants": {"right": {"file": "solution.py"}}}
-    done = check(exercises.write(tmp_path / "ahead", mutants=mutants))
-    assert done.returncode == 1
+    code, said, _ = check(exercises.write(tmp_path / "ahead", mutants=mutants))
+    assert code == 1
     for words in (
         "To mend: commands: a right solution loses points: 0 commands came. (on solution)",
         "To mend: nobody catches a mutant (on right)",
         "To mend: far: never fails on any mutant",
     ):
-        assert words in done.stdout
+        assert words in said
 
 
-def test_what_cannot_be_used_ends_with_exit_code_2(tmp_path):
+def test_what_cannot_be_used_ends_with_exit_code_2(tmp_path, check):
     folder = exercises.write(tmp_path / "ahead", checks="def f(:\n")
-    done = check(folder)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "checks.py, line 1: SyntaxError" in done.stderr
-    assert "Traceback" not in done.stderr
+    code, said, messages = check(folder)
+    assert (code, said) == (2, "")
+    assert "checks.py, line 1: SyntaxError" in messages
+    assert "Traceback" not in messages
 
 
 def test_the_tables_in_the_docs_are_of_the_solutions_that_there_are():
