@@ -204,6 +204,7 @@ def inside(module: str, name: str) -> bool:
     return f"{module}.".startswith(f"{name}.")
 
 
+@cache
 def rule(module: str) -> str | None:
     return max((name for name in MAY_IMPORT if inside(module, name)), key=len, default=None)
 

@@ -62,6 +62,7 @@ def test_the_same_files_are_installed_as_by_colcon(name, tmp_path):
     assert {each.name for each in setup.scripts} == {path.name for path in programs.glob("*")}
 
 
+@pytest.mark.more("builds with colcon; what is told is in the tests of what is looked at")
 def test_what_stops_colcon_is_told(tmp_path):
     package = tmp_path / "package"
     shutil.copytree(REFERENCE, package)

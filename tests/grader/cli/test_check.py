@@ -16,19 +16,30 @@ from tests.grader.testing import exercises
 
 
 @pytest.fixture(scope="module")
-def drawn():
-    return drive(Spiral(), ticks=300)
+def in_no_time():
+    """What a run comes to without one."""
+    drawn = drive(Spiral(), ticks=300)
+    return lambda _, plan, __=None: replace(drawn, start=plan.start)
+
+
+@pytest.fixture(scope="module")
+def run_once(in_no_time, tmp_path_factory):
+    """The folder in which alice.py was graded; nobody changes it."""
+    folder = tmp_path_factory.mktemp("graded")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(grading.RUNNERS, "virtual", in_no_time)
+        patch.chdir(folder)
+        (folder / "alice.py").write_text("import turtlesim.msg")
+        assert main(["run", "alice.py"]) == 0
+    return folder
 
 
 @pytest.fixture
-def graded(tmp_path, monkeypatch, drawn):
+def graded(tmp_path, monkeypatch, in_no_time, run_once):
     """The folder of a result, as `grader run` leaves it; we are in the folder above."""
-    monkeypatch.setitem(
-        grading.RUNNERS, "virtual", lambda _, plan, __=None: replace(drawn, start=plan.start)
-    )
+    monkeypatch.setitem(grading.RUNNERS, "virtual", in_no_time)
+    shutil.copytree(run_once, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "alice.py").write_text("import turtlesim.msg")
-    assert main(["run", "alice.py"]) == 0
     return tmp_path / "graded" / "alice.py"
 
 

@@ -23,13 +23,19 @@ EXERCISE = "exercise: turtlesim_challenge\nvaried_runs:\n  count: 0\n"
 more = pytest.mark.more("a wide screen; the narrow one is in `make test`")
 
 
+@pytest.fixture(scope="module")
+def browser():
+    with open_browser() as opened:
+        yield opened
+
+
 @pytest.mark.parametrize("width", [375, pytest.param(1280, marks=more)])
-def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_path, width):
+def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_path, width, browser):
     (tmp_path / "one_run.yaml").write_text(EXERCISE)
     out = tmp_path / "out"
     words = (str(QUICK), "--live", "--speed", "free", "--out", str(out))
     given = ("run", *words, "--exercise", "one_run.yaml", "--lang", "en")
-    with Program("grader", *given, cwd=tmp_path) as program, open_browser() as browser:
+    with Program("grader", *given, cwd=tmp_path) as program:
         address = re.search(r"http://\S+", program.wait_for_line("to be seen at"))[0]
         page = browser.new_page(viewport={"width": width, "height": 900}, locale="fr-FR")
         page.set_default_timeout(DEADLINE_S * 1000)
@@ -53,13 +59,14 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert obstacles(page) == []
         assert errors == []
+        page.close()
 
 
-def test_the_page_speaks_the_language_of_the_call_as_the_verdicts_do(tmp_path):
+def test_the_page_speaks_the_language_of_the_call_as_the_verdicts_do(tmp_path, browser):
     (tmp_path / "one_run.yaml").write_text(EXERCISE)
     words = (str(QUICK), "--live", "--speed", "free", "--lang", "fr", "--out", "out")
     given = ("run", *words, "--exercise", "one_run.yaml")
-    with Program("grader", *given, cwd=tmp_path) as program, open_browser() as browser:
+    with Program("grader", *given, cwd=tmp_path) as program:
         address = re.search(r"http://\S+", program.wait_for_line("token="))[0]
         page = browser.new_page(locale="zh-CN")
         page.set_default_timeout(DEADLINE_S * 1000)
@@ -73,3 +80,4 @@ def test_the_page_speaks_the_language_of_the_call_as_the_verdicts_do(tmp_path):
         page.wait_for_selector("#state:has-text('页面上的内容会保留。')")
         assert page.inner_text("#grading-title") == "检查项的结果"
         assert english(page, "zh", of_the_report) == []
+        page.close()
