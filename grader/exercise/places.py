@@ -254,7 +254,7 @@ def _entry_points() -> Mapping[str, list[EntryPoint]]:
 
 def _changed_ns(folder: str) -> int:
     try:
-        return os.stat(folder or ".").st_mtime_ns
+        return Path(folder).stat().st_mtime_ns
     except OSError:
         return 0
 

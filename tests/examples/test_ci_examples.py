@@ -185,9 +185,11 @@ def program(path: Path, script: str) -> None:
 
 @pytest.fixture(scope="module")
 def warm() -> Iterator[str]:
-    with tempfile.TemporaryDirectory() as folder:
-        with serving(Path(folder), {"PATH": os.environ["PATH"], "HOME": folder}) as line:
-            yield line
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        serving(Path(folder), {"PATH": os.environ["PATH"], "HOME": folder}) as line,
+    ):
+        yield line
 
 
 @pytest.fixture

@@ -62,13 +62,19 @@ def test_the_same_files_are_installed_as_by_colcon(name, tmp_path):
     assert {each.name for each in setup.scripts} == {path.name for path in programs.glob("*")}
 
 
-@pytest.mark.more("builds with colcon; what is told is in the tests of what is looked at")
-def test_what_stops_colcon_is_told(tmp_path):
-    package = tmp_path / "package"
-    shutil.copytree(REFERENCE, package)
-    (package / "resource" / "walker_description").unlink()
-    setup = looked_at(package).setup
+def without_its_marker(folder: Path) -> Path:
+    shutil.copytree(REFERENCE, folder)
+    (folder / "resource" / "walker_description").unlink()
+    return folder
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path):
+    setup = looked_at(without_its_marker(tmp_path / "package")).setup
     assert setup is not None and setup.absent == ("resource/walker_description",)
-    build = built(package, tmp_path / "workspace")
+
+
+@pytest.mark.more("builds with colcon; what is not there is told without it")
+def test_it_stops_colcon(tmp_path):
+    build = built(without_its_marker(tmp_path / "package"), tmp_path / "workspace")
     assert build.returncode != 0
     assert "resource/walker_description" in build.stdout + build.stderr
