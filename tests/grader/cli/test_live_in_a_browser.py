@@ -62,6 +62,7 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
         page.close()
 
 
+@pytest.mark.more("what the page and the checks say in each language is told without a run")
 def test_the_page_speaks_the_language_of_the_call_as_the_verdicts_do(tmp_path, browser):
     (tmp_path / "one_run.yaml").write_text(EXERCISE)
     words = (str(QUICK), "--live", "--speed", "free", "--lang", "fr", "--out", "out")
