@@ -17,13 +17,15 @@ from pathlib import Path
 import psutil
 import pytest
 
+from grader.run.processes.watched import await_ends
+
 ROOT = Path(__file__).parents[2]
 LACKING = Path(__file__).with_name("lacking.py")
 #: One run that ends soon, in real time as well.
 SHORT = """
 exercise: turtlesim_challenge
 points: {moves: 100}
-limits: {first_motion_s: 8, rest_s: 0.5, total_s: 20}
+limits: {first_motion_s: 8, rest_s: 0.2, total_s: 20}
 varied_runs: {count: 0}
 """
 DRIVES = """
@@ -35,7 +37,7 @@ node = rclpy.create_node("driver")
 publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
 twist = Twist()
 twist.linear.x = 2.0
-for _ in range(20):
+for _ in range(5):
     publisher.publish(twist)
     time.sleep(0.05)
 """
@@ -140,26 +142,18 @@ for more in ({}, {"start_new_session": True}):
 time.sleep(1000)
 """
 ENDS_A_FAMILY = f"""
-import os, sys, time
+import os, sys
 import psutil
 from grader.run.processes.family import start_student
+from grader.run.processes.watched import await_ends
 student = start_student([sys.executable, "-c", {HAS_A_FAMILY!r}], os.environ)
 while bytes(student._head).count(b"\\n") < 2:
     student.wait(0.02)
 family = [psutil.Process(int(pid)) for pid in student.output().split()]
 assert all(process.is_running() for process in family)
 student.end(gently=sys.argv[1] == "gently")
-def is_over(process):
-    # whoever has adopted it may not ask how it ended: then a zombie is all that there is
-    try:
-        return process.status() == psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return True
-deadline = time.monotonic() + 20
-while not all(map(is_over, family)) and time.monotonic() < deadline:
-    student.wait(0.02)
-over = [is_over(process) for process in family]
-print(type(student).__name__, over.count(True), over.count(False), student.poll() is not None)
+left = await_ends(family, 20.0)
+print(type(student).__name__, len(family), len(left), student.poll() is not None)
 """
 
 
@@ -186,4 +180,4 @@ with stage.open_stage() as place:
     done = elsewhere.run("-c", code)
     assert done.stdout, done.stderr
     with suppress(psutil.NoSuchProcess):
-        psutil.Process(int(done.stdout)).wait(timeout=20)
+        assert not await_ends([psutil.Process(int(done.stdout))], 20.0)

@@ -22,7 +22,7 @@ from grader.language.phrase import say
 from grader.run.processes import supervisor
 from grader.run.processes.appetite import Appetite
 from grader.run.processes.sandbox.confinement import OWN
-from grader.run.processes.watched import Watched
+from grader.run.processes.watched import Watched, await_ends
 from grader.run.processes.zygote import Warm
 
 #: How long a process may take to come up [s]; only a machine in distress takes so long.
@@ -77,7 +77,7 @@ class Unsupervised(Watched):
         for process in family:
             with suppress(psutil.Error):
                 process.kill()  # not if another has its number by now
-        psutil.wait_procs(family, timeout=patience_s)
+        await_ends(family, patience_s)
 
 
 class Student(Watched):

@@ -6,8 +6,9 @@ import ctypes
 import os
 import signal
 import threading
+import time
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import FrameType
@@ -86,6 +87,24 @@ def _all_processes(*others: int) -> list[int]:
                 if entry.stat().st_uid in users:
                     found.append(int(entry.name))
     return found
+
+
+def await_ends(processes: Iterable[psutil.Process], timeout_s: float) -> list[psutil.Process]:
+    """Wait for the ends of processes that are not our children; those that still run then.
+
+    Whoever has adopted one may be slow to ask how it ended, as the first process of a container
+    often is. So a zombie has ended.
+    """
+    deadline = time.monotonic() + timeout_s
+    while (left := [each for each in processes if _runs(each)]) and time.monotonic() < deadline:
+        time.sleep(0.005)
+    return left
+
+
+def _runs(process: psutil.Process) -> bool:
+    with suppress(psutil.NoSuchProcess):
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    return False
 
 
 class Watched:
@@ -215,7 +234,7 @@ class Watched:
                 if self._owns(pid):
                     family.append(process)
                     process.kill()
-        psutil.wait_procs(family, timeout=patience_s)
+        await_ends(family, patience_s)
 
     def _owns(self, pid: int) -> bool:
         with suppress(OSError, psutil.Error):

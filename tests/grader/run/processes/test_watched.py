@@ -15,6 +15,7 @@ from grader import scratch, system
 from grader.run.processes import family, linux
 from grader.run.processes.family import Student
 from grader.run.processes.supervisor import Supervisor
+from grader.run.processes.watched import await_ends
 from tests.children import in_child
 
 ROOT = Path(__file__).parents[4]
@@ -125,7 +126,7 @@ def test_a_supervisor_that_is_killed_is_the_submission_s_end() -> None:
     student._process.kill()
     assert student.wait(20.0) == -signal.SIGKILL
     student.end()
-    assert not psutil.wait_procs([child], timeout=20)[1]
+    assert not await_ends([child], 20.0)
 
 
 def test_a_simulator_cannot_be_seen_by_a_submission_with_a_namespace_of_its_own() -> None:
@@ -153,7 +154,7 @@ def test_a_killed_grader_takes_its_submission_along(prefix: tuple[str, ...]) -> 
     family = psutil.Process(grader.pid).children(recursive=True)
     grader.kill()
     grader.communicate()
-    assert not psutil.wait_procs(family, timeout=20)[1]
+    assert not await_ends(family, 20.0)
     assert not sleeper(seconds)
     with scratch.make_folder():  # the next run
         assert not folder.exists()
@@ -196,6 +197,13 @@ def _walkers_are_ended() -> None:
 @pytest.mark.skipif(not system.has_supervision(), reason="nobody can adopt orphans here")
 def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
     in_child(_walkers_are_ended)
+
+
+def test_a_process_whose_end_nobody_has_asked_for_has_ended() -> None:
+    # a long patience: it ends with the process and not with that
+    with subprocess.Popen(["true"]) as child:
+        os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
+        assert not await_ends([psutil.Process(child.pid)], 1000.0)
 
 
 @pytest.mark.skipif(not system.has_proc(), reason="descriptors are not told")

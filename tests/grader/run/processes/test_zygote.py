@@ -16,7 +16,7 @@ import pytest
 from grader.errors import GraderFailure
 from grader.run.processes import forking, isolation
 from grader.run.processes.family import Student
-from grader.run.processes.watched import Watched
+from grader.run.processes.watched import Watched, await_ends
 from grader.run.processes.zygote import Warm, Zygote, ZygoteLost, shadows
 
 ROOT = Path(__file__).parents[4]
@@ -122,10 +122,10 @@ def test_nothing_of_the_zygote_or_of_the_grader_is_open_in_a_child(
     kind = Student if supervised else Watched
     process = kind(["-c", code], ENV, ROOT, (), (), Warm(zygote, {}))
     assert process.wait(20.0) == 0
+    process.end()
     inside = process.output().split()
     assert [name.partition(":")[0] for name in inside] == ["/dev/null", "pipe", "pipe"]
     assert inside[1] == inside[2]
-    process.end()
 
 
 def test_descriptors_have_the_numbers_that_the_command_knows(zygote: Zygote) -> None:
@@ -179,8 +179,8 @@ def test_limits_are_those_that_the_grader_has_now(zygote: Zygote) -> None:
         assert student.wait(20.0) == 0
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-    assert student.output() == f"{soft - 7}\n"
     student.end()
+    assert student.output() == f"{soft - 7}\n"
 
 
 #: Forks without starting a program, so that its environment is only what it was born with.
@@ -217,7 +217,7 @@ def test_a_hidden_descendant_ends_with_the_run(namespace: Zygote, end: str) -> N
         student._process.kill()
         assert student.wait(20.0) == -signal.SIGKILL
     student.end()
-    assert not psutil.wait_procs(family, timeout=20)[1]
+    assert not await_ends(family, 20.0)
 
 
 def environment(process: psutil.Process) -> bytes:
@@ -241,7 +241,7 @@ GRADER = f"""
 import sys, threading, time
 sys.path.insert(0, {str(ROOT)!r})
 from grader.run.processes.family import Student
-from grader.run.processes.watched import Watched
+from grader.run.processes.watched import Watched, await_ends
 from grader.run.processes.zygote import Warm, Zygote
 made = []
 thread = threading.Thread(target=lambda: made.append(Zygote({COMMAND!r}, {ENV!r})))
@@ -270,7 +270,7 @@ def test_a_killed_grader_takes_zygotes_and_their_children_along(prefix: tuple[st
     assert len(family) >= 4  # the zygote, the supervisor, the command, the other one
     grader.kill()
     grader.communicate()
-    assert not psutil.wait_procs(family, timeout=20)[1]
+    assert not await_ends(family, 20.0)
 
 
 def test_a_zygote_outlives_the_thread_that_has_started_it() -> None:
@@ -294,14 +294,14 @@ def test_a_killed_zygote_takes_its_children_along_and_gives_no_more() -> None:
     family = psutil.Process(zygote.pid).children(recursive=True)
     os.kill(zygote.pid, signal.SIGKILL)
     assert [process.wait(20.0) for process in each] == [-signal.SIGKILL] * 2
-    assert not psutil.wait_procs(family, timeout=20)[1]
+    assert not await_ends(family, 20.0)
     with pytest.raises(ZygoteLost):
         zygote.fork(["-c", ""], ENV, ROOT, (), {})
     student = python("print('started')", Warm(zygote, {}))
     assert student.wait(20.0) == 0
-    assert student.output() == "started\n"
     for process in (*each, student):
         process.end()
+    assert student.output() == "started\n"
     zygote.close()
 
 
@@ -343,8 +343,8 @@ def test_what_is_refused_is_started_instead(zygote: Zygote) -> None:
     before = zygote.forks
     student = python("print('started')", Warm(zygote, {"net": nowhere}))
     assert student.wait(20.0) == 0
-    assert student.output() == "started\n"
     student.end()
+    assert student.output() == "started\n"
     with pytest.raises(ZygoteLost, match="OSError"):
         zygote.fork(["-c", ""], ENV, ROOT, (), {"net": nowhere})
     with pytest.raises(ZygoteLost, match="too long"):
