@@ -26,6 +26,8 @@ Progress = Callable[[float], None]
 
 #: A program that used so much of the run's time on a processor has computed rather than waited.
 COMPUTES = 0.5
+#: How long the clock of the run waits for the submission's first node [s].
+FIRST_NODE_S = 8.0
 #: What runs as the simulator's process.
 MODULE = "grader.run.simulator.real_time"
 
@@ -35,12 +37,14 @@ def run(
     plan: Plan,
     progress: Progress | None = None,
     audience: Audience | None = None,
+    first_node_s: float = FIRST_NODE_S,
 ) -> Recording:
     """Run a submission once beside a simulator of its own.
 
     Args:
         progress: called about once a second with the simulated time [s].
         audience: who looks on; at no other speed than this.
+        first_node_s: how long the clock of the run waits for its first node [s].
 
     Raises:
         GraderFailure: the simulator could not be started.
@@ -52,7 +56,7 @@ def run(
         stage.open_stage() as place,
         evidence.open_evidence() as told,
         seats(audience, plan, "real") as seat,
-        start_simulator(MODULE, place, plan, seat=seat) as simulator,
+        start_simulator(MODULE, place, plan, None, str(first_node_s), seat=seat) as simulator,
     ):
         seat.taken()
         simulator.expect("ready")

@@ -172,7 +172,7 @@ from grader.run.plan import Plan
 from grader.scenes.scene import Limits
 plan = Plan(Limits(first_motion_s=1000, rest_s=1000, total_s=1000))
 with stage.open_stage() as place:
-    with simulator_process.start_simulator(real_time.MODULE, place, plan) as simulator:
+    with simulator_process.start_simulator(real_time.MODULE, place, plan, None, '8') as simulator:
         simulator.expect("ready")
         print(simulator._process.pid, flush=True)
         os.kill(os.getpid(), 9)

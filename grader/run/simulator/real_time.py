@@ -1,13 +1,13 @@
 """The simulator's process in a run in real time: a scene that the wall clock moves.
 
-    python -m grader.run.simulator.real_time LINE FILE PLAN SHOWN
+    python -m grader.run.simulator.real_time LINE FILE PLAN FIRST_NODE_S SHOWN
 
 It speaks JSON lines with the grader over LINE (`grader.run.processes.line`): out go `ready`,
 `progress` about once a second, and `done` when the recording lies in FILE; in come `start` when the
 submission's process is started, and `exited` when it has ended. PLAN is a `grader.run.plan.Plan`,
 SHOWN what `grader.run.audience` asks for, or ''.
 The clock of the run starts when the submission has its first node, has ended, or has had
-FIRST_NODE_S for it. If the grader goes away, so does the simulator.
+FIRST_NODE_S for it [s]. If the grader goes away, so does the simulator.
 """
 
 from __future__ import annotations
@@ -33,8 +33,6 @@ from grader.scenes.scene import Hooks, Reason
 
 #: How often the graph is looked at for what the submission publishes, and progress is told [ticks].
 LOOK_TICKS = 63
-#: How long the clock of the run waits for the submission's first node [s].
-FIRST_NODE_S = 8.0
 #: So many times as long as the run's ticks may last they may take, and so much longer [s].
 SLOWEST, OVERTIME_S = 2.0, 10.0
 OVERTIME = "the run was ended: the simulator was kept from ticking at its pace"
@@ -43,8 +41,11 @@ OVERTIME = "the run was ended: the simulator was kept from ticking at its pace"
 class GradedSimulator:
     """A scene at work, told by the grader what becomes of the submission."""
 
-    def __init__(self, link: socket.socket, file: Path, plan: Plan, shown: str = "") -> None:
+    def __init__(
+        self, link: socket.socket, file: Path, plan: Plan, first_node_s: float, shown: str
+    ) -> None:
         self._link = link
+        self._first_node_s = first_node_s
         self._file = file
         self._scene = load_scene(plan.scene)
         self._telling = Telling.of(shown, self._scene.tick_ns)
@@ -131,7 +132,7 @@ class GradedSimulator:
         for line in text.splitlines():
             match json.loads(line)["say"]:
                 case "start":
-                    self._start_at_s = time.monotonic() + FIRST_NODE_S
+                    self._start_at_s = time.monotonic() + self._first_node_s
                 case "exited":
                     self._start()
                     self._simulation.submission_gone()
@@ -142,7 +143,8 @@ def main(argv: list[str]) -> int:
     precautions.take()
     link = take_up(argv[0])
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-    GradedSimulator(link, Path(argv[1]), Plan.from_json(argv[2]), argv[3]).run()
+    plan, first_node_s = Plan.from_json(argv[2]), float(argv[3])
+    GradedSimulator(link, Path(argv[1]), plan, first_node_s, argv[4]).run()
     rclpy.shutdown()
     return 0
 

@@ -16,8 +16,8 @@ from tests import runs
 LIMITS = Limits(first_motion_s=3, rest_s=1, total_s=60)
 #: Of submissions that rest now and then and go on.
 LONGER = Limits(first_motion_s=3, rest_s=5, total_s=60)
-#: Of those that drive until a wall is near: a third of the way.
-NEARER = Start(8.0, 5.5, 0.0)
+#: Of those that drive until a wall is near: a tenth of the way.
+NEARER = Start(9.3, 5.5, 0.0)
 #: Whose limits or patience are shorter: what they do goes on for ever.
 SHORTER = {
     "busy_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),

@@ -166,7 +166,7 @@ def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(
 
 
 def in_real_time(name: str) -> Conduct:
-    return runs.recorded(name, Plan(Limits(3, 1, 20)), time="real").conduct
+    return runs.recorded(name, Plan(Limits(2, 0.2, 20)), time="real").conduct
 
 
 def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:

@@ -21,7 +21,7 @@ NAMES = (
     "styles/rate_with_spin_thread",
     "services/floods_pens",
 )
-PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=10))
+PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=5))
 
 
 @contextmanager

@@ -9,8 +9,7 @@ from grader.submission.opening import open_submission
 from turtlesim_py.world.events import CmdVel, SetPen
 
 TWO_NODES = Path(__file__).parents[2] / "submissions" / "launched" / "spiral"
-#: Long enough for a machine with much else to do.
-PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=8))
+PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=3))
 
 
 def test_both_nodes_run_with_what_the_launch_file_gives_them() -> None:

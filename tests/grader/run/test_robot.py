@@ -18,6 +18,8 @@ from tests import runs
 EXERCISE = load_exercise("state_publisher")
 LOOP = EXERCISE.folder / "right" / "constructor_loop.py"
 REFERENCE = read_solutions(EXERCISE)[0].path
+#: For what does not depend on how long it runs.
+SHORT = replace(EXERCISE, limits=replace(EXERCISE.limits, total_s=1.5))
 TWO_STAMPS = "odom_trans.header.stamp = now.to_msg()"
 
 
@@ -56,7 +58,7 @@ def test_a_recording_is_read_back_as_it_was(recorded, tmp_path):
 
 
 def test_what_is_found_of_its_package_is_read_back_too(tmp_path):
-    recorded = grading.record(REFERENCE, EXERCISE)
+    recorded = grading.record(REFERENCE, SHORT)
     grading.save_recordings(recorded, tmp_path / "recording")
     read = grading.load_recordings(tmp_path / "recording")
     assert read.nominal.package == recorded.nominal.package
@@ -69,7 +71,7 @@ def test_what_a_launch_file_would_have_started_otherwise_is_told(tmp_path):
     shutil.copytree(REFERENCE, package)
     launch = package / "launch" / "walker.launch.py"
     launch.write_text(launch.read_text().replace('output="screen"', 'parameters=[{"r": 1.0}]'))
-    (remark,) = grading.record(package, EXERCISE).nominal.run.flags
+    (remark,) = grading.record(package, SHORT).nominal.run.flags
     assert remark == (
         "launch/walker.launch.py was evaluated and not run: state_publisher was started by itself, "
         "without its parameters (r)"
@@ -77,8 +79,7 @@ def test_what_a_launch_file_would_have_started_otherwise_is_told(tmp_path):
 
 
 def test_the_same_in_real_time():
-    short = replace(EXERCISE, limits=replace(EXERCISE.limits, total_s=4.0))
-    recorded = grading.record(LOOP, short, time="real").nominal
+    recorded = grading.record(LOOP, SHORT, time="real").nominal
     assert recorded.run.time == "real"
     trace = RobotTrace.of(recorded.trace)
     states, own = trace.joint_states, [t for t in trace.transforms if t.publisher == "scene"]
@@ -94,7 +95,7 @@ def test_what_is_added_so_that_it_starts_here_is_not_looked_at(tmp_path):
     setup = (package / "setup.py").read_text()
     found = "packages=__import__('setuptools').find_packages()"
     (package / "setup.py").write_text(setup.replace("packages=[package_name]", found))
-    (script,) = grading.record(package, EXERCISE).nominal.package.setup.scripts
+    (script,) = grading.record(package, SHORT).nominal.package.setup.scripts
     assert script.fault == "setup.py does not list the package walker, so nothing installs it"
 
 
@@ -107,7 +108,7 @@ def test_two_questions_for_the_time_in_one_step_get_two_answers(tmp_path):
     assert text.count(TWO_STAMPS) == 1
     asked = text.replace(TWO_STAMPS, TWO_STAMPS.replace("now", "self.get_clock().now()"))
     (tmp_path / "node.py").write_text(asked)
-    trace = trace_of(grading.record(tmp_path / "node.py", EXERCISE))
+    trace = trace_of(grading.record(tmp_path / "node.py", SHORT))
     told = {state.stamp_ns for state in trace.joint_states}
     apart = [t for t in trace.transforms if t.child == "axis" and t.stamp_ns not in told]
     assert len(apart) == len(trace.joint_states)

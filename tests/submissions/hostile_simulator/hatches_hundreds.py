@@ -1,4 +1,4 @@
-"""Spawns four hundred turtles, resets two hundred times, and drives them all into the wall."""
+"""Spawns hundreds of turtles, resets a hundred times, and drives them all into the wall."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -23,7 +23,7 @@ def call(client, **request):
 
 names = [call(spawn, x=5.0, y=5.0, name=f"t{number}").name for number in range(100)]
 print(sum(map(bool, names)))
-for number in range(200):
+for number in range(100):
     call(reset)
     call(spawn, x=5.0, y=5.0, name=f"r{number}")
 drivers = [node.create_publisher(Twist, f"/t{number}/cmd_vel", 10) for number in range(40)]

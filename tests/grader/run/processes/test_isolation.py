@@ -12,9 +12,9 @@ from grader import scratch
 from grader.run.processes import isolation
 from grader.run.stage import Stage, open_stage
 
-#: Publishes on /x, or says what it hears there; ends without cleaning up, as a killed run does.
+#: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning up, as a killed run does.
 TALK = """
-import os, sys, time
+import os, select, sys, time
 import rclpy
 from std_msgs.msg import String
 rclpy.init()
@@ -30,11 +30,14 @@ while time.monotonic() < until and not heard:
     rclpy.spin_once(node, timeout_sec=0.02)
     if sys.argv[1] == "talker":
         publisher.publish(String(data="hello"))
+        if select.select([0], [], [], 0)[0]:
+            break
 print(*heard, flush=True)
 print(sum("fastrtps" in line or "fastdds" in line
           for line in open("/proc/self/maps") if "/dev/shm" in line), flush=True)
 os.kill(os.getpid(), 9)
 """
+PIPES = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
 
 
 @pytest.fixture(params=["private network", "ROS domain"])
@@ -49,16 +52,16 @@ def kind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str
 
 def talk(stage: Stage, role: str, seconds: float) -> "subprocess.Popen[str]":
     words = [*stage.entry, sys.executable, "-c", TALK, role, str(seconds)]
-    return subprocess.Popen(words, env=dict(stage.env), stdout=subprocess.PIPE, text=True)
+    return subprocess.Popen(words, env=dict(stage.env), text=True, **PIPES)
 
 
 def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind: str) -> None:
     with ExitStack() as stack:
         ours, other = (stack.enter_context(open_stage()) for _ in range(2))
         assert kind in ours.isolation
-        talker = stack.enter_context(talk(ours, "talker", 3.0))
+        talker = stack.enter_context(talk(ours, "talker", 60.0))
         listener = stack.enter_context(talk(ours, "listener", 20.0))
-        stranger = stack.enter_context(talk(other, "listener", 2.0))
+        stranger = stack.enter_context(talk(other, "listener", 1.0))
         assert listener.communicate()[0].split() == ["up", "hello", "0"]
         assert stranger.communicate()[0].split() == ["up", "0"]
         assert talker.communicate()[0].split() == ["up", "0"]

@@ -46,3 +46,10 @@ def test_a_name_that_is_there_is_waited_for_longer_than_one_that_may_be_wrong(
 ) -> None:
     patched(clock, connected_s=8.0)().create_publisher(object, name)
     assert clock.now_s == pytest.approx(waited_s, abs=0.1)
+
+
+def test_names_that_may_be_wrong_are_waited_for_together(clock: types.SimpleNamespace) -> None:
+    node = patched(clock, connected_s=1000.0)()
+    for _ in range(10):
+        node.create_publisher(object, "/turtle/cmd_vel")
+    assert clock.now_s == pytest.approx(4.0, abs=0.1)
