@@ -29,9 +29,9 @@ PATIENCE = Patience(run_cpu_s=20, simulator_cpu_s=20, asleep_s=1.0)
 MOST_POINTS = 20
 
 
-def run(name: str, patience: Patience = PATIENCE) -> Recording:
+def run(name: str, patience: Patience = PATIENCE, limits: Limits = LIMITS) -> Recording:
     """What is recorded of one of them; it is judged, too, and earns next to nothing."""
-    recording = runs.recorded(f"hostile_simulator/{name}", Plan(LIMITS), patience)
+    recording = runs.recorded(f"hostile_simulator/{name}", Plan(limits), patience)
     assert recording.run.time == "virtual"
     alone = replace(CHALLENGE, varied=replace(CHALLENGE.varied, count=0))
     assert grader.judge(Recordings(recording), alone).score <= MOST_POINTS
@@ -86,7 +86,7 @@ def test_names_are_cut() -> None:
 
 
 def test_goals_are_limited() -> None:
-    recording = run("goals_without_end")
+    recording = run("goals_without_end", limits=replace(LIMITS, total_s=10))
     assert recording.run.outcome == "time_limit"
     assert "rotation goals" in flags(recording)
 

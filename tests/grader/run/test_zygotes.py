@@ -81,6 +81,13 @@ def fresh() -> Iterator[None]:
     zygotes.close()
 
 
+@pytest.fixture
+def forgiven() -> Iterator[None]:
+    """The zygotes that a test has killed count for nothing afterwards."""
+    yield
+    zygotes._losses.clear()
+
+
 def forks() -> tuple[int, int]:
     """How many processes the zygotes have given."""
     sides = zygotes.zygote(zygotes.STUDENT), zygotes.zygote(zygotes.SIMULATOR)
@@ -187,7 +194,7 @@ def test_runs_side_by_side_share_the_zygotes(tmp_path: Path, fresh: None) -> Non
 
 @pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
 def test_a_zygote_that_dies_costs_a_start_and_nothing_else(
-    tmp_path: Path, fresh: None, side: str
+    tmp_path: Path, forgiven: None, side: str
 ) -> None:
     zygotes.warm()
     first = zygotes._zygotes[side]
@@ -203,7 +210,7 @@ def test_a_zygote_that_dies_costs_a_start_and_nothing_else(
 
 @pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
 def test_a_zygote_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None, side: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgiven: None, side: str
 ) -> None:
     # what is confined better does not reach the pipe
     monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
@@ -219,7 +226,13 @@ def test_a_zygote_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
             run.result()
 
 
-@pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
+@pytest.mark.parametrize(
+    "side",
+    [
+        zygotes.SIMULATOR,
+        pytest.param(zygotes.STUDENT, marks=pytest.mark.more("as the simulator's")),
+    ],
+)
 def test_a_zygote_that_never_comes_up_is_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None, side: str
 ) -> None:
@@ -324,14 +337,15 @@ print(*sorted({{"numpy", "rosbags", "rclpy", "PIL", "yaml", "rich"}} & set(sys.m
     assert done.stdout == b"\n"
 
 
-def test_real_time_starts_none(tmp_path: Path, fresh: None) -> None:
+def test_real_time_starts_none(tmp_path: Path) -> None:
     from grader.run import real_time
 
+    before = {side: each.forks for side, each in zygotes._zygotes.items()}
     script = tmp_path / "submitted.py"
     script.write_text("print('here')")
     with open_submission(script) as submission:
         assert real_time.run(submission, PLAN).output == "here\n"
-    assert not zygotes._zygotes
+    assert {side: each.forks for side, each in zygotes._zygotes.items()} == before
 
 
 REACHES = f"""

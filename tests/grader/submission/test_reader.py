@@ -241,7 +241,9 @@ def test_300_levels_and_names_of_250_bytes_are_not_gone_through(tmp_path: Path) 
         os.system(f"rm -rf '{tmp_path}'")  # Python's own way down is one of paths
 
 
-@pytest.mark.parametrize("name", ["{}.py", ".{}"])
+@pytest.mark.parametrize(
+    "name", ["{}.py", pytest.param(".{}", marks=pytest.mark.more("of other names"))]
+)
 def test_a_hundred_thousand_files_are_not_listed(tmp_path: Path, name: str) -> None:
     for number in range(11_000):
         (tmp_path / name.format(number)).touch()

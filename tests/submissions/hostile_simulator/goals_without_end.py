@@ -27,7 +27,7 @@ def identity():
 
 
 def on_pose(_):
-    for theta in 2 * (NAN, INF, 1e38, -0.0, 1.0):
+    for theta in (NAN, INF, 1e38, -0.0, 1.0):
         request = impl.SendGoalService.Request()
         request.goal_id.uuid = list(identity())
         request.goal.theta = theta
