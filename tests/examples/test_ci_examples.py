@@ -1,7 +1,6 @@
 """examples/ci: what a course's CI runs, with everything around it imitated.
 
-Most tests use a stub in place of `grader run`, and for `grader report` a process that has imported
-it; the last ones grade for real.
+Most tests use a stub in place of `grader run`; the last ones grade for real.
 """
 
 from __future__ import annotations
@@ -26,7 +25,6 @@ import yaml
 from grader.reports import FORMATS
 from grader.result import json_file
 from tests.needs import needs
-from tests.warm import serving
 
 ROOT = Path(__file__).resolve().parents[2]
 CI = ROOT / "examples" / "ci"
@@ -108,13 +106,9 @@ def an_error(whose: str, message: str) -> str:
 
 
 class Machine:
-    """A machine with the grader installed, and a folder that everybody can go to.
+    """A machine with the grader installed, and a folder that everybody can go to."""
 
-    Args:
-        warm: what calls `grader report` where `grader run` is a stub; see `tests.warm`.
-    """
-
-    def __init__(self, folder: Path, warm: str = "") -> None:
+    def __init__(self, folder: Path, real: bool) -> None:
         self.folder = folder
         self.venv = folder / "venv"
         self.work = folder / "work"
@@ -125,11 +119,11 @@ class Machine:
         run = STUB_RUN.format(result=json.dumps(RESULT), canvas=folder / "canvas.png")
         # what is not there, and an exercise of one's own, are left to the real one
         is_stubbed = '[ "$1" = run ] && [ -e "$2" ] && [ "${*%exercise.yaml*}" = "$*" ]'
-        stub = f'if {is_stubbed}; then\n{run}\nfi\n[ "$1" = run ] || {warm}\n'
+        stub = f"if {is_stubbed}; then\n{run}\nfi\n"
         program(self.venv / "bin" / "python", python)
         program(
             self.venv / "bin" / "grader",
-            (stub if warm else "") + python.replace('"$@"', '-m grader "$@"'),
+            ("" if real else stub) + python.replace('"$@"', '-m grader "$@"'),
         )
         program(folder / "bin" / "sudo", 'exec "$@"')
         program(folder / "bin" / "gh", f"printf '%s\\n' \"$@\" >{folder}/gh.txt")
@@ -138,7 +132,7 @@ class Machine:
             "HOME": str(folder),
             "GRADER_VENV": str(self.venv),
             # a user of its own could not go to the Python that the tests run with
-            "GRADER_USER": str(UID) if warm else "",
+            "GRADER_USER": "" if real else str(UID),
             "GRADER_LIMIT_S": "60",
             "GRADER_SCRIPTS": str(CI),
             "SECRET_TOKEN": "do-not-tell",
@@ -183,20 +177,11 @@ def program(path: Path, script: str) -> None:
     path.chmod(0o755)
 
 
-@pytest.fixture(scope="module")
-def warm() -> Iterator[str]:
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        serving(Path(folder), {"PATH": os.environ["PATH"], "HOME": folder}) as line,
-    ):
-        yield line
-
-
 @pytest.fixture
-def machine(warm: str) -> Iterator[Machine]:
+def machine() -> Iterator[Machine]:
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o755)
-        yield Machine(Path(folder), warm)
+        yield Machine(Path(folder), real=False)
 
 
 # What the files say
@@ -705,7 +690,7 @@ def test_a_real_submission_is_graded(system: System) -> None:
     with tempfile.TemporaryDirectory() as folder:
         exercise = Path(folder) / "exercise.yaml"
         exercise.write_text(yaml.safe_dump(data))
-        machine = Machine(Path(folder) / system.__name__)
+        machine = Machine(Path(folder) / system.__name__, real=True)
         student = machine.folder / "student"
         student.mkdir()
         shutil.copy(SPIRAL, student / "turtle_controller.py")
