@@ -22,13 +22,12 @@ NEARER = Start(9.3, 5.5, 0.0)
 SHORTER = {
     "busy_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
     "loops_for_ever": (Limits(3, 1, 60), Patience(stall_cpu_s=0.5)),
-    "blocks_in_c": (Limits(0.5, 0.5, 5), Patience(asleep_s=1.0)),
     "starts_a_program": (Limits(3, 0.2, 10), None),
     "breaks_the_grader": (Limits(3, 0.2, 10), None),
     "stops_itself": (Limits(3, 1, 60), Patience(asleep_s=1.0)),
     "attacks_link": (Limits(1, 0.2, 10), None),
-    "floods": (Limits(3, 1, 5), None),
-    "floods_without_end": (Limits(3, 1, 5), None),
+    "floods": (Limits(3, 1, 2), None),
+    "floods_without_end": (Limits(3, 1, 2), None),
     "hangs_after_command": (LONGER, Patience(stall_cpu_s=0.5)),
     "hangs_while_driving": (LONGER, Patience(stall_cpu_s=0.5)),
 }

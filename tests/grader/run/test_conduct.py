@@ -189,6 +189,7 @@ def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end() -> None
     assert conduct.stop.place == Place("calls_in_callback.py", 15, "on_timer", PEN)
 
 
+@pytest.mark.more("two others tell so in real time, and this one in virtual time")
 def test_in_real_time_a_program_that_comes_to_its_end_tells_so() -> None:
     conduct = in_real_time("conduct/spins_once")
     assert conduct.returned_s is not None
@@ -226,6 +227,7 @@ def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Record
 # Loops ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.more("two runs that stall; one is above")
 def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded: Recorded) -> None:
     place = Place("loops_for_ever.py", 21, "work", "while add(numbers) > 0:")
     for number in (1, 2):

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
+import pytest
+
 from grader.recording.recording import Run
 from grader.run import virtual_time
 from grader.run.plan import Plan
@@ -40,6 +42,7 @@ def crowded(name: str) -> Run:
         return virtual_time.run(submission, PLAN).run
 
 
+@pytest.mark.more("eight runs, four of them at once beside busy loops")
 def test_beside_busy_loops_and_other_runs_every_trace_stays_the_same() -> None:
     alone = [runs.recorded(name, PLAN).run for name in NAMES]
     with busy_loops(2), ThreadPoolExecutor(4) as pool:

@@ -111,7 +111,14 @@ def cold(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(zygotes, "zygote", lambda side: None)
 
 
-@pytest.mark.parametrize("level", ["private network", "user namespace", "ROS domain"])
+@pytest.mark.parametrize(
+    "level",
+    [
+        "private network",
+        pytest.param("user namespace", marks=pytest.mark.more("between the two others")),
+        "ROS domain",
+    ],
+)
 def test_a_forked_submission_finds_all_that_a_started_one_does(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, level: str
 ) -> None:
@@ -192,7 +199,13 @@ def test_runs_side_by_side_share_the_zygotes(tmp_path: Path, fresh: None) -> Non
     assert forks() == (4, 4)
 
 
-@pytest.mark.parametrize("side", [zygotes.STUDENT, zygotes.SIMULATOR])
+@pytest.mark.parametrize(
+    "side",
+    [
+        zygotes.STUDENT,
+        pytest.param(zygotes.SIMULATOR, marks=pytest.mark.more("as the student's")),
+    ],
+)
 def test_a_zygote_that_dies_costs_a_start_and_nothing_else(
     tmp_path: Path, forgiven: None, side: str
 ) -> None:

@@ -72,7 +72,7 @@ class Controller(Node):
         carrot.header.frame_id, carrot.child_frame_id = "turtle1", "carrot1"
         carrot.transform.translation.y = 2.0
         self.static_broadcaster.sendTransform(carrot)
-        self.create_timer(5.0, self.on_carrot)
+        self.create_timer(2.0, self.on_carrot)
 
     def on_carrot(self):
         try:

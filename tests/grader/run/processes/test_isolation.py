@@ -12,7 +12,8 @@ from grader import scratch
 from grader.run.processes import isolation
 from grader.run.stage import Stage, open_stage
 
-#: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning up, as a killed run does.
+#: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning
+#: up, as a killed run does.
 TALK = """
 import os, select, sys, time
 import rclpy

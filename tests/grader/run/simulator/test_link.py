@@ -148,7 +148,7 @@ def test_computing_without_end_is_a_stall(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
     with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as process:
-        heard = StudentLink(ends[0], process.pid, Patience(start_cpu_s=0.3))
+        heard = StudentLink(ends[0], process.pid, Patience(start_cpu_s=0.1))
         assert heard.receive() is None
         process.kill()
     assert heard.silence == "stalled"
@@ -159,13 +159,13 @@ def test_a_process_that_somebody_has_stopped_is_not_waited_for(
 ) -> None:
     with subprocess.Popen(["sleep", "60"]) as process:
         process.send_signal(signal.SIGSTOP)
-        heard = StudentLink(ends[0], process.pid, Patience(asleep_s=0.3))
+        heard = StudentLink(ends[0], process.pid, Patience(asleep_s=0.1))
         assert heard.receive() is None
         process.kill()
     assert heard.silence == "stopped"
 
 
-NAPS = "import time\nwhile True:\n time.sleep(0.3)\n for _ in range(100_000): pass"
+NAPS = "import time\nwhile True:\n time.sleep(0.1)\n for _ in range(10_000): pass"
 
 
 def test_a_process_that_has_ended_is_gone_although_a_descendant_holds_the_link(
@@ -182,7 +182,7 @@ def test_sleeping_is_added_up_however_often_it_is_interrupted(
     ends: tuple[socket.socket, socket.socket],
 ) -> None:
     with subprocess.Popen([sys.executable, "-c", NAPS]) as process:
-        patience = Patience(start_cpu_s=1000.0, all_asleep_s=1.0)
+        patience = Patience(start_cpu_s=1000.0, all_asleep_s=0.3)
         with pytest.raises(Refused):
             StudentLink(ends[0], process.pid, patience).receive()
         process.kill()
@@ -193,5 +193,5 @@ def test_sleeping_outside_of_virtual_time_is_refused(
 ) -> None:
     with subprocess.Popen(["sleep", "60"]) as process:
         with pytest.raises(Refused):
-            StudentLink(ends[0], process.pid, Patience(asleep_s=0.5)).receive()
+            StudentLink(ends[0], process.pid, Patience(asleep_s=0.2)).receive()
         process.kill()
