@@ -166,13 +166,17 @@ def _make_known(package: Package, name: str, prefix: Path) -> None:
 
 def make_stubs(stubs: Path, declared: set[str], own: set[str]) -> None:
     """A prefix with the packages of ROS that may be asked for, and those that are declared."""
-    for name in sorted((known.KNOWN | declared) - own):
-        if re.fullmatch(r"[\w-]{1,100}", name):
-            _touch(stubs / MARKS / name, stubs)
-            (stubs / "share" / name).mkdir(parents=True, exist_ok=True)
     for name, files in known.FILES.items():
         for file in files:
             _touch(stubs / "share" / name / file, stubs)
+    # one folder for all that have nothing in it: to take a hundred away again takes long
+    nothing = stubs / "nothing"
+    nothing.mkdir(parents=True)
+    for name in sorted((known.KNOWN | declared) - own):
+        if re.fullmatch(r"[\w-]{1,100}", name):
+            _touch(stubs / MARKS / name, stubs)
+            with suppress(FileExistsError):
+                (stubs / "share" / name).symlink_to(nothing)
     xacro = stubs / "bin" / "xacro"
     xacro.parent.mkdir()
     xacro.write_text(f"#!{sys.executable}\nimport xacro\n\nxacro.main()\n")
