@@ -18,6 +18,7 @@ from grader.testing import drive, twist
 from tests.grader.language.known import unknown
 from turtlesim_py.world.turtle import TICK_S
 
+EXERCISE = load_exercise("square")
 FULL = {
     "drives": 5,
     "sides": 25,
@@ -110,19 +111,20 @@ class FallsSilent(Legs):
 
 def recorded(controller, seed=None):
     """The recordings of a node that a call of `controller` makes."""
-    exercise = load_exercise("square")
-    ticks = round(exercise.limits.total_s / TICK_S)
+    ticks = round(EXERCISE.limits.total_s / TICK_S)
     nominal, *varied = [
-        drive(controller(), ticks, start) for start in (None, *exercise.starts(seed))
+        drive(controller(), ticks, start) for start in (None, *EXERCISE.starts(seed))
     ]
     return Recordings(nominal, tuple(varied))
 
 
 def judged(controller, seed=None):
     """The verdicts on it, by their names."""
-    exercise = load_exercise("square")
-    recordings = recorded(controller, seed)
-    verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
+    return verdicts_on(recorded(controller, seed))
+
+
+def verdicts_on(recordings):
+    verdicts = judge(recordings, EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
     assert unknown(verdicts) == []  # to translators
     return {verdict.check: verdict for verdict in verdicts}
 
@@ -223,7 +225,7 @@ def test_a_way_of_a_thousand_corners_is_looked_at_as_far_as_anybody_would(monkey
     real = way.farthest
     monkeypatch.setattr(way, "farthest", lambda *them: looked.append(1) or real(*them))
     recording = drive(Everywhere(), 4000)
-    assert way.Way(recording).sides(load_exercise("square").tolerances)
+    assert way.Way(recording).sides(EXERCISE.tolerances)
     assert len(looked) < 10 * 300 * 2
 
 
@@ -361,14 +363,13 @@ WRONG = {
 
 
 @pytest.mark.parametrize(("controller", "expected"), WRONG.values(), ids=WRONG.keys())
-def test_a_wrong_one_loses_the_points_of_what_is_wrong(controller, expected):
-    assert scores(controller) == expected
-
-
-@pytest.mark.parametrize("controller", [c for c, _ in WRONG.values()], ids=WRONG.keys())
-def test_a_verdict_on_a_wrong_one_says_where_it_went_wrong_and_what_to_look_at(controller):
-    nominal, *varied = recorded(controller)
-    for verdict in judged(controller).values():
+def test_a_wrong_one_loses_the_points_of_what_is_wrong_and_is_told_where_to_look(
+    controller, expected
+):
+    nominal, *varied = recordings = recorded(controller)
+    verdicts = verdicts_on(recordings)
+    assert {name: verdict.score for name, verdict in verdicts.items()} == expected
+    for verdict in verdicts.values():
         assert bool(verdict.help) == (verdict.status != "passed")
         assert len(verdict.evidence) <= 4
         for item in verdict.evidence:
@@ -386,10 +387,9 @@ def test_a_turtle_that_drives_into_the_wall_draws_no_square():
 
 
 def test_an_exercise_that_promises_points_for_other_starts_must_have_them():
-    exercise = load_exercise("square")
     alone = Recordings(drive(Legs(polygon([2] * 4))))
     with pytest.raises(CheckFailed, match="varied_runs"):
-        judge(alone, exercise.checks, exercise.points, exercise.tolerances)
+        judge(alone, EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
 
 
 class StopsAndDrivesOn(Legs):

@@ -1,7 +1,4 @@
-"""The page as a browser shows and prints it; where there is no browser, nothing of this is asked.
-
-Chromium's own switches do: what the script makes of the document, and what comes on paper.
-"""
+"""The page as a browser shows and prints it."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ import pytest
 
 from grader.reports import Report
 from grader.reports.page import html
-from tests.browser import BROWSER, needs_browser
+from tests.browser import needs_browser, open_browser
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
@@ -36,18 +33,16 @@ def page(tmp_path_factory):
     return path
 
 
-def browse(page, *switches: str) -> str:
-    usual = ("--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={page.parent}/user")
-    command = [BROWSER, *usual, *switches, page.as_uri()]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
-
-
 @pytest.fixture(scope="module")
 def shown(page):
-    return browse(page, "--dump-dom")
+    with open_browser() as browser:
+        opened = browser.new_page()
+        opened.goto(page.as_uri())
+        yield opened
 
 
 def test_it_opens_at_the_run_and_the_moment_of_the_first_fault(shown):
+    shown = shown.content()
     tabs = dict(re.findall(r'data-show="(\d)" aria-pressed="(\w+)"', shown))
     assert tabs == {"0": "false", "1": "true", "2": "false"}
     hidden = re.findall(r'<div class="run[^"]*" data-run="(\d)"( hidden="")?>', shown)
@@ -56,9 +51,9 @@ def test_it_opens_at_the_run_and_the_moment_of_the_first_fault(shown):
 
 
 @needs("pdftotext")
-def test_on_paper_is_the_run_with_the_fault_and_no_control(page, tmp_path):
+def test_on_paper_is_the_run_with_the_fault_and_no_control(shown, tmp_path):
     pdf = tmp_path / "page.pdf"
-    browse(page, f"--print-to-pdf={pdf}", "--no-pdf-header-footer")
+    shown.pdf(path=pdf)
     listed = ["pdftotext", str(pdf), "-"]
     said = subprocess.run(listed, capture_output=True, text=True, check=True).stdout
     said = " ".join(said.split())

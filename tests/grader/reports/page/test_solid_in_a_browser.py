@@ -1,19 +1,15 @@
-"""A solid as a browser draws it, on a telephone and on a desk; without one, nothing is asked.
+"""A solid as a browser draws it, on a telephone and on a desk.
 
-A copy of the page gets a program that plays its reader: it asks for keys, clicks and moments as a
-person would, and tells the page around it what came of it.
+A program in the page plays its reader: it asks for keys, clicks and moments as a person would, and
+tells what came of it.
 """
 
 from __future__ import annotations
 
-import json
-import re
-import subprocess
-
 import pytest
 
 from grader.scenes.robot.driving import drive
-from tests.browser import BROWSER, needs_browser
+from tests.browser import needs_browser, open_browser
 from tests.grader.reports.page.test_parts import package_trace, page_of
 from tests.grader.reports.samples import verdict
 from tests.grader.scenes.robot.robots import walks
@@ -21,14 +17,8 @@ from tests.grader.scenes.robot.test_solid import URDF
 
 pytestmark = needs_browser
 
-#: A window has a least width, a frame has none.
-FRAME = """<!DOCTYPE html><title>nothing</title><iframe src="page.html" width="{}" height="900"
-style="border:0"></iframe><script>
-addEventListener("message", (event) => {{ document.title = event.data; }});</script>"""
-#: Nobody looks at the page, so no frame would ever come.
-AT_ONCE = "window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 0);"
 READER = """
-(async () => {
+async () => {
   const canvas = document.querySelector("canvas"), paper = canvas.getContext("2d");
   const frame = () => new Promise((done) => requestAnimationFrame(done));
   const look = async () => {
@@ -72,30 +62,34 @@ READER = """
     await new Promise((done) => setTimeout(done, 0));
     said.earlier = await look();
   }
-  parent.postMessage(JSON.stringify(said), "*");
-})();
+  return said;
+}
 """
 
 
-def read(folder, page: str, width: int) -> dict:
+@pytest.fixture(scope="module")
+def browser():
+    with open_browser() as opened:
+        yield opened
+
+
+def read(browser, folder, page: str, width: int) -> dict:
     """What the reader has seen."""
-    free = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page)
-    free = free.replace("<head>", f"<head><script>{AT_ONCE}</script>", 1)
-    played = free.replace("</body>", f"<script>{READER}</script></body>")
-    (folder / "page.html").write_text(played)
-    path = folder / "frame.html"
-    path.write_text(FRAME.format(width))
-    switches = ("--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/user")
-    command = [BROWSER, *switches, "--virtual-time-budget=5000", "--dump-dom", path.as_uri()]
-    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
-    (title,) = re.findall("<title>(.*?)</title>", dom)
-    return json.loads(title)
+    path = folder / "page.html"
+    path.write_text(page)
+    opened = browser.new_page(viewport={"width": width, "height": 900})
+    opened.goto(path.as_uri())
+    said = opened.evaluate(READER)
+    opened.close()
+    return said
 
 
 @pytest.mark.parametrize("width", [375, 1280])
-def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(width, tmp_path):
+def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(
+    browser, width, tmp_path
+):
     page = page_of(tmp_path, drive(walks, 400, URDF), "robot", verdict("a"))
-    said = read(tmp_path, page, width)
+    said = read(browser, tmp_path, page, width)
     assert said["wide"] <= 0 and said["width"] == width
     assert said["hidden"] == [True, False]
     first = said["first"]
@@ -106,9 +100,9 @@ def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(wi
     assert said["back"] == first
 
 
-def test_a_package_s_robot_stands_still_and_can_be_turned(tmp_path):
+def test_a_package_s_robot_stands_still_and_can_be_turned(browser, tmp_path):
     page = page_of(tmp_path, package_trace(), "package", verdict("a"))
-    said = read(tmp_path, page, 375)
+    said = read(browser, tmp_path, page, 375)
     assert said["wide"] <= 0
     assert said["first"]["red"] > 2000
     assert said["key"]["sum"] != said["first"]["sum"] == said["back"]["sum"]
