@@ -102,9 +102,7 @@ def until_equal(person: Person, expected: np.ndarray) -> None:
     raise AssertionError(f"{differs.sum()} pixels differ, the first at {np.argwhere(differs)[0]}")
 
 
-def test_a_person_draws_a_square_with_the_keys_and_it_is_the_picture_that_is_saved(
-    browser, graph, tmp_path
-):
+def test_a_person_draws_with_the_keys_and_it_is_the_picture_that_is_saved(browser, graph, tmp_path):
     words = ("view_port:=0", f"canvas_folder:={tmp_path}")
     arguments = ["-r", "__ns:=/drawn", *(word for each in words for word in ("-p", each))]
 
@@ -116,13 +114,20 @@ def test_a_person_draws_a_square_with_the_keys_and_it_is_the_picture_that_is_sav
     with Program("turtlesim_py.ros.node", "--ros-args", *arguments, cwd=tmp_path) as program:
         page = Page(program)
         person, other = Person(browser, page.address), Person(browser, page.address)
-        for heading in "grdv":  # right, up, left, down
-            person.page.focus("#pad")
+        person.page.focus("#pad")
+        for heading in "gt":
             person.page.keyboard.press(heading)
             person.sees_called("Rotation goal completed successfully")
             person.page.keyboard.press("ArrowUp")
             person.sees_called("ahead 2.000 m/s")
             person.rests()
+        # who wants another one does not wait for the last
+        for heading, theta in {"r": "1.571", "d": "3.142", "c": "-2.356", "v": "-1.571"}.items():
+            person.page.keyboard.press(heading)
+            person.sees(f"rotate_absolute of turtle1: to {theta} rad")
+        person.page.keyboard.press("f")
+        person.sees("rotate_absolute: cancelled")
+        person.rests()
         person.page.fill("[data-form=set_pen] [name=color]", "#c80a1e")
         person.fill("set_pen", width="9")
         person.sees_called("set_pen of turtle1: 200, 10, 30; 9 px")

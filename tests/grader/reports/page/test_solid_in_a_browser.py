@@ -73,6 +73,11 @@ def browser():
         yield opened
 
 
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory):
+    return page_of(tmp_path_factory.mktemp("robot"), drive(walks, 400, URDF), "robot", verdict("a"))
+
+
 def read(browser, folder, page: str, width: int) -> dict:
     """What the reader has seen."""
     path = folder / "page.html"
@@ -86,10 +91,9 @@ def read(browser, folder, page: str, width: int) -> dict:
 
 @pytest.mark.parametrize("width", [375, 1280])
 def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(
-    browser, width, tmp_path
+    browser, robot, width, tmp_path
 ):
-    page = page_of(tmp_path, drive(walks, 400, URDF), "robot", verdict("a"))
-    said = read(browser, tmp_path, page, width)
+    said = read(browser, tmp_path, robot, width)
     assert said["wide"] <= 0 and said["width"] == width
     assert said["hidden"] == [True, False]
     first = said["first"]
