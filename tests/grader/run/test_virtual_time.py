@@ -104,7 +104,6 @@ def test_a_run_may_start_elsewhere() -> None:
         ("sleeps_for_ever", "finished", None),
         ("ticks_backwards", "crashed", 1),
         ("spins_in_callback", "stalled", None),
-        ("spins_the_class", "crashed", 1),
     ],
 )
 def test_misbehaviour_ends_by_itself_and_is_named(
