@@ -16,6 +16,7 @@ from grader.run import static
 from grader.run.processes import isolation, levels
 from grader.scenes.package.examining import steps
 from grader.scenes.package.trace import FAILED
+from tests import runs
 from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, recorded, written
 
 NEVER_ENDS = "while True:\n    pass\n"
@@ -41,14 +42,14 @@ def shares(result):
 
 
 def test_two_looks_are_equal_and_are_what_is_found_without_confinement():
-    once, again = (grader.grade(REFERENCE, EXERCISE) for _ in range(2))
+    once, again = (runs.graded(REFERENCE, EXERCISE, number=number) for number in (1, 2))
     assert once.score == once.max_score == 100
     assert once.run.trace_sha256 == again.run.trace_sha256 == looked_at(REFERENCE).sha256()
     assert (once.run.outcome, once.run.ticks, once.run.simulated_s) == ("finished", 0, 0)
 
 
 def test_it_is_confined_as_a_submission_s_process_is():
-    run = grader.record(REFERENCE, EXERCISE).nominal.run
+    run = runs.recordings(REFERENCE, EXERCISE).nominal.run
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
         assert run.isolation.startswith(levels.best(isolated).name())
 
