@@ -58,7 +58,7 @@ def _resolved(uri: str, place: Place) -> tuple[str, str]:
         package, _, inside = uri.removeprefix("package://").partition("/")
         one = next((each for each in place.all if each.name == package), None)
         if one is None:
-            is_there = (place.stubs / "share" / package).is_dir()
+            is_there = place.knows(package)
             return ("foreign" if is_there and package else "package"), package
         return _looked_for(place.prefix / "share" / package / inside, place)
     if uri.startswith("file://"):

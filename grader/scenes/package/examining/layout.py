@@ -169,14 +169,10 @@ def make_stubs(stubs: Path, declared: set[str], own: set[str]) -> None:
     for name, files in known.FILES.items():
         for file in files:
             _touch(stubs / "share" / name / file, stubs)
-    # one folder for all that have nothing in it: to take a hundred away again takes long
-    nothing = stubs / "nothing"
-    nothing.mkdir(parents=True)
     for name in sorted((known.KNOWN | declared) - own):
         if re.fullmatch(r"[\w-]{1,100}", name):
+            # its share folder, who asks for it makes: a hundred folders take long to take away
             _touch(stubs / MARKS / name, stubs)
-            with suppress(FileExistsError):
-                (stubs / "share" / name).symlink_to(nothing)
     xacro = stubs / "bin" / "xacro"
     xacro.parent.mkdir()
     xacro.write_text(f"#!{sys.executable}\nimport xacro\n\nxacro.main()\n")

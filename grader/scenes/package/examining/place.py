@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.scenes.package.examining import paths
-from grader.scenes.package.examining.layout import Installed
+from grader.scenes.package.examining.layout import MARKS, Installed
 from grader.scenes.package.trace import EMPTY, PREFIX, ROS
 
 DOUBLES: Final = Path(__file__).parent / "doubles"
@@ -63,6 +63,11 @@ class Place:
         gone.sort(key=lambda file: "/ament_index/" in file)  # nobody knows those
         return next(iter([*gone, *(self.told(str(each)) for each in folders)]), "")
 
+    def knows(self, package: str) -> bool:
+        """Whether it is a package of ROS that may be asked for, or one that is declared."""
+        share = self.stubs / "share"
+        return (share / package).is_dir() or (self.stubs / MARKS / package).is_file()
+
     def borrowed(self, wanted: str) -> tuple[str, str]:
         """A package that is not there, and the file of the submission that is asked for as its.
 
@@ -70,7 +75,7 @@ class Place:
         """
         share = f"{self.stubs}/share/"
         name, _, inside = wanted.removeprefix(share).partition("/")
-        if not wanted.startswith(share) or (self.stubs / "share" / name).is_dir():
+        if not wanted.startswith(share) or self.knows(name):
             return "", ""
         for each in self.all:
             if f"share/{each.name}/{inside}" in each.files:

@@ -117,7 +117,7 @@ class Taken:
             programs = known.PROGRAMS.get(package)
             there = programs is None or name in programs
             programs_of = (self._place.prefix / "lib" / each / name for each in ours)
-            is_known = (self._place.stubs / "share" / package).is_dir()
+            is_known = self._place.knows(package)
             if not is_known and any(map(paths.is_file, programs_of)):
                 self._add("borrowed", package)
         if not there:

@@ -259,3 +259,16 @@ def test_a_launch_file_in_yaml_is_refused_where_it_is_none(text, says, tmp_path)
     launch = launched(tmp_path, text, "launch/display.launch.yaml")
     assert launch.problem is not None and launch.problem.kind == "error"
     assert says in launch.problem.text
+
+
+def test_a_package_that_is_asked_for_has_a_folder_of_its_own(tmp_path):
+    body = """
+    import os
+    from ament_index_python.packages import get_package_prefix, get_package_share_directory
+    shares = [get_package_prefix("rviz2") + "/share/rviz2", get_package_share_directory("xacro")]
+    found = [os.path.basename(os.path.realpath(each)) for each in shares if os.path.isdir(each)]
+    return LaunchDescription([Node(package="rviz2", executable="rviz2", arguments=found)])
+    """
+    launch = launched(tmp_path, body)
+    assert launch.problem is None
+    assert launch.nodes[0].arguments == ("rviz2", "xacro")

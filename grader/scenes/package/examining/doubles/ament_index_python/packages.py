@@ -8,6 +8,7 @@ beside those of ROS, at the end of the path: so the rest can be looked at as wel
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from launch._core import unknown
@@ -35,6 +36,8 @@ def get_package_prefix(package_name: str) -> str:
     for prefix in get_search_paths():
         if Path(prefix, _MARKS, package_name).is_file():
             _tell("+", package_name)
+            with suppress(OSError):  # there may be a file of that name
+                Path(prefix, "share", package_name).mkdir(exist_ok=True)
             return prefix
     _tell("-", package_name)
     return get_search_paths()[-1]
