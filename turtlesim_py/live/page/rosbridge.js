@@ -6,7 +6,7 @@ import { t } from "./language.js";
 /** The topic that only this server has: what becomes of the arena. */
 export const LIVE = "/turtlesim_live";
 const FIRST_PAUSE_MS = 300;
-const LONGEST_PAUSE_MS = 5000;
+const LONGEST_PAUSE_MS = 1000;
 
 export class Rosbridge {
   /** @param {{closed: function(), status: function(string)}} told */
