@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import signal
 import socket
 from pathlib import Path
 
@@ -99,7 +100,7 @@ def test_processes_are_found_without_proc(monkeypatch, tmp_path: Path) -> None:
     assert process._owns(process.pid)
     assert not process._owns(os.getpid())
     process._sweep(20.0)
-    assert not psutil.pid_exists(process.pid)
+    assert process.wait(20.0) == -signal.SIGKILL
     process.end()
 
 

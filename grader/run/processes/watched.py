@@ -93,7 +93,8 @@ def await_ends(processes: Iterable[psutil.Process], timeout_s: float) -> list[ps
     """Wait for the ends of processes that are not our children; those that still run then.
 
     Whoever has adopted one may be slow to ask how it ended, as the first process of a container
-    often is. So a zombie has ended.
+    often is; and the first of a namespace sleeps until all others have been asked for. So one that
+    has no memory any more has ended.
     """
     deadline = time.monotonic() + timeout_s
     while (left := [each for each in processes if _runs(each)]) and time.monotonic() < deadline:
@@ -102,8 +103,8 @@ def await_ends(processes: Iterable[psutil.Process], timeout_s: float) -> list[ps
 
 
 def _runs(process: psutil.Process) -> bool:
-    with suppress(psutil.NoSuchProcess):
-        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    with suppress(psutil.NoSuchProcess):  # also a zombie
+        return process.is_running() and bool(process.cmdline())
     return False
 
 
