@@ -47,7 +47,7 @@ def path_of(name: str | Path) -> Path:
     if kind == "mutants":
         return written(MUTANTS[which].text())
     if name in beginners.ROWS and (source := beginners.source(name)) is not None:
-        return written(source, f"{name}.py")
+        return written(source, f"{Path(name).name}.py")
     path = SUBMISSIONS / name
     return path if path.is_dir() else path.with_name(f"{path.name}.py")
 

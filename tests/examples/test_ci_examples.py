@@ -25,6 +25,7 @@ import yaml
 from grader.reports import FORMATS
 from grader.result import json_file
 from tests.needs import needs
+from tests.tiers import others_are_more
 
 ROOT = Path(__file__).resolve().parents[2]
 CI = ROOT / "examples" / "ci"
@@ -626,7 +627,17 @@ SYSTEMS: list[System] = [
     *(on_github, on_gitlab, on_gradescope, on_classroom50),
     *(on_prairielearn, on_autolab, on_vpl),
 ]
-each_system = pytest.mark.parametrize("system", SYSTEMS, ids=lambda system: system.__name__)
+
+
+def by_systems(*kept: System, reason: str) -> pytest.MarkDecorator:
+    """Each of them; in `make test` those that are kept."""
+    systems = others_are_more(reason, SYSTEMS, *kept)
+    return pytest.mark.parametrize("system", systems, ids=lambda system: system.__name__)
+
+
+each_system = by_systems(*SYSTEMS, reason="")
+#: Of what the script for all of them decides.
+one_system = by_systems(SYSTEMS[0], reason="that the points arrive is proven of each system")
 
 
 @each_system
@@ -635,7 +646,7 @@ def test_the_points_arrive(machine: Machine, system: System) -> None:
     assert points in (17.5, 18)  # 18 where points are whole numbers
 
 
-@pytest.mark.parametrize("system", [on_github, on_gitlab])
+@one_system
 def test_too_few_points_arrive_as_well(machine: Machine, system: System) -> None:
     points, _ = system(machine, machine.submission("exit 1"), {})
     assert points == 17.5
@@ -650,7 +661,7 @@ def test_an_unusable_submission_has_no_points_and_says_why(
     assert 'hand in <one> "file".' in said.replace("\\", "")
 
 
-@each_system
+@one_system
 def test_nobody_gets_points_from_a_failure(machine: Machine, system: System) -> None:
     does = "echo 'Grade :=>> 100'; echo '{\"scores\": {\"moves\": 5}}'; echo 'Points: 100'; exit 3"
     points, said = system(machine, machine.submission(does), {})
@@ -658,7 +669,7 @@ def test_nobody_gets_points_from_a_failure(machine: Machine, system: System) -> 
     assert "not your fault" in said
 
 
-@each_system
+@one_system
 def test_a_mistake_of_the_staff_is_no_judgement(machine: Machine, system: System) -> None:
     exercise = machine.folder / "exercise.yaml"
     exercise.write_text("points: [nonsense\n")
@@ -669,11 +680,8 @@ def test_a_mistake_of_the_staff_is_no_judgement(machine: Machine, system: System
 # With the real grader
 
 
-more = pytest.mark.more("the stub proves the system's own part, one system the real grader's")
-a_real_system = pytest.mark.parametrize(
-    "system",
-    [SYSTEMS[0], *(pytest.param(system, marks=more) for system in SYSTEMS[1:])],
-    ids=lambda system: system.__name__,
+a_real_system = by_systems(
+    SYSTEMS[0], reason="the stub proves the system's own part, one system the real grader's"
 )
 
 

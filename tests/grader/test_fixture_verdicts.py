@@ -12,12 +12,16 @@ from grader.scenes.turtlesim.interfaces import adapted
 from tests import runs
 from tests.runs import CHALLENGE
 from tests.submissions.mutants import MUTANTS, REFERENCE
+from tests.tiers import others_are_more
 from turtlesim_py.ros.interfaces import installed
 
-RIGHT = (
+RIGHT = others_are_more(
+    "they draw the same as `quick_spiral`, which tests/grader/run proves",
+    (
+        *("reference", "quick_spiral", "styles/timer", "styles/spin_once_loop"),
+        *("styles/multi_threaded", "styles/rate_with_spin_thread"),
+    ),
     *("reference", "quick_spiral"),
-    "styles/timer",  # ... and all that draw the same, which tests/grader/run says
-    *("styles/spin_once_loop", "styles/multi_threaded", "styles/rate_with_spin_thread"),
 )
 #: Mutants whose runs show what is wrong, whatever was asked for.
 SHOWS_BY_ITSELF = {
@@ -28,24 +32,19 @@ SHOWS_BY_ITSELF = {
     "crashes_after_ten_seconds": "crashed",
     "never_spins": "never_spins",
 }
-#: Of each check one that spoils it; `make test-all` has the others.
-ONE_OF_EACH = (
-    *(
-        "stops_in_the_middle",
-        "circle",
-        "drives_irregularly",
-        "two_colours_only",
-        "colour_on_every_pose",
-    ),
-    *("pen_off", "random_colours", "draws_by_teleport", *SHOWS_BY_ITSELF),
+SPOILT = others_are_more(
+    "three whole runs of what tests/grader/exercises proves without ROS; of each check one stays",
+    [f"mutants/{name}" for name in MUTANTS],
+    *("mutants/stops_in_the_middle", "mutants/drives_irregularly", "mutants/two_colours_only"),
+    *("mutants/pen_off", "mutants/wrong_topic", "mutants/never_spins"),
+    "mutants/crashes_after_six_seconds",
 )
-more = pytest.mark.more("three whole runs of what tests/grader/exercises proves without ROS")
-SPOILT = [
-    pytest.param(f"mutants/{name}", marks=() if name in ONE_OF_EACH else more, id=name)
-    for name in MUTANTS
-]
 #: Graded a second time, to see that nothing changes.
-TWICE = ("styles/rate_with_spin_thread", "mutants/random_colours")
+TWICE = others_are_more(
+    "its colours are those of a seeded random",
+    ("styles/rate_with_spin_thread", "mutants/random_colours"),
+    "styles/rate_with_spin_thread",
+)
 
 
 @cache

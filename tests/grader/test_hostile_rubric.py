@@ -8,10 +8,12 @@ import pytest
 
 from tests import runs
 from tests.runs import CHALLENGE, SUBMISSIONS
+from tests.tiers import others_are_more
 
 FOLDER = SUBMISSIONS / "hostile_rubric"
 COUNTING = (FOLDER / "dead_reckoning.py").read_text(encoding="utf-8")
 WAYS = ("reset", "teleport", "respawn")
+DRIVEN = "tests/grader/exercises proves it of each way, without ROS"
 #: Who turns without end does so until the run is over: a third of it shows the same.
 SHORTER = replace(CHALLENGE, limits=replace(CHALLENGE.limits, total_s=60))
 
@@ -21,7 +23,7 @@ def graded(name):
     return {each.check: each for each in runs.graded(name, SHORTER).verdicts}
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", others_are_more(DRIVEN, WAYS, "reset"))
 def test_who_counts_from_the_centre_shows_nothing_elsewhere(way):
     found = graded(runs.written(COUNTING.replace('WAY = "reset"', f'WAY = "{way}"')))
     assert (found["edge_stop"].score, found["pen_per_quadrant"].score) == (0, 0)

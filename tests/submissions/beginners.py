@@ -31,7 +31,9 @@ def source(name: str) -> bytes | None:
 def changed(name: str) -> str:
     """The source of one that is made of another."""
     row = ROWS[name]
-    base = changed(row["of"]) if "of" in row else (FOLDER / "base.py").read_text(encoding="utf-8")
+    of = row.get("of", "first_lines/base")
+    file = FOLDER.parent / f"{of}.py"
+    base = changed(of) if of in ROWS else file.read_text(encoding="utf-8")
     rest = base.partition("\n")[2]
     text = f'"""{row["what"]}"""\n{rest}'
     for old, new in row["replace"]:

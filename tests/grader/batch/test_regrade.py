@@ -30,6 +30,7 @@ from grader.exercise.loading import load_exercise
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings
 from tests.grader.driving import RED, Spiral, drive
+from tests.tiers import others_are_more
 
 #: One run of each: how many it takes decides nothing here.
 BEFORE = """
@@ -391,10 +392,10 @@ def test_a_second_regrade_is_kept_beside_the_first_and_the_way_back_leads_to_the
     assert first.items() <= again.items()
 
 
-every_place = pytest.mark.more("the first, the middle and the last place stand for the others")
+MIDDLE = "the middle place stands for the others"
 
 
-@pytest.mark.parametrize("after", [0, *(pytest.param(n, marks=every_place) for n in (1, 3)), 2, 4])
+@pytest.mark.parametrize("after", others_are_more(MIDDLE, range(5), 2))
 def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
     out, original, changed, expected, in_process, monkeypatch, after
 ):

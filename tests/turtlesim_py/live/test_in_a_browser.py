@@ -15,6 +15,7 @@ from std_srvs.srv import Trigger
 
 from tests.browser import WIDTHS, cut_off, english, moving, needs_browser, obstacles, open_browser
 from tests.programs import DEADLINE_S, Program
+from tests.tiers import others_are_more
 from tests.turtlesim_py.live.conftest import Page
 from turtlesim_py.world import picture
 from turtlesim_py.world.canvas import Canvas, Pen
@@ -240,7 +241,10 @@ def explore(person: Person) -> None:
     person.page.wait_for_selector("#detail pre:has-text('theta')")
 
 
-@pytest.mark.parametrize("language", ["en", "fr", "zh"])
+WORDS = "another language, the same page; its sentences are told without a browser"
+
+
+@pytest.mark.parametrize("language", others_are_more(WORDS, ("en", "fr", "zh"), "fr"))
 def test_nothing_is_wider_than_the_screen(browser, page, language):
     person = Person(browser, f"{page.address}?lang={language}")
     for box in ("#show-grid", "#show-quadrants", "#show-names"):
@@ -269,7 +273,7 @@ SAID = {
 }
 
 
-@pytest.mark.parametrize("language", SAID)
+@pytest.mark.parametrize("language", others_are_more(WORDS, SAID, "fr"))
 def test_the_page_speaks_the_browsers_language_and_no_english(browser, page, language):
     locale, ahead, zero, pen = SAID[language]
     person = Person(browser, page.address, locale=locale)

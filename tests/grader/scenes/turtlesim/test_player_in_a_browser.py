@@ -25,6 +25,7 @@ from tests.browser import (
 from tests.grader.driving import RED, Spiral, drive, pen, twist
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
+from tests.tiers import others_are_more
 
 pytestmark = needs_browser
 
@@ -260,7 +261,14 @@ def test_nobody_is_kept_out(visit):
     assert obstacles(visit("#tick=120")) == []
 
 
-@pytest.mark.parametrize("name", ["view.html", "compared.html", "fr.html", "zh.html"])
+@pytest.mark.parametrize(
+    "name",
+    others_are_more(
+        "another language, the same page",
+        ("view.html", "compared.html", "fr.html", "zh.html"),
+        *("compared.html", "fr.html"),
+    ),
+)
 def test_nothing_is_wider_than_the_screen(visit, name):
     page = visit("#tick=120", name=name)
     for width in WIDTHS:
