@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from itertools import count
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,9 +17,6 @@ os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 # A program that is killed leaves its shared memory behind, and tests kill some.
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
-# Programs that start beside each other may miss each other's first words. Jazzy's name, Kilted's.
-for _name in ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"):
-    os.environ[_name] = str(Path(__file__).with_name("discovery.xml"))
 # whatever the locale and the terminal of who runs them
 os.environ["LANGUAGE"] = "en"
 os.environ.pop("COLUMNS", None)
