@@ -247,7 +247,9 @@ def test_save_canvas_writes_numbered_pictures(graph: Graph, simulator: Program) 
 
 
 @pytest.mark.parametrize("folder", ["~nosuchuser/x", "/dev/null", "/proc/nothing", "x" * 5000])
-def test_save_canvas_says_where_it_cannot_write(graph: Graph, folder: str) -> None:
+def test_save_canvas_says_where_it_cannot_write(
+    graph: Graph, simulator: Program, folder: str
+) -> None:
     def choose(name: str) -> None:
         value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=name)
         parameters = [Parameter(name="canvas_folder", value=value)]
