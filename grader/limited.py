@@ -13,6 +13,7 @@ in C and no `except BaseException` helps against it. Where there is no fork that
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 import select
 import signal
@@ -232,6 +233,7 @@ class Copy:
     def _be_copy(self, questions: int, answers: int) -> NoReturn:
         code, copy = 1, os.getpid()
         try:
+            gc.freeze()  # to look through all that is inherited would copy it, and might end it
             _confine(self._limits, (questions, answers))
             _print_to_standard_error()
             while len(question := os.read(questions, _NUMBER.size)) == _NUMBER.size:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Iterator
 from itertools import count
@@ -45,6 +46,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     apply = {id(item): all(mark.args[0] for mark in item.iter_markers("applies")) for item in items}
     config.hook.pytest_deselected(items=[item for item in items if not apply[id(item)]])
     items[:] = [item for item in items if apply[id(item)]]
+
+
+def pytest_collection_finish() -> None:
+    """Spare every collection of garbage what there is by now, and stays."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")
