@@ -65,22 +65,31 @@ class Evidence:
         """Have a process that still runs say where its threads are, and wait for that."""
         number = asking_signal()
         self._read()
-        if self._reads < 0 or not number:
-            return
-        with suppress(OSError):
-            os.kill(pid, number)
-            patience_s = PATIENCE_S
-            while len(self._data) < MOST_BYTES and self._says_more(pid, patience_s):
-                if not self._read():
-                    return
-                patience_s = QUIET_S
+        if self._reads >= 0 and number:
+            with suppress(OSError):
+                os.kill(pid, number)
+                self.hear_out(pid, QUIET_S)
+
+    def hear_out(self, pid: int, quiet_s: float = PATIENCE_S) -> None:
+        """Wait until a process has said all, or has ended, which it does when its run is over.
+
+        Args:
+            quiet_s: it says nothing more where after a line nothing comes for so long.
+        """
+        patience_s = PATIENCE_S
+        while len(self._data) < MOST_BYTES and self._says_more(pid, patience_s) and self._read():
+            patience_s = quiet_s
 
     def _says_more(self, pid: int, patience_s: float) -> bool:
         """Whether a process says more; while it waits for a processor, its time stands still."""
+        if self._reads < 0:
+            return False
         used_s, slept_s = usage.look(pid).cpu_s, 0.0
         gives_up = time.monotonic() + LONGEST_S
         while not await_readable(self._reads, LOOK_S):
             now = usage.look(pid)
+            if now.has_ended:  # something that it has started keeps the pipe open
+                return await_readable(self._reads, 0.0)
             slept_s += 0.0 if now.state == "R" else LOOK_S
             if now.cpu_s - used_s + slept_s >= patience_s or time.monotonic() > gives_up:
                 return False

@@ -130,6 +130,8 @@ def _try(
                     exit_code = student.wait(END_S) if message.get("silence") == "gone" else None
                     if message.get("silence") in COMPUTES:
                         told.ask(student.pid)
+                    elif message.get("silence") == "":
+                        told.hear_out(student.pid)  # the run is over, and it says what it knows
             finally:
                 student.end(gently=False)
             if student.was_lost:

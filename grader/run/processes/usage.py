@@ -28,6 +28,11 @@ class Usage(NamedTuple):
         """Whether somebody has stopped it, by SIGSTOP or as a debugger does."""
         return self.state in ("T", "t")
 
+    @property
+    def has_ended(self) -> bool:
+        """Whether there is no such process, or only its exit code."""
+        return self.state in ("", "Z", "X")
+
 
 def look(pid: int) -> Usage:
     """What a process has used, and does now."""

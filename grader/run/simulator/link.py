@@ -45,8 +45,8 @@ MOST_QUEUING = 20.0
 MOST_MAIL = 2_000
 #: The longest packet that is taken from a submission's process.
 LIMIT_BYTES = 8_000_000
-#: The kernel's letters for what a process does; see `usage`.
-WANTS_PROCESSOR, HAS_ENDED = "R", ("", "Z", "X")
+#: The kernel's letter for a process that has a processor, or waits for one.
+WANTS_PROCESSOR = "R"
 ELSEWHERE = "the submission waits for something outside of Python's and ROS's own waiting"
 NONSENSE = "its process sent what ours never sends"
 
@@ -244,7 +244,7 @@ class StudentLink:
             seen, now = usage.look(self._pid), time.monotonic()
             self._count_sleep(seen, before)
             before = now
-            if seen.state in HAS_ENDED and not poll.poll(0):  # a descendant holds the link
+            if seen.has_ended and not poll.poll(0):  # a descendant holds the link
                 self.silence = "gone"
                 return False
             if seen.cpu_s - used_s > self._stall_cpu_s:

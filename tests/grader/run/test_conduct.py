@@ -184,7 +184,6 @@ def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:
 def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end() -> None:
     conduct = in_real_time("misbehaving/calls_in_callback")
     assert (conduct.raised, conduct.returned_s) == (None, None)
-    assert conduct.stop is not None
     assert (conduct.stop.kind, conduct.stop.call) == ("callback", "Client.call")
     assert conduct.stop.place == Place("calls_in_callback.py", 15, "on_timer", PEN)
 
@@ -248,3 +247,10 @@ def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_o
 
 def test_a_program_that_ends_without_a_word_has_told_that_it_was_there(recorded: Recorded) -> None:
     assert recorded("conduct/leaves_without_a_word").conduct == Conduct(is_told=True)
+
+
+def test_a_slow_machine_does_not_cut_off_what_it_tells_when_the_run_is_over(
+    recorded: Recorded,
+) -> None:
+    (wait,) = recorded("conduct/tells_slowly").conduct.waits
+    assert (wait.name, wait.lasted_s) == ("/set_pen", None)
