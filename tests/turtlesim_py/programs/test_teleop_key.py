@@ -34,6 +34,9 @@ class Teleop:
         )
 
     def close(self) -> None:
+        if self.program.process.poll() is None:
+            self.type("q")
+            self.program.wait()
         self.program.__exit__()
         for end in (self._user, self._terminal):
             os.close(end)

@@ -9,12 +9,13 @@ import pytest
 from geometry_msgs.msg import Twist, Vector3
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
+from rclpy.duration import Duration
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty
 from turtlesim.msg import Pose
 from turtlesim.srv import Spawn
 
-from tests.graph import Graph
+from tests.graph import DEADLINE_S, Graph
 from tests.programs import Program
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.ros.rclcpp_node import UnusableParameter
@@ -126,7 +127,9 @@ def test_under_use_sim_time_ticks_and_watchdog_follow_the_clock_topic(graph: Gra
             return poses
 
         poses_at(100.0, 1)
-        graph.publisher(Twist, "/simulated/turtle1/cmd_vel").publish(Twist(linear=Vector3(x=1.0)))
+        command = graph.publisher(Twist, "/simulated/turtle1/cmd_vel")
+        command.publish(Twist(linear=Vector3(x=1.0)))
+        assert command.wait_for_all_acked(Duration(seconds=DEADLINE_S))
         graph.call(Empty, "/simulated/clear")  # while the clock rests
         assert len(poses) == 1
         # A clock that is coarser than a tick: all ticks in between happen

@@ -29,12 +29,21 @@ def ahead(speed: float, turn: float = 0.0) -> Twist:
 def test_the_graph_shows_the_originals_topics_and_two_of_pictures(
     graph: Graph, turtle: str
 ) -> None:
-    graph.until(lambda: graph.node.count_publishers(f"/{turtle}/pose"), "the turtle")
-    topics = dict(graph.node.get_topic_names_and_types())
-    assert topics[f"/{turtle}/cmd_vel"] == ["geometry_msgs/msg/Twist"]
-    assert topics[f"/{turtle}/color_sensor"] == ["turtlesim/msg/Color"]
-    assert topics[f"/{turtle}/pose"] == ["turtlesim/msg/Pose"]
-    visible = {t for t in topics if "/_" not in t and not t.startswith(f"/{turtle}/")}
+    own = {"cmd_vel": "geometry_msgs/msg/Twist", "color_sensor": "turtlesim/msg/Color"}
+    own |= {"pose": "turtlesim/msg/Pose"}
+    node = graph.node
+
+    def topics() -> dict[str, list[str]]:
+        heard = node.get_subscriber_names_and_types_by_node("turtlesim", "/")
+        return dict(node.get_publisher_names_and_types_by_node("turtlesim", "/") + heard)
+
+    def there() -> bool:
+        return {f"/{turtle}/{name}" for name in own} <= topics().keys()
+
+    graph.until(there, "the turtle")
+    for name, kind in own.items():
+        assert topics()[f"/{turtle}/{name}"] == [kind]
+    visible = {t for t in topics() if "/_" not in t and not t.startswith(f"/{turtle}/")}
     assert visible == {
         "/parameter_events",
         "/rosout",
