@@ -13,7 +13,7 @@ import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
@@ -64,6 +64,11 @@ def pytest_configure(config: pytest.Config) -> None:
     os.environ["ROS_LOG_DIR"] = _open.enter_context(tempfile.TemporaryDirectory(prefix="log-"))
     if lock := scratch.take_lock(f"domain-{number}"):
         _open.enter_context(lock)
+
+
+def at_the_end(call: Callable[[], object]) -> None:
+    """Do something when this process has run its tests."""
+    _open.callback(call)
 
 
 def pytest_unconfigure() -> None:

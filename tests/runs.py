@@ -27,7 +27,7 @@ from tests.submissions.mutants import MUTANTS, REFERENCE
 SUBMISSIONS = Path(__file__).parent / "submissions"
 CHALLENGE = load_exercise("turtlesim_challenge")
 #: So many of each kind are kept in memory: some megabytes each.
-KEPT = 32
+KEPT = 8
 
 
 @cache

@@ -7,6 +7,7 @@ import subprocess
 import pytest
 
 from grader import content
+from tests.files import lay
 
 FILES = {"b.py": "two", "a/x.py": "one", "a b.txt": ""}
 
@@ -14,10 +15,7 @@ FILES = {"b.py": "two", "a/x.py": "one", "a b.txt": ""}
 @pytest.fixture
 def folder(tmp_path):
     """A folder with some files."""
-    for name, text in FILES.items():
-        (tmp_path / "one" / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "one" / name).write_text(text)
-    return tmp_path / "one"
+    return lay(tmp_path / "one", FILES)
 
 
 def test_it_is_what_sha256sum_gives(folder):
@@ -30,9 +28,7 @@ def test_it_is_what_sha256sum_gives(folder):
 
 
 def test_neither_order_nor_time_nor_the_folder_s_own_name_counts(folder, tmp_path):
-    for name, text in reversed(FILES.items()):
-        (tmp_path / "two" / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "two" / name).write_text(text)
+    lay(tmp_path / "two", dict(reversed(FILES.items())))
     assert content.of_folder(tmp_path / "two") == content.of_folder(folder)
 
 

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import shutil
+import subprocess
+import sys
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
-
-import setuptools  # noqa: F401  once, and not by each copy of this process that runs a setup.py
+from unittest.mock import patch
 
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings, Run
+from grader.scenes.package.examining import steps
 from grader.scenes.package.examining.main import look
-from grader.scenes.package.trace import PackageTrace
+from grader.scenes.package.trace import PackageTrace, decode, encode
 from grader.testing.solutions import read_solutions
+from tests import apart, once
 
 FOLDER = Path(__file__).parent / "description_package"
 EXERCISE = load_exercise("description_package")
@@ -23,10 +29,46 @@ REFERENCE = SOLUTIONS["reference"].path
 HANDED_IN = ("r2d2_tutorial", "urdf_to_package")
 
 
-def looked_at(path: Path, package: str = "") -> PackageTrace:
-    """What is found of a package, without the process that confines who looks."""
-    with tempfile.TemporaryDirectory() as scratch:
-        return look(path, package, Path(scratch).resolve())
+def looked_at(path: Path, package: str = "", cpu_s: float = steps.LIMITS.cpu_s) -> PackageTrace:
+    """What is found of a package, without what confines the process that looks.
+
+    Args:
+        cpu_s: so much processor time may a step take.
+    """
+    process = _looking()
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write(json.dumps([str(path), package, cpu_s]).encode() + b"\n")
+    process.stdin.flush()
+    size = int.from_bytes(process.stdout.read(8), "big")
+    assert size, "what looks at packages has died"
+    return decode(process.stdout.read(size))
+
+
+@cache
+def _looking() -> subprocess.Popen[bytes]:
+    """A process for one package after the other, small and without threads.
+
+    Each step is made by a copy, which the tests' own process has too much memory for, and threads
+    whose locks it would wait for.
+    """
+    words = [sys.executable, "-c", f"from {__name__} import look_without_end as main; main()"]
+    process = subprocess.Popen(words, cwd=once.ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    apart.at_the_end(process.communicate)
+    return process
+
+
+def look_without_end() -> None:
+    """Look at each package that is named on standard input."""
+    import setuptools  # noqa: F401  once, and not by each copy that runs a setup.py
+
+    for line in sys.stdin:
+        path, package, cpu_s = json.loads(line)
+        limits = replace(steps.LIMITS, cpu_s=cpu_s)
+        with patch.object(steps, "LIMITS", limits), tempfile.TemporaryDirectory() as scratch:
+            found = encode(look(Path(path), package, Path(scratch).resolve()))
+        sys.stdout.buffer.write(len(found).to_bytes(8, "big") + found)
+        sys.stdout.buffer.flush()
 
 
 def recorded(trace: PackageTrace) -> Recordings:

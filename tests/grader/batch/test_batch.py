@@ -18,6 +18,7 @@ import pytest
 from grader.batch.entry import Entry, entries
 from grader.cli import main
 from tests import once
+from tests.files import lay
 from tests.programs import ROOT
 
 SUBMISSIONS = ROOT / "tests" / "submissions"
@@ -32,14 +33,6 @@ HANDED_IN: dict[str, str | bytes] = {
 }
 RUBRIC = "exercise: turtlesim_challenge\nvaried_runs: {count: 1}\n"
 PATIENCE_S = 300.0
-
-
-def write(folder: Path, files: dict[str, str | bytes]) -> Path:
-    for name, content in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return folder
 
 
 def start(*words: str | Path) -> subprocess.Popen[str]:
@@ -75,7 +68,7 @@ def scores(out: Path) -> dict[str, tuple[str, float | None]]:
 
 def _make(folder: Path) -> None:
     """A class from beginning to end, as a process; the folder has what its tests need."""
-    handed_in = write(folder / "handed_in", HANDED_IN)
+    handed_in = lay(folder / "handed_in", HANDED_IN)
     (folder / "rubric.yaml").write_text(RUBRIC)
     words = (handed_in, "--out", folder / "class", "--exercise", folder / "rubric.yaml")
     process = start(*words, "--jobs", "2")
@@ -148,7 +141,7 @@ def test_a_second_call_runs_nothing_and_changes_nothing(
 def test_who_hands_in_once_more_is_graded_once_more_and_nobody_else(
     rubric: tuple[str, Path], graded: Path, tmp_path: Path
 ) -> None:
-    later = write(tmp_path / "handed_in", {**HANDED_IN, "dave/node.py": RIGHT})
+    later = lay(tmp_path / "handed_in", {**HANDED_IN, "dave/node.py": RIGHT})
     code, messages = batch(later, "--out", graded, *rubric)
     assert (code, "4 hand-ins of 5 graded before." in messages) == (0, True), messages
     assert scores(graded)["dave"] == ("judged", 100.0)
@@ -213,7 +206,7 @@ def test_what_kill_9_interrupts_goes_on_and_comes_out_the_same(
 def test_who_is_no_longer_among_the_submissions_is_set_aside_and_comes_back_without_a_run(
     handed_in: Path, rubric: tuple[str, Path], graded: Path, tmp_path: Path
 ) -> None:
-    fewer = write(tmp_path / "fewer", {"alice/node.py": RIGHT})
+    fewer = lay(tmp_path / "fewer", {"alice/node.py": RIGHT})
     code, messages = batch(fewer, "--out", graded, *rubric)
     assert (code, "4 hand-ins in" in messages, "bob, carol, dave, erin" in messages) == (0, 1, 1)
     assert scores(graded).keys() == {"alice"}
@@ -239,7 +232,7 @@ def test_a_refused_call_leaves_no_class_behind(tmp_path: Path) -> None:
 
 def test_parts_of_different_cuts_are_no_class(tmp_path: Path) -> None:
     none = {f"{name}/notes.txt": "I could not do it." for name in ("dora", "emil", "fay", "gil")}
-    handed_in = write(tmp_path / "handed_in", none)
+    handed_in = lay(tmp_path / "handed_in", none)
     for part in ("1/2", "3/3"):
         assert batch(handed_in, "--out", tmp_path / part[0], "--shard", part)[0] == 0
     code, messages = batch("--merge", tmp_path / "1", tmp_path / "3", "--out", tmp_path / "whole")

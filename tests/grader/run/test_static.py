@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import zipfile
-from dataclasses import replace
 
 import pytest
 
@@ -14,7 +13,6 @@ from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
 from grader.run import static
 from grader.run.processes import isolation, levels
-from grader.scenes.package.examining import steps
 from grader.scenes.package.trace import FAILED
 from tests import runs
 from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, recorded, written
@@ -116,10 +114,9 @@ for _ in range(8):
     assert result.score == 100
 
 
-def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path, monkeypatch):
-    monkeypatch.setattr(steps, "LIMITS", replace(steps.LIMITS, cpu_s=1.0))
+def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
     path = written(tmp_path, {"launch/spawn.launch.py": NEVER_ENDS})
-    result = grading.judge(recorded(looked_at(path)), EXERCISE)
+    result = grading.judge(recorded(looked_at(path, cpu_s=1.0)), EXERCISE)
     assert shares(result)["launch"] == 0.5
     assert "did not come to an end" in result.diagnosis.cause
 

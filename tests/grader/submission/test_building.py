@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from grader.submission.opening import open_submission
-from tests.grader.submission.test_opening import NODE, below, lay
+from tests.files import lay
+from tests.grader.submission.test_opening import NODE, below
 
 SETUP = """
 from setuptools import find_packages, setup

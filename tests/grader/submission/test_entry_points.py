@@ -6,6 +6,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.submission.opening import EntryPoint, Submission, open_submission
+from tests.files import lay
 from tests.grader.submission.copies import in_place
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
@@ -19,15 +20,6 @@ setup(
     entry_points={{'console_scripts': [{entries}]}},
 )
 """
-
-
-def lay(root: Path, files: dict[str, str]) -> Path:
-    """Write files below a folder."""
-    for name, text in files.items():
-        path = root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    return root
 
 
 def package(name: str, *entries: str, module: str = "turtle_controller") -> dict[str, str]:

@@ -7,7 +7,8 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.submission.finding import find
-from tests.grader.submission.test_opening import NODE, PACKAGE, lay
+from tests.files import lay
+from tests.grader.submission.test_opening import NODE, PACKAGE
 
 
 @pytest.fixture

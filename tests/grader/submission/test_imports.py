@@ -8,6 +8,7 @@ import pytest
 
 from grader.submission.imports import read_imports
 from grader.submission.start import EntryPoint, Imports, Script
+from tests.files import lay
 
 FALLBACK = """
 try:
@@ -15,14 +16,6 @@ try:
 except ImportError:
     from older.msg import Pose
 """
-
-
-def lay(folder: Path, files: dict[str, str]) -> None:
-    """Write files: name -> text."""
-    for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
 
 
 def of_file(folder: Path, text: str) -> Imports:

@@ -8,8 +8,9 @@ from grader.errors import SubmissionError
 from grader.submission.launch_files import Node, read_launch_file
 from grader.submission.opening import EntryPoint, Launch, Submission, open_submission
 from grader.submission.start import Program
+from tests.files import lay
 from tests.grader.submission.test_building import PACKAGE
-from tests.grader.submission.test_opening import NODE, lay
+from tests.grader.submission.test_opening import NODE
 
 HEAD = """from launch import LaunchDescription
 from launch_ros.actions import Node

@@ -16,6 +16,7 @@ from grader.submission.opening import (
     Submission,
     open_submission,
 )
+from tests.files import lay
 from tests.grader.submission.copies import in_place
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
@@ -27,15 +28,6 @@ PACKAGE = {
     "spiral/__init__.py": "",
     "spiral/node.py": GUARDED,
 }
-
-
-def lay(root: Path, files: dict[str, str]) -> Path:
-    """Write files below a folder."""
-    for name, text in files.items():
-        path = root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    return root
 
 
 def below(folder: str, files: dict[str, str]) -> dict[str, str]:

@@ -15,6 +15,7 @@ from grader.exercise.loading import load_exercise
 from grader.submission import private_copy
 from grader.submission.opening import Submission, open_submission
 from grader.submission.private_copy import PrivateCopy
+from tests.files import lay
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n\n\nmain()\n"
 SETUP = "setup(entry_points={'console_scripts': ['turtle_controller = spiral.node:main']})\n"
@@ -27,14 +28,6 @@ def home(tmp_path: Path) -> Path:
     folder = tmp_path / "home"
     folder.mkdir()
     return folder
-
-
-def lay(root: Path, files: dict[str, str]) -> Path:
-    for name, text in files.items():
-        path = root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    return root
 
 
 def held(submission: Submission) -> list[str]:

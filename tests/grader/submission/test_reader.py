@@ -16,6 +16,7 @@ import pytest
 from grader.errors import GraderFailure, SubmissionError
 from grader.submission import answer, reader
 from grader.submission.opening import EntryPoint, Script, open_submission
+from tests.files import lay
 from tests.limited import printed_by
 
 NODE = "def main():\n    pass\n"
@@ -40,14 +41,6 @@ def opened(path: Path) -> tuple[str, str]:
     """How the reading of a submission ended: found or refused, and its sentence."""
     how, sentence = json.loads(printed_by(OPEN, path))
     return how, sentence
-
-
-def lay(root: Path, files: dict[str, str]) -> Path:
-    for name, text in files.items():
-        path = root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    return root
 
 
 def package(root: Path, setup: str, **more: str) -> Path:
