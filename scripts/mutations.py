@@ -317,7 +317,7 @@ class Workspace:
             _do("git", "clone", "-q", str(ROOT), str(self.tree))
         _do("git", "fetch", "-q", str(ROOT), "HEAD", cwd=self.tree)
         _do("git", "checkout", "-q", "-f", "--detach", "FETCH_HEAD", cwd=self.tree)
-        _do("make", "install", cwd=self.tree)
+        _do("make", "tools", cwd=self.tree)
         self._site = next((self.tree / ".venv").glob("lib/python*/site-packages"))
         self.restore()
         if self.is_boxed:
