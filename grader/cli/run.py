@@ -146,10 +146,8 @@ def _each_save(args: argparse.Namespace, live: Live | None) -> int:
     from grader.cli import grade_one
     from grader.cli.rounds import Rounds
     from grader.cli.watch import each_save
-    from grader.submission import reader
 
     rounds = Rounds(args, live)
     for _ in each_save(args.submission, grade_one.out_of(args)):
         rounds.grade()
-        reader.warm()
     return 0

@@ -1,11 +1,12 @@
 """What the process that reads a submission answers: one line of JSON, and nothing else is taken.
 
-Before it come lines that say where it is.
+Before it come lines that say where it is; of those, and of how it ended, its parent tells.
 """
 
 from __future__ import annotations
 
 import json
+import signal
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -26,6 +27,8 @@ from grader.text import clip
 
 #: How a line begins that tells where the process is; a string in JSON follows.
 AT: Final = b"at "
+#: How the reading ended that took too long on the clock.
+TOO_LATE: Final = "SIGALRM"
 #: No line is longer.
 MAX_BYTES: Final = 1_000_000
 #: So many modules are told, of those that are imported surely and of the others.
@@ -43,6 +46,16 @@ _REFUSALS: Final = {each.whose: each for each in (SubmissionError, UsageError)}
 def at(place: str) -> bytes:
     """The line that says where the process is."""
     return AT + json.dumps(place).encode() + b"\n"
+
+
+def ended(at: str, last: bytes, code: int) -> bytes:
+    """Two lines: where a reading was at last and how it ended, and the last line that it said."""
+    return json.dumps({"at": at, "end": end(code)}).encode() + b"\n" + last + b"\n"
+
+
+def end(code: int) -> str:
+    """How a process ended, by its exit code: that, or the name of the signal that ended it."""
+    return signal.Signals(-code).name if code < 0 else str(code)
 
 
 def found(submission: Submission) -> bytes:

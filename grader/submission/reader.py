@@ -1,9 +1,10 @@
-"""The process that reads what was handed in, from the grader's side: asked once, then gone.
+"""The process that reads what was handed in, from the grader's side.
 
-It has limits of memory and time (`limits.py`), so that no submission can make the grader's own
-process large, slow or dead. It says where it is as it goes, and at last one answer (`answer.py`).
-Starting it takes 50 ms of a core, so whoever knows that a submission will come can have one started
-before (`warm`).
+Each submission is read by a fork of it, which has limits of memory and time (`limits.py`), so that
+no submission can make the grader's own process large, slow or dead, or reach the next one. It says
+where it is as it goes, and at last one answer (`answer.py`). Starting the process takes 70 ms of a
+core, a fork 5: it waits for the next submission, and whoever knows that one will come can have it
+started before (`warm`).
 """
 
 from __future__ import annotations
@@ -39,11 +40,11 @@ _ENVIRONMENT: Final = (
     *("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH"),
 )
 _PLAIN: Final = say("Hand in nothing but the files of your package, written plainly.")
-_WAITED, _SHORT_OF_MEMORY = "SIGALRM", "SIGKILL"
+_SHORT_OF_MEMORY: Final = "SIGKILL"
 #: What was too much, by how the process has ended.
 _TOO_MUCH: Final = {
     "SIGXCPU": say("that takes more than {cpu_s} s of a processor's time", cpu_s=limits.CPU_S),
-    _WAITED: say("that takes more than {wall_s} s", wall_s=limits.WALL_S),
+    answer.TOO_LATE: say("that takes more than {wall_s} s", wall_s=limits.WALL_S),
     _SHORT_OF_MEMORY: say(
         "that takes more than {memory_bytes:.0f} MB of memory",
         memory_bytes=limits.MEMORY_BYTES / 1e6,
@@ -53,15 +54,16 @@ _TOO_MUCH: Final = {
     ),
 }
 
-_warm: list[_Process] = []
+#: Those that wait to be asked; as many as were asked at the same time.
+_idle: list[_Process] = []
 _lock = threading.Lock()
 
 
 def warm() -> None:
     """Start a process for the next submission, if none is waiting; it goes with this process."""
     with _lock:
-        if not _warm:
-            _warm.append(_Process())
+        if not _idle:
+            _idle.append(_Process())
 
 
 def read(
@@ -79,23 +81,16 @@ def read(
         UsageError, OSError: as there.
         GraderFailure: the process has failed.
     """
-    with _lock:
-        process = _warm.pop() if _warm else None
-    if process is not None and not process.is_there:
-        process.close()
-        process = None
-    with process or _Process() as asked:
-        at, last = asked.ask(
-            {
-                "cwd": str(Path.cwd()),
-                "path": str(path),
-                "executable": executable,
-                "scratch": str(scratch),
-                "is_started": is_started,
-                "usual": usual,
-            }
-        )
-        end = asked.end()
+    at, last, end = _asked(
+        {
+            "cwd": str(Path.cwd()),
+            "path": str(path),
+            "executable": executable,
+            "scratch": str(scratch),
+            "is_started": is_started,
+            "usual": usual,
+        }
+    )
     said = answer.parsed(last)
     if said is not None and not answer.is_short_of_memory(said):
         return answer.decoded(said)
@@ -123,8 +118,26 @@ def read(
     )
 
 
+def _asked(request: dict[str, object]) -> tuple[str, bytes, str]:
+    """Where the reading was at last, the last line that it said, and how it ended."""
+    with _lock:
+        process = _idle.pop() if _idle else None
+    if process is not None and not process.is_there:
+        process.close()
+        process = None
+    process = process or _Process()
+    try:
+        answered = process.ask(request)
+    except BaseException:
+        process.close()
+        raise
+    with _lock:
+        _idle.append(process)
+    return answered
+
+
 class _Process:
-    """One process that reads; a context that it does not outlive."""
+    """A process that reads, or has others of its kind do so."""
 
     def __init__(self) -> None:
         self._process = subprocess.Popen(
@@ -133,66 +146,43 @@ class _Process:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             env={name: os.environ[name] for name in _ENVIRONMENT if name in os.environ},
+            start_new_session=True,  # Ctrl-C is for the grader, which ends all of them
         )
-        self._was_waited_for = False
 
     @property
     def is_there(self) -> bool:
         """Whether it can be asked."""
         return self._process.poll() is None
 
-    def __enter__(self) -> _Process:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
     def close(self) -> None:
-        """End it."""
+        """End it, and what it has forked."""
+        with contextlib.suppress(OSError):
+            if hasattr(os, "killpg"):
+                os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         self._process.wait()
+        self.hang_up()
+
+    def hang_up(self) -> None:
+        """Let go of it: it ends when nobody holds its standard input any more."""
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 with contextlib.suppress(OSError):
                     pipe.close()
 
-    def ask(self, request: dict[str, object]) -> tuple[str, bytes]:
-        """Where it was at last, and the last line that it said."""
-        pipe = self._process.stdin
-        assert pipe is not None
-        with contextlib.suppress(OSError):  # it is gone; what it said tells why
-            pipe.write(json.dumps(request).encode() + b"\n")
-            pipe.close()
-        patience = threading.Timer(limits.WALL_S, self._give_up)
-        patience.daemon = True
-        patience.start()
-        try:
-            return self._listen()
-        finally:
-            patience.cancel()
-
-    def _give_up(self) -> None:
-        self._was_waited_for = True
-        self._process.kill()
-
-    def _listen(self) -> tuple[str, bytes]:
-        """Keep of what it says only the last line, and the last place."""
-        pipe = self._process.stdout
-        assert pipe is not None
-        at, last = "", b""
-        while line := pipe.readline(answer.MAX_BYTES + 1):
-            if line.startswith(answer.AT):
-                at = line[len(answer.AT) :].decode("ascii", "replace").strip()
-            else:
-                last = line
-        return at, last
-
-    def end(self) -> str:
-        """How it ended: the name of a signal, or an exit code."""
-        code = self._process.wait()
-        if self._was_waited_for:
-            return _WAITED
-        return signal.Signals(-code).name if code < 0 else str(code)
+    def ask(self, request: dict[str, object]) -> tuple[str, bytes, str]:
+        """Where the reading was at last, the last line that it said, and how it ended."""
+        asks, answers = self._process.stdin, self._process.stdout
+        assert asks is not None
+        assert answers is not None
+        with contextlib.suppress(OSError):  # it is gone; how it ended tells why
+            asks.write(json.dumps(request).encode() + b"\n")
+            asks.flush()
+        at, last = answers.readline(), answers.readline()
+        if not last:
+            return "", at, answer.end(self._process.wait())
+        how = json.loads(at)
+        return how["at"], last, how["end"]
 
 
 def _place(at: str) -> str:
@@ -204,7 +194,21 @@ def _place(at: str) -> str:
 
 @atexit.register
 def _forget() -> None:
-    """End a process that nobody has asked."""
+    """End those that wait."""
     with _lock:
-        while _warm:
-            _warm.pop().close()
+        while _idle:
+            _idle.pop().close()
+
+
+def _leave_to_parent() -> None:
+    """In a fork of this process: they are its parent's."""
+    global _lock
+    _lock = threading.Lock()
+    for process in _idle:
+        process.hang_up()
+        process._process.returncode = 0  # nothing is to wait for it here
+    _idle.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_to_parent)

@@ -1,14 +1,17 @@
-"""The process that reads what was handed in: takes one request, limits itself, answers, ends."""
+"""The process that reads what was handed in: each in a fork of itself, which limits itself."""
 
 from __future__ import annotations
 
+import gc
 import json
 import os
+import select
 import signal
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 from grader.errors import SubmissionError, UsageError
 from grader.language.phrase import say
@@ -18,18 +21,61 @@ from grader.submission.folder import shown
 from grader.submission.imports import read_imports
 from grader.submission.start import Whole
 
-_STDOUT: Final = 1
+_STDIN, _STDOUT, _STDERR = range(3)
 _SHORT_OF_MEMORY: Final = answer.short_of_memory()  # made while there is some
 
 
 def main() -> None:
-    """Answer the request that comes on the standard input; without one, end."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C is for the grader, which ends us
-    request = sys.stdin.buffer.readline()
-    if request:
-        limits.take()
-        _say(_answer(json.loads(request)))
-        os._exit(0)  # nothing is left to be done, and to take a large tree apart takes long
+    """Answer the requests that come on the standard input, a line each; end with it."""
+    gc.freeze()  # to look through it all would copy it into each fork
+    while line := sys.stdin.buffer.readline():
+        request = json.loads(line)
+        if hasattr(os, "fork"):
+            _say(_forked(request))
+        else:  # Windows: this process answers itself, has no limits, and is there for one only
+            limits.take()
+            _say(answer.ended("", _answer(request), 0))
+            return
+
+
+def _forked(request: dict[str, Any]) -> bytes:
+    """What a fork of this process says to a request, and how it ends."""
+    here, there = os.pipe()
+    if not (pid := os.fork()):
+        _be_fork(request, there)
+    os.close(there)
+    at, last = _heard(here, time.monotonic() + limits.WALL_S)
+    is_late = not select.select([here], [], [], 0)[0]  # else it has hung up
+    if is_late:
+        os.kill(pid, signal.SIGKILL)
+    os.close(here)
+    code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+    return answer.ended(at, last, -signal.SIGALRM if is_late else code)
+
+
+def _heard(here: int, deadline: float) -> tuple[str, bytes]:
+    """Where it was and what it said last, when it hangs up or its time is over."""
+    at, last, rest = b"", b"", b""
+    while select.select([here], [], [], max(deadline - time.monotonic(), 0))[0]:
+        if not (some := os.read(here, 2**16)):
+            break
+        *lines, rest = (rest[: answer.MAX_BYTES] + some).split(b"\n")
+        for line in lines:
+            if line.startswith(answer.AT):
+                at = line.removeprefix(answer.AT)
+            else:
+                last = line
+    return at.decode("ascii", "replace"), rest or last
+
+
+def _be_fork(request: dict[str, Any], there: int) -> NoReturn:
+    """Answer, with nothing in reach of what the other requests come and are answered by."""
+    os.dup2(os.open(os.devnull, os.O_RDONLY), _STDIN)
+    for stream in (_STDOUT, _STDERR):
+        os.dup2(there, stream)
+    limits.take()
+    _say(_answer(request))
+    os._exit(0)  # nothing is left to be done, and to take a large tree apart takes long
 
 
 def _answer(request: dict[str, Any]) -> bytes:

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import socket
 import zipfile
 from pathlib import Path
 
+import psutil
 import pytest
 
+from grader import limited
 from grader.errors import GraderFailure, SubmissionError
 from grader.submission import answer, reader
 from grader.submission.opening import EntryPoint, Script, open_submission
@@ -63,11 +66,20 @@ def test_a_table_with_keys_of_keys_of_keys_is_refused_by_the_memory_that_it_take
     assert "\n" not in sentence
 
 
+@pytest.mark.parametrize(
+    ("limit", "words"),
+    [("CPU_S", "takes more than 10 s of a processor's time"), ("WALL_S", "takes more than 120 s")],
+)
 def test_what_takes_too_long_is_refused_by_the_time_that_it_takes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
+    limit: str,
+    words: str,
 ) -> None:
-    given = "from grader.submission import limits; limits.CPU_S = 1; "
-    monkeypatch.setattr(reader, "_warm", [])
+    given = f"from grader.submission import limits; limits.{limit} = 1; "
+    reader._forget()
+    request.addfinalizer(reader._forget)
     monkeypatch.setattr(
         reader,
         "_COMMAND",
@@ -77,9 +89,7 @@ def test_what_takes_too_long_is_refused_by_the_time_that_it_takes(
     package(tmp_path, strings + SETUP.format(f"[{','.join(['s%v'] * 200_000)}]"))
     with pytest.raises(SubmissionError) as error, open_submission(tmp_path):
         pass
-    assert "takes more than 10 s of a processor's time (it got as far as setup.py)" in str(
-        error.value
-    )
+    assert f"{words} (it got as far as setup.py)" in str(error.value)
 
 
 @pytest.mark.parametrize(
@@ -288,23 +298,50 @@ def test_folders_that_cannot_be_are_no_fault_of_ours(tmp_path: Path) -> None:
 # the process itself
 
 
-def test_a_process_that_was_started_before_is_used_once(tmp_path: Path) -> None:
-    (tmp_path / "node.py").write_text(NODE)
+def waiting() -> int:
+    """The id of the only process that waits for a submission."""
     reader.warm()
+    (process,) = reader._idle
+    return process._process.pid
+
+
+def test_one_process_has_all_of_them_read_in_forks_of_itself(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text(NODE)
+    lay(tmp_path / "table", {"pyproject.toml": ".".join(["a"] * 20_000) + " = 1\n"})
+    first = waiting()
+    with pytest.raises(SubmissionError, match="MB of memory"), open_submission(tmp_path / "table"):
+        pass
     for _ in range(2):
         with open_submission(tmp_path / "node.py") as found:
             assert found.start == EntryPoint("node", "main")
+    assert waiting() == first
 
 
 def test_one_that_has_died_meanwhile_is_not_asked(tmp_path: Path) -> None:
     (tmp_path / "node.py").write_text("")
-    reader.warm()
-    waiting = reader._warm[0]._process
-    waiting.kill()
-    waiting.wait()
+    first = waiting()
+    os.kill(first, signal.SIGKILL)
+    psutil.Process(first).wait()
     with open_submission(tmp_path / "node.py") as found:
         assert isinstance(found.start, Script)
         assert found.start.path.name == "node.py"
+    assert waiting() != first
+
+
+def test_a_fork_of_the_grader_has_one_of_its_own(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text(NODE)
+    ours = waiting()
+
+    def work() -> bytes:
+        with open_submission(tmp_path / "node.py"):
+            theirs = waiting()
+        reader._forget()
+        return b"own" if theirs != ours else b"ours"
+
+    assert limited.call(work, limited.Limits()) == b"own"
+    assert waiting() == ours
+    with open_submission(tmp_path / "node.py") as found:
+        assert found.start == EntryPoint("node", "main")
 
 
 def test_its_imports_come_along(tmp_path: Path) -> None:
