@@ -193,8 +193,8 @@ def _place(at: str) -> str:
 
 
 @atexit.register
-def _forget() -> None:
-    """End those that wait."""
+def close() -> None:
+    """End those that wait; the next submission has another started."""
     with _lock:
         while _idle:
             _idle.pop().close()

@@ -19,6 +19,7 @@ import grader
 from grader import content
 from grader.errors import ExerciseError, GraderFailure, UsageError
 from grader.run import zygotes
+from grader.submission import reader
 
 ROOT = Path(__file__).parents[2]
 DRIVES = """
@@ -38,6 +39,7 @@ import ctypes, json, os, signal, sys, threading
 import grader
 from grader.run import zygotes
 from grader.run.processes import watched
+from grader.submission import reader
 
 def state():
     adopts = ctypes.c_int()
@@ -55,7 +57,8 @@ thread = threading.Thread(target=grade)
 thread.start()
 grade()
 thread.join()
-zygotes.close()  # which wait for the next grading
+zygotes.close()  # which wait for the next grading, as a reader of hand-ins does
+reader.close()
 assert state() == before, (before, state())
 print(len(result))
 """
@@ -163,7 +166,8 @@ def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
         with pytest.raises(GraderFailure, match="the simulator"):
             task.result()
     assert not [p for p in psutil.process_iter() if words(p) == ["sleep", seconds]]
-    zygotes.close()  # which wait for the next grading
+    zygotes.close()  # which wait for the next grading, as a reader of hand-ins does
+    reader.close()
     assert set(psutil.Process().children()) <= before
 
 

@@ -78,8 +78,8 @@ def test_what_takes_too_long_is_refused_by_the_time_that_it_takes(
     words: str,
 ) -> None:
     given = f"from grader.submission import limits; limits.{limit} = 1; "
-    reader._forget()
-    request.addfinalizer(reader._forget)
+    reader.close()
+    request.addfinalizer(reader.close)
     monkeypatch.setattr(
         reader,
         "_COMMAND",
@@ -299,10 +299,9 @@ def test_folders_that_cannot_be_are_no_fault_of_ours(tmp_path: Path) -> None:
 
 
 def waiting() -> int:
-    """The id of the only process that waits for a submission."""
+    """The id of the process that will be asked next."""
     reader.warm()
-    (process,) = reader._idle
-    return process._process.pid
+    return reader._idle[-1]._process.pid
 
 
 def test_one_process_has_all_of_them_read_in_forks_of_itself(tmp_path: Path) -> None:
@@ -335,7 +334,7 @@ def test_a_fork_of_the_grader_has_one_of_its_own(tmp_path: Path) -> None:
     def work() -> bytes:
         with open_submission(tmp_path / "node.py"):
             theirs = waiting()
-        reader._forget()
+        reader.close()
         return b"own" if theirs != ours else b"ours"
 
     assert limited.call(work, limited.Limits()) == b"own"
