@@ -16,7 +16,9 @@ from tests import once
 from tests.attacks import container, observing
 
 #: So many attacks share a container, and the grader in it.
-TOGETHER = 24
+TOGETHER = 12
+#: For a level and an attack: those that share its container, itself among them.
+SHARING = pytest.StashKey[dict[tuple[str, str], list[str]]]()
 #: What decides how they go, beside the tree.
 SOURCES = hashlib.sha256(
     b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.rglob("*.py")))
@@ -65,19 +67,31 @@ def told() -> Told:
     return told
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Lay side by side what shares a container: one worker asks for it, and no other waits."""
+    asked = {place: words for place, item in enumerate(items) if (words := _asked(item))}
+    attacks: dict[str, set[str]] = {}
+    for level, attack in asked.values():
+        attacks.setdefault(level, set()).add(attack)
+    sharing = {
+        (level, name): names[index // TOGETHER * TOGETHER :][:TOGETHER]
+        for level, names in ((level, sorted(found)) for level, found in attacks.items())
+        for index, name in enumerate(names)
+    }
+    config.stash[SHARING] = sharing
+    ordered = sorted(asked, key=lambda place: (asked[place][0], sharing[asked[place]]))
+    for place, item in zip(asked, [items[place] for place in ordered], strict=True):
+        items[place] = item
+
+
 @pytest.fixture(scope="session")
 def graded(request: pytest.FixtureRequest, told: Told) -> Graded:
     """Give the outcome of an attack at a level, graded with others that are asked for."""
-    asked: dict[str, set[str]] = {}
-    for item in request.session.items:
-        words = getattr(getattr(item, "callspec", None), "params", {})
-        if {"level", "attack"} <= words.keys():
-            asked.setdefault(words["level"], set()).add(words["attack"])
+    sharing = request.config.stash[SHARING]
 
     def graded(level: str, attack: str) -> Outcome:
-        names = sorted(asked[level])
-        first = names.index(attack) // TOGETHER * TOGETHER
-        seen = told(level, names[first : first + TOGETHER])[attack]
+        seen = told(level, sharing[level, attack])[attack]
         return Outcome(
             harm=tuple(seen["harm"]),
             code=seen["code"],
@@ -88,3 +102,9 @@ def graded(request: pytest.FixtureRequest, told: Told) -> Graded:
         )
 
     return graded
+
+
+def _asked(item: pytest.Item) -> tuple[str, str] | None:
+    """The level and the attack that a test asks for."""
+    words = getattr(getattr(item, "callspec", None), "params", {})
+    return (words["level"], words["attack"]) if {"level", "attack"} <= words.keys() else None
