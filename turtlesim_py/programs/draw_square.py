@@ -32,6 +32,9 @@ NEAR_RAD = 0.01
 STILL = 0.0001
 #: Between two commands [s]: a tick of the simulator.
 PERIOD_S = 0.016
+#: A server that has not met the client yet sends its answer to nobody: it is asked again after so
+#: many periods.
+ANSWERED_WITHIN = 125
 
 
 class PoseLike(Protocol):
@@ -104,7 +107,7 @@ class DrawSquare(RclcppNode):
     def __init__(self) -> None:
         super().__init__("draw_square")
         self._pose: PoseLike | None = None
-        self._reset_asked = False
+        self._waited = 0
         self._ready = False
         self._square = Square(self._log_goal)
         self._velocity = self.create_publisher(Twist, "turtle1/cmd_vel", 1)
@@ -121,9 +124,10 @@ class DrawSquare(RclcppNode):
             twist = Twist()
             twist.linear.x, twist.angular.z = self._square.command(self._pose)
             self._velocity.publish(twist)
-        elif not self._reset_asked and self._reset.service_is_ready():
-            self._reset_asked = True
-            self._reset.call_async(Empty.Request()).add_done_callback(self._on_reset)
+        elif not self._ready and self._reset.service_is_ready():
+            if self._waited % ANSWERED_WITHIN == 0:
+                self._reset.call_async(Empty.Request()).add_done_callback(self._on_reset)
+            self._waited += 1
 
     def _on_reset(self, _: Any) -> None:
         self._pose = None  # it was the old turtle's
