@@ -38,7 +38,7 @@ def test_two_nodes_in_two_namespaces_do_not_hear_each_other(graph: Graph) -> Non
         command = Twist(linear=Vector3(x=1.0))
         graph.publisher(Twist, "/first/turtle1/cmd_vel").publish(command)
         graph.call(Spawn, "/second/spawn", x=1.0, y=1.0, name="only_there")
-        graph.until(lambda: poses and poses[-1].x > 5.6, "motion of the first")
+        graph.until(lambda: others and poses and poses[-1].x > 5.6, "motion of the first")
         graph.until(lambda: graph.node.count_publishers("/second/only_there/pose"), "the spawned")
         assert {pose.x for pose in others} == {5.544444561004639}
         assert graph.node.count_publishers("/first/only_there/pose") == 0

@@ -73,16 +73,16 @@ def test_a_hidden_descendant_ends_with_the_run(namespace: str) -> None:
 
 def test_one_run_s_end_leaves_another_alone(namespace: str) -> None:
     first, second = 771_000 + os.getpid() % 1000, 772_000 + os.getpid() % 1000
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(2) as pool:  # they end with the threads that have started them
         short, long = pool.map(python, [HIDES] * 2, [first, second], [0, 1000])
-    assert long.pid
-    assert short.wait(20.0) == 0
-    read_until(long, "hidden")
-    short.end()
-    assert not sleeper(first)
-    assert sleeper(second)
-    long.end(gently=False)
-    assert not sleeper(second)
+        assert long.pid
+        assert short.wait(20.0) == 0
+        read_until(long, "hidden")
+        short.end()
+        assert not sleeper(first)
+        assert sleeper(second)
+        long.end(gently=False)
+        assert not sleeper(second)
 
 
 def read_until(student: Student, text: str) -> None:
