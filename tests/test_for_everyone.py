@@ -109,7 +109,7 @@ def browser():
     [
         report_of_turtles,
         report_of_a_crash,
-        report_of_a_robot,
+        pytest.param(report_of_a_robot, marks=pytest.mark.more("a package's has all its parts")),
         report_of_a_package,
         page_of_a_class,
         page_of_what_is_alike,

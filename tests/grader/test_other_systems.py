@@ -18,6 +18,7 @@ import psutil
 import pytest
 
 from grader.run.processes.watched import await_ends
+from tests.tiers import others_are_more
 
 ROOT = Path(__file__).parents[2]
 LACKING = Path(__file__).with_name("lacking.py")
@@ -157,7 +158,9 @@ print(type(student).__name__, len(family), len(left), student.poll() is not None
 """
 
 
-@pytest.mark.parametrize("how", ["gently", "at once"])
+@pytest.mark.parametrize(
+    "how", others_are_more("a gentle end begins so", ["gently", "at once"], "at once")
+)
 def test_what_a_submission_starts_ends_with_its_run(elsewhere, how) -> None:
     done = elsewhere.run("-c", ENDS_A_FAMILY, how)
     assert done.stdout == "Unsupervised 2 0 True\n", done.stderr

@@ -77,6 +77,16 @@ def test_packages_that_the_user_has_installed_for_himself_are_found_in_another_h
     assert environment.environment(tmp_path, {})["PYTHONUSERBASE"] == "/home/ada/.local"
 
 
+either_clock = pytest.mark.parametrize(
+    "clock",
+    [
+        virtual_time,
+        pytest.param(
+            real_time, marks=pytest.mark.more("in real time the recording's place is tried")
+        ),
+    ],
+)
+
 TELLS = """
 import os
 names = [name for name in os.environ if "TOKEN" in name]
@@ -85,7 +95,7 @@ print(names, "a-token" in started_with, os.path.expanduser("~") == os.environ["H
 """
 
 
-@pytest.mark.parametrize("clock", [virtual_time, real_time])
+@either_clock
 def test_a_token_never_reaches_a_submission_s_process(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock
 ) -> None:
@@ -203,7 +213,7 @@ raise ValueError("mine")
 """
 
 
-@pytest.mark.parametrize("clock", [virtual_time, real_time])
+@either_clock
 def test_a_submission_runs_in_a_copy_and_tells_of_where_it_was_handed_in(
     tmp_path: Path, clock
 ) -> None:

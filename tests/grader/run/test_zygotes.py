@@ -118,8 +118,8 @@ def cold(monkeypatch: pytest.MonkeyPatch) -> None:
     "level",
     [
         "private network",
-        pytest.param("user namespace", marks=pytest.mark.more("between the two others")),
-        "ROS domain",
+        pytest.param("user namespace", marks=pytest.mark.more("as the private network")),
+        pytest.param("ROS domain", marks=pytest.mark.more("keeping apart is tested in isolation")),
     ],
 )
 def test_a_forked_submission_finds_all_that_a_started_one_does(

@@ -12,6 +12,7 @@ from grader.testing import check_exercise, checking, drive, twist
 from tests.grader.language.holes import holes
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import CHECKS, MUTANTS
+from tests.tiers import others_are_more
 
 
 def driver(speed):
@@ -82,7 +83,7 @@ def test_what_is_left_of_the_points_must_be_what_was_said(tmp_path, driven):
     ]
 
 
-@pytest.mark.parametrize("language", ["fr", "zh"])
+@pytest.mark.parametrize("language", others_are_more("as French", ["fr", "zh"], "fr"))
 def test_what_is_to_mend_is_told_in_the_readers_language(language, tmp_path, driven):
     driven["slow"] = None
     driven["again"] = 1.5

@@ -14,6 +14,7 @@ from tests.grader.reports.page.test_parts import package_trace, page_of
 from tests.grader.reports.samples import verdict
 from tests.grader.scenes.robot.robots import walks
 from tests.grader.scenes.robot.test_solid import URDF
+from tests.tiers import others_are_more
 
 pytestmark = needs_browser
 
@@ -89,7 +90,7 @@ def read(browser, folder, page: str, width: int) -> dict:
     return said
 
 
-@pytest.mark.parametrize("width", [375, 1280])
+@pytest.mark.parametrize("width", others_are_more("the narrow screen is tried", [375, 1280], 375))
 def test_the_robot_is_turned_by_keys_by_dragging_by_buttons_and_moved_by_time(
     browser, robot, width, tmp_path
 ):
