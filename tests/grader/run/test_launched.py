@@ -9,7 +9,7 @@ from grader.submission.opening import open_submission
 from turtlesim_py.world.events import CmdVel, SetPen
 
 TWO_NODES = Path(__file__).parents[2] / "submissions" / "launched" / "spiral"
-PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=2))
+PLAN = Plan(Limits(first_motion_s=20, rest_s=0.3, total_s=6))
 
 
 def test_both_nodes_run_with_what_the_launch_file_gives_them() -> None:
