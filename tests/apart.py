@@ -28,7 +28,7 @@ STAYS = re.compile(
     r"|lttng-ust-wait-\S+|(sem\.)?(fastrtps|fastdds)_\S+"
 )
 ROOM, DOOR = "room.lock", "door.lock"
-_open = ExitStack()
+_open, _begun = ExitStack(), ExitStack()
 
 
 def is_worker(config: pytest.Config) -> bool:
@@ -67,8 +67,14 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def at_the_end(call: Callable[[], object]) -> None:
-    """Do something when this process has run its tests."""
-    _open.callback(call)
+    """Do something when this process has run its tests, before anybody looks what is left."""
+    _begun.callback(call)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionfinish() -> None:
+    """End what tests have begun for all that come after them."""
+    _begun.close()
 
 
 def pytest_unconfigure() -> None:

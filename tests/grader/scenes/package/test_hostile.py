@@ -98,7 +98,7 @@ def test_a_description_that_is_longer_than_any_is_told_so(tmp_path):
 
 def open_descriptors() -> set[int]:
     found = set()
-    for descriptor in map(int, os.listdir("/proc/self/fd")):
+    for descriptor in (int(each.name) for each in Path("/proc/self/fd").iterdir()):
         with suppress(OSError):  # the one for this list
             os.fstat(descriptor)
             found.add(descriptor)
