@@ -194,17 +194,16 @@ def _from_script(
         return Submission(handed_in.name, module.root, start, found, notes=notes, package=folder)
     # without its __init__.py, Python prefers any installed package of the same name
     mended = scratch / "with_init"
-    copy(module.root, mended)
-    for folder in module.bare:
-        (mended / folder / "__init__.py").touch()
-    missing = listed(str(folder / "__init__.py") for folder in module.bare)
-    found = say("{found}, with the missing {missing} added", found=found, missing=missing)
-    inside = folder.is_relative_to(module.root)
-    folder = mended / folder.relative_to(module.root) if inside else mended
+    copy(handed_in.base, mended)  # all of it: there may be packages beside
+    root = mended / module.root.relative_to(handed_in.base)
     added = tuple(each / "__init__.py" for each in module.bare)
-    return Submission(
-        handed_in.name, mended, start, found, notes=notes, added=added, package=folder
+    for each in added:
+        (root / each).touch()
+    found = say(
+        "{found}, with the missing {missing} added", found=found, missing=listed(map(str, added))
     )
+    folder = mended / folder.relative_to(handed_in.base)
+    return Submission(handed_in.name, root, start, found, notes=notes, added=added, package=folder)
 
 
 def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submission:

@@ -203,6 +203,25 @@ def test_a_missing_init_file_is_added_to_a_copy(tmp_path: Path) -> None:
     assert not (tmp_path / "turtlesim_challenge/__init__.py").exists()
 
 
+@pytest.mark.parametrize("source", ["", "src/"])
+def test_a_missing_init_file_takes_nothing_away(tmp_path: Path, source: str) -> None:
+    """Neither the package's own files where it has a source folder, nor packages beside it."""
+    where = "where='src', exclude=" if source else "exclude="
+    setup = SETUP.format(package="s", entries="'turtle_controller = s.node:main'")
+    beside = {"my_desc/package.xml": "", "my_desc/urdf/robot.urdf": "<robot/>"}
+    own = {"setup.py": setup.replace("exclude=", where), "package.xml": "", "launch/a.launch.py": ""}
+    files = {f"my_pkg/{name}": text for name, text in own.items()} | beside
+    with open_submission(lay(tmp_path, files | {f"my_pkg/{source}s/node.py": NODE})) as submission:
+        package = submission.package
+        assert package is not None
+        assert submission.root == package / source
+        assert (submission.root / "s/__init__.py").read_text() == ""
+        assert (package / "launch/a.launch.py").exists()
+        assert (package.parent / "my_desc/urdf/robot.urdf").exists()
+        assert submission.copy is not None
+        assert package.is_relative_to(submission.copy.folder)
+
+
 def test_a_missing_function_is_named_with_those_that_are_there(tmp_path: Path) -> None:
     files = package("s") | {"s/turtle_controller.py": "class Node: ...\ndef Main(): ...\n"}
     text = refused(lay(tmp_path, files))
