@@ -28,12 +28,19 @@ def install() -> Callable[[], object]:
         drawn: bytes = pass_on(source.randbytes, size)
         return drawn
 
+    def getrandom(size: int, flags: int = 0) -> bytes:
+        return urandom(size)
+
     def seed(self: random.Random, a: Any = None, version: int = 2) -> None:
         pass_on(real_seed, self, next(seeds) if a is None else a, version)
 
     os.urandom = urandom
     random._urandom = urandom  # type: ignore[attr-defined]
+    if hasattr(os, "getrandom"):
+        os.getrandom = getrandom
     random.Random.seed = seed  # type: ignore[method-assign]
+    # the module's own is a method that was bound at import
+    random.seed = random._inst.seed
     random.seed(0)
     os.cpu_count = lambda: PROCESSORS
     os.sched_getaffinity = lambda _: set(range(PROCESSORS))

@@ -209,7 +209,11 @@ def test_a_missing_init_file_takes_nothing_away(tmp_path: Path, source: str) -> 
     where = "where='src', exclude=" if source else "exclude="
     setup = SETUP.format(package="s", entries="'turtle_controller = s.node:main'")
     beside = {"my_desc/package.xml": "", "my_desc/urdf/robot.urdf": "<robot/>"}
-    own = {"setup.py": setup.replace("exclude=", where), "package.xml": "", "launch/a.launch.py": ""}
+    own = {
+        "setup.py": setup.replace("exclude=", where),
+        "package.xml": "",
+        "launch/a.launch.py": "",
+    }
     files = {f"my_pkg/{name}": text for name, text in own.items()} | beside
     with open_submission(lay(tmp_path, files | {f"my_pkg/{source}s/node.py": NODE})) as submission:
         package = submission.package
