@@ -86,7 +86,10 @@ DEADLINE_S = 30.0  # only a failing test waits for it
 
 
 class Peer:
-    """A node and what spins it, alone in a context of its own."""
+    """A node and what spins it, alone in a context of its own.
+
+    Its topics are not a turtle's: a simulator may stand in the same domain.
+    """
 
     def __init__(self) -> None:
         self._context = Context()
@@ -156,7 +159,7 @@ def test_message_arrives_as_it_was_sent(peer: Peer, interfaces: Interfaces, name
     kind = getattr(interfaces, name)
     message = kind(**MESSAGES[name])
     received: Future = Future()
-    topic = f"turtle1/{name.lower()}"
+    topic = f"sent/{interfaces.package}/{name.lower()}"
     peer.node.create_subscription(kind, topic, received.set_result, 7)
     publisher = peer.node.create_publisher(kind, topic, 7)
     peer.node.create_timer(0.01, lambda: publisher.publish(message))  # until it is known
@@ -177,8 +180,8 @@ def test_service_is_called_and_answers(peer: Peer, interfaces: Interfaces, name:
         requests.append(incoming)
         return response
 
-    peer.node.create_service(kind, f"turtle1/{name.lower()}", answer)
-    client = peer.node.create_client(kind, f"turtle1/{name.lower()}")
+    peer.node.create_service(kind, f"sent/{interfaces.package}/{name.lower()}", answer)
+    client = peer.node.create_client(kind, f"sent/{interfaces.package}/{name.lower()}")
     assert client.wait_for_service(DEADLINE_S)
     assert peer.wait_for(client.call_async(request_)) == response
     assert requests == [request_]
@@ -193,8 +196,8 @@ def test_action_gives_feedback_and_a_result(peer: Peer, interfaces: Interfaces) 
         return kind.Result(delta=-goal.request.theta)
 
     feedback: Future = Future()
-    ActionServer(peer.node, kind, "turtle1/rotate_absolute", execute)
-    client = ActionClient(peer.node, kind, "turtle1/rotate_absolute")
+    ActionServer(peer.node, kind, "sent/rotate_absolute", execute)
+    client = ActionClient(peer.node, kind, "sent/rotate_absolute")
     assert client.wait_for_server(DEADLINE_S)
     goal = peer.wait_for(
         client.send_goal_async(

@@ -47,7 +47,10 @@ class Rotation:
 
     def outcome(self, goal: Goal) -> tuple[int, float]:
         """Wait for the end of a goal: its status and delta."""
-        response = self.graph.done(goal.result, "a result")
+        first = [goal.result]  # asked for when it was sent
+        response = self.graph.answered(
+            lambda: first.pop() if first else goal.handle.get_result_async(), "a result"
+        )
         return response.status, response.result.delta
 
 

@@ -13,19 +13,22 @@ function end(error) {
 
 const asked = (ask) => new Promise((done, fail) => { ask(done, fail); });
 
-/** Commands until it has come as far as x [m]. */
+/** Commands until it has come as far as x [m] and stands: a late one would abort what follows. */
 function driveTo(x) {
   const pose = new ROSLIB.Topic({ ros, name: `${turtle}/pose`, messageType: "turtlesim/msg/Pose" });
   const velocity = new ROSLIB.Topic({
     ros, name: `${turtle}/cmd_vel`, messageType: "geometry_msgs/msg/Twist",
   });
+  let hasStopped = false;
   return new Promise((done) => {
     pose.subscribe((told) => {
-      const isThere = told.x > x;
-      velocity.publish({ linear: { x: isThere ? 0 : 2 } });
-      if (!isThere) return;
-      pose.unsubscribe();
-      done();
+      if (!hasStopped) {
+        hasStopped = told.x > x;
+        velocity.publish({ linear: { x: hasStopped ? 0 : 2 } });
+      } else if (told.linear_velocity === 0) {
+        pose.unsubscribe();
+        done();
+      }
     });
   });
 }
