@@ -49,7 +49,7 @@ tools:
 needs: tools
 	@$(BIN)/python -m tests.needs | sh -ex
 
-# a worker for each core, modules in one piece; who has nothing left takes from the end of the other
+# one and a half workers for a core, modules in one piece; who has nothing left takes from the end of the other
 PYTEST = -m pytest --numprocesses=logical --dist=worksteal
 
 test: tools
