@@ -77,6 +77,7 @@ def lost(controller, package=PACKAGE, ticks=1000):
     trace = drive(controller, ticks, EXERCISE.setting)
     recording = Recording(trace, scene="robot", package=package)
     found = judge(Recordings(recording), EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
+    assert [v.rationale for v in found if "fault of the exercise" in v.rationale] == []
     return {v.check: round(v.share, 2) for v in found if not v.passed}
 
 
