@@ -19,6 +19,8 @@ MOVES = """points: {moves: 100}
 limits: {first_motion_s: 3, rest_s: 0.5, total_s: 5}
 varied_runs: {count: 0}
 """
+#: ... and of two, from two starts.
+TWICE = MOVES.replace("count: 0", "count: 1, seed: 2022, nearest_m: 1.0, farthest_m: 1.5")
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,7 @@ ATTACKS = {
     "process_vm": Attack(PROCESSES),
     "ptraces": Attack(PROCESSES),
     "takes_descriptors": Attack(PROCESSES),
+    "works_in_a_descriptor": Attack(PROCESSES, most=100, outcome="finished"),
     "replaces_the_recording": Attack(PROCESSES),
     "kills_all": Attack(PROCESSES),
     "kills_each": Attack(PROCESSES),
@@ -98,6 +101,7 @@ ATTACKS = {
     "mounts": Attack(KERNEL),
     "enters_namespaces": Attack(KERNEL),
     "asks_the_kernel": Attack(KERNEL),
+    "watches_files": Attack(KERNEL, outcome="exited"),
     "has_privileges": Attack(KERNEL),
     "has_privileges_in_real_time": Attack(KERNEL, program="has_privileges", time="real"),
     "has_privileges_from_nothing": Attack(KERNEL, program="has_privileges", beside="numpy.py"),
@@ -105,6 +109,8 @@ ATTACKS = {
     "replaces_the_folder_of_locks": Attack(LEFTOVERS),
     "keeps_locks": Attack(LEFTOVERS),
     "leaves_files": Attack(LEFTOVERS, NAMESPACES),
+    "leaves_links": Attack(LEFTOVERS, outcome="exited"),
+    "passes_on_a_message": Attack(LEFTOVERS, exercise=TWICE, outcome="exited"),
     "daemons": Attack(LEFTOVERS),
     "daemons_of_libc": Attack(LEFTOVERS),
     "outlives_main": Attack(LEFTOVERS, ALL),

@@ -133,7 +133,14 @@ OF_FILES: Final[dict[str, Numbers]] = {
 }
 #: What is as if the kernel did not know it, so that libraries take an older way. The flags of
 #: clone3 lie in memory, where a filter cannot look; glibc then uses clone.
-UNKNOWN: Final[dict[str, Numbers]] = {"clone3": (435, 435)}
+#: inotify is told of names where nothing may be read (Landlock does not look at it), and the user
+#: has 128 of them for all programs.
+UNKNOWN: Final[dict[str, Numbers]] = {
+    "clone3": (435, 435),
+    "inotify_init": (253, None),
+    "inotify_init1": (294, 26),
+    "inotify_add_watch": (254, 27),
+}
 #: The last system call that was looked at for this list (file_setattr, Linux 6.17): those that came
 #: later are as unknown as to an older kernel. Numbers of x32 are larger, too.
 NEWEST: Final = 469
@@ -141,6 +148,7 @@ NEWEST: Final = 469
 #: What is looked at more closely: see `_by_arguments`.
 CLONE: Final[Numbers] = (56, 220)
 IOCTL: Final[Numbers] = (16, 29)
+FCNTL: Final[Numbers] = (72, 25)
 SOCKET: Final[Numbers] = (41, 198)
 SOCKETPAIR: Final[Numbers] = (53, 199)
 SETSOCKOPT: Final[Numbers] = (54, 208)
@@ -163,6 +171,8 @@ SECCOMP: Final[Numbers] = (317, 277)
 NEW_NAMESPACES: Final = 0x7E020000
 #: Types into a terminal as if its user did; pastes there; loads a line discipline.
 TIOCSTI, TIOCLINUX, TIOCSETD = 0x5412, 0x541C, 0x5423
+#: Have others wait before they open a file (F_SETDELEG: from Linux 6.19 on), or are told of them.
+F_SETLEASE, F_NOTIFY, F_SETDELEG = 1024, 1026, 1040
 AF_UNIX, AF_INET, AF_INET6, AF_NETLINK = 1, 2, 10, 16
 SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET, SOCK_KIND = 1, 2, 5, 0xF
 SOL_SOCKET, SO_SNDBUF, SO_RCVBUF = 1, 7, 8
@@ -254,6 +264,7 @@ def _by_arguments(place: int, *, is_apart: bool) -> list[Instruction]:
     no_family = _refuse(errno.EAFNOSUPPORT)
     spaces = [_load(0), (JUMP_SET, 0, 1, NEW_NAMESPACES), refused, allowed]
     terminal = [_load(1), *_if(refused, TIOCSTI, TIOCLINUX, TIOCSETD), allowed]
+    others = [_load(1), *_if(refused, F_SETLEASE, F_NOTIFY, F_SETDELEG), allowed]
     # What lies in sockets counts as nobody's memory. Asked for more room, they say yes.
     room = [_load(1), *_unless(SOL_SOCKET, allowed), _load(2)]
     room += [*_if(_refuse(0), SO_SNDBUF, SO_RCVBUF), allowed]
@@ -286,6 +297,7 @@ def _by_arguments(place: int, *, is_apart: bool) -> list[Instruction]:
     return [
         *_call(CLONE[place], spaces),
         *_call(IOCTL[place], terminal),
+        *_call(FCNTL[place], others),
         *_call(SETSOCKOPT[place], room),
         *_call(PRLIMIT64[place], own),
         *_call(SCHED_SETSCHEDULER[place], ordinary),

@@ -79,7 +79,7 @@ def every_number(machine: str) -> dict[str, int]:
     place = seccomp.MACHINES[machine][0]
     groups = [*seccomp.REFUSED.values(), seccomp.UNKNOWN, seccomp.OF_A_PROCESS]
     groups.append(seccomp.OF_FILES)
-    names = "clone ioctl socket socketpair setsockopt prlimit64 sched_setscheduler"
+    names = "clone ioctl fcntl socket socketpair setsockopt prlimit64 sched_setscheduler"
     names += " setpriority ioprio_set"
     single = {name: getattr(seccomp, name.upper()) for name in [*names.split(), "seccomp"]}
     found = {name: numbers[place] for group in [*groups, single] for name, numbers in group.items()}
@@ -133,7 +133,11 @@ def test_calls_of_other_machines_and_later_kernels_are_unknown(machine: str) -> 
     assert answer(machine, x32_bit | 101) == ENOSYS
     assert answer(machine, seccomp.NEWEST + 1) == ENOSYS
     assert answer(machine, LOW) == ENOSYS
-    assert answer(machine, seccomp.UNKNOWN["clone3"][0]) == ENOSYS
+    place = seccomp.MACHINES[machine][0]
+    for numbers in seccomp.UNKNOWN.values():
+        if numbers[place] is not None:
+            assert answer(machine, numbers[place], 1, 2) == ENOSYS
+    assert answer(machine, x32_bit | seccomp.FCNTL[place], 3, seccomp.F_SETLEASE) == ENOSYS
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -153,6 +157,18 @@ def test_nothing_is_typed_into_a_terminal(machine: str) -> None:
     for request in (seccomp.TIOCSTI, seccomp.TIOCLINUX, seccomp.TIOCSETD):
         assert answer(machine, number, 0, request) == EPERM
         assert answer(machine, number, 0, 1 << 32 | request) == EPERM  # the kernel sees 32 bits
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("apart", [True, False])
+def test_nobody_waits_for_a_file_or_is_told_of_it(machine: str, apart: bool) -> None:
+    number = seccomp.FCNTL[seccomp.MACHINES[machine][0]]
+    f_setfl, f_setlk, f_getlease, f_dupfd_cloexec = 4, 6, 1025, 1030
+    for command in (f_setfl, f_setlk, f_getlease, f_dupfd_cloexec):
+        assert answer(machine, number, 3, command, apart=apart) == 0
+    for command in (seccomp.F_SETLEASE, seccomp.F_NOTIFY, seccomp.F_SETDELEG):
+        assert answer(machine, number, 3, command, apart=apart) == EPERM
+        assert answer(machine, number, 3, 1 << 32 | command, apart=apart) == EPERM
 
 
 @pytest.mark.parametrize("machine", MACHINES)
