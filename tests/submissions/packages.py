@@ -29,16 +29,21 @@ REFERENCE = SOLUTIONS["reference"].path
 HANDED_IN = ("r2d2_tutorial", "urdf_to_package")
 
 
-def looked_at(path: Path, package: str = "", cpu_s: float = steps.LIMITS.cpu_s) -> PackageTrace:
+def looked_at(
+    path: Path,
+    package: str = "",
+    cpu_s: float = steps.LIMITS.cpu_s,
+    wall_s: float = steps.LIMITS.wall_s,
+) -> PackageTrace:
     """What is found of a package, without what confines the process that looks.
 
     Args:
-        cpu_s: so much processor time may a step take.
+        cpu_s, wall_s: so much time may a step take.
     """
     process = _looking()
     assert process.stdin is not None
     assert process.stdout is not None
-    process.stdin.write(json.dumps([str(path), package, cpu_s]).encode() + b"\n")
+    process.stdin.write(json.dumps([str(path), package, cpu_s, wall_s]).encode() + b"\n")
     process.stdin.flush()
     size = int.from_bytes(process.stdout.read(8), "big")
     assert size, "what looks at packages has died"
@@ -63,8 +68,8 @@ def look_without_end() -> None:
     import setuptools  # noqa: F401  once, and not by each copy that runs a setup.py
 
     for line in sys.stdin:
-        path, package, cpu_s = json.loads(line)
-        limits = replace(steps.LIMITS, cpu_s=cpu_s)
+        path, package, cpu_s, wall_s = json.loads(line)
+        limits = replace(steps.LIMITS, cpu_s=cpu_s, wall_s=wall_s)
         with patch.object(steps, "LIMITS", limits), tempfile.TemporaryDirectory() as scratch:
             found = encode(look(Path(path), package, Path(scratch).resolve()))
         sys.stdout.buffer.write(len(found).to_bytes(8, "big") + found)

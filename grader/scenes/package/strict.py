@@ -8,7 +8,7 @@ A dataclass says by its annotations what is taken: `str`, `int`, `bool`, `tuple[
 from __future__ import annotations
 
 import types
-from dataclasses import asdict, field, fields, is_dataclass
+from dataclasses import field, fields, is_dataclass
 from functools import cache
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
@@ -22,9 +22,18 @@ def longest(characters: int) -> Any:
     return field(default=(), metadata={"longest": characters})
 
 
-def to_json(value: Any) -> dict[str, Any]:
-    """As `from_json` takes it."""
-    return asdict(value)
+def to_json(value: Any) -> Any:
+    """As `from_json` takes it: what is longer than that is cut."""
+    return _cut(value, LONGEST)
+
+
+def _cut(value: Any, most: int) -> Any:
+    if is_dataclass(value):
+        parts = _fields(value.__class__)
+        return {name: _cut(getattr(value, name), longest) for name, (_, longest) in parts.items()}
+    if isinstance(value, tuple):
+        return [_cut(each, most) for each in value[:MOST]]
+    return value[:most] if isinstance(value, str) else value
 
 
 def from_json(kind: type[Made], data: Any) -> Made:

@@ -161,3 +161,41 @@ def test_an_exercise_without_nodes_has_no_limits(tmp_path):
     with pytest.raises(ExerciseError, match="nothing is started in the scene 'package'"):
         load_exercise(tmp_path)
     assert EXERCISE.conditions == {}
+
+
+@pytest.mark.parametrize("what", ["stubs", "empty", "prefix", ""])
+def test_a_set_up_that_puts_a_file_where_it_is_looked_at_is_judged(what, tmp_path):
+    code = (
+        "import glob, os, shutil, tempfile\n"
+        "for each in glob.glob(f'{tempfile.gettempdir()}/package-*'):\n"
+        f"    shutil.rmtree(each + '/{what}', ignore_errors=True)\n"
+        f"    open(each.rstrip('/') + '/{what}'.rstrip('/'), 'w').close()\n"
+    )
+    text = (REFERENCE / "setup.py").read_text()
+    result = grader.grade(written(tmp_path, {"setup.py": code + text}), EXERCISE)
+    assert result.run.outcome == "finished"
+    assert min(shares(result).values()) == 0
+
+
+#: Fills every place that it may write to, with files of so many bytes.
+FULL = """
+import os
+import tempfile
+for folder in (tempfile.gettempdir(), os.path.expanduser("~"), "/tmp", os.getcwd()):
+    try:
+        for number in range(20_000):
+            with open(f"{folder}/full{number}", "wb", buffering=0) as file:
+                file.write(bytes(SIZE))
+    except OSError:
+        pass
+"""
+
+
+@pytest.mark.parametrize("size", [2**20, 0], ids=["bytes", "files"])
+def test_a_set_up_that_leaves_no_room_is_judged(size, tmp_path):
+    text = (REFERENCE / "setup.py").read_text()
+    text = f"{FULL.replace('SIZE', str(size))}{text}"
+    result = grader.grade(written(tmp_path, {"setup.py": text}), EXERCISE)
+    assert result.run.outcome == "finished"
+    assert shares(result)["launch"] == 0
+    assert "No space left on device" in result.diagnosis.cause

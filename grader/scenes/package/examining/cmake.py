@@ -5,17 +5,28 @@ from __future__ import annotations
 import fnmatch
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.scenes.package.examining import paths
+from grader.scenes.package.examining.steps import Ended, attempt
+from grader.scenes.package.trace import Problem
+
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
-_COMMAND = re.compile(r"\b(project|set|file|install)\s*\(([^()]*)\)", re.I)
+_COMMAND = re.compile(r"\b(project|set|file|install)\s*\(([^()]*)\)|\b(if|endif)\s*\(", re.I)
 #: The innermost loop: its head, and its body.
 _LOOP = re.compile(
     r"\bforeach\s*\(([^()]*)\)((?:(?!\bforeach\s*\().)*?)\bendforeach\s*\([^()]*\)", re.I | re.S
 )
-_HERE = ("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR")
+_HERE = (
+    *("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR"),
+    "CMAKE_CURRENT_LIST_DIR",
+)
+FILE = "CMakeLists.txt"
 _MOST_CHARACTERS, _MOST_FILES = 1_000_000, 20_000
 _WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|(\S+)', re.DOTALL)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
@@ -36,34 +47,50 @@ class Read(NamedTuple):
         files: (folder below the prefix, file of the package).
         absent: what it installs, and is not there.
         programs: what is compiled and installed: 'lib/NAME/PROGRAM'.
-        unknown: what it installs, with variables that nobody knows here.
+        problems: commands that nobody can follow here.
     """
 
     project: str
     files: list[tuple[str, str]]
     absent: list[str]
     programs: list[str]
-    unknown: list[str]
+    problems: list[Problem]
 
 
 def read(folder: Path) -> Read:
     """What the CMakeLists.txt of a package says."""
-    with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
-        text = file.read(_MOST_CHARACTERS)
+    text = paths.read(folder / FILE, _MOST_CHARACTERS).decode("utf-8", "replace")
     variables = {**dict.fromkeys(_HERE, "."), "CMAKE_INSTALL_PREFIX": ""}
     made = Read("", [], [], [], [])
+    depth = 0  # of if()
     for found in _COMMAND.finditer(_unrolled(_COMMENT.sub("", text))):
+        if found[3]:
+            depth += 1 if found[3].lower() == "if" else -1
+            continue
         words = [_filled(a or b, variables) for a, b in _WORD.findall(found[2])]
-        match found[1].lower():
-            case "project" if words:
-                variables["PROJECT_NAME"] = words[0]
-            case "set" if words:
-                variables[words[0]] = ";".join(words[1:])
-            case "file" if len(words) > 2 and words[0].upper() in ("GLOB", "GLOB_RECURSE"):
-                variables[words[1]] = ";".join(_globbed(folder, words))
-            case "install":
-                _install(folder, words, made)
+        known = len(made.absent)
+        try:
+            attempt(partial(_follow, folder, found[1].lower(), words, variables, made))
+        except Ended as ended:
+            line = text[: text.find(found[0])].count("\n") + 1 if found[0] in text else 0
+            made.problems.append(replace(ended.problem, file=FILE, line=line))
+        if depth > 0:  # on a condition, mostly that it is there
+            del made.absent[known:]
     return made._replace(project=variables.get("PROJECT_NAME", ""))
+
+
+def _follow(
+    folder: Path, command: str, words: list[str], variables: dict[str, str], made: Read
+) -> None:
+    match command:
+        case "project" if words:
+            variables["PROJECT_NAME"] = words[0]
+        case "set" if words:
+            variables[words[0]] = ";".join(words[1:])[:_MOST_CHARACTERS]
+        case "file" if len(words) > 2 and words[0].upper() in ("GLOB", "GLOB_RECURSE"):
+            variables[words[1]] = ";".join(_globbed(folder, words))
+        case "install":
+            _install(folder, words, made)
 
 
 def _unrolled(text: str) -> str:
@@ -89,22 +116,41 @@ def _unrolled(text: str) -> str:
 
 
 def _globbed(folder: Path, words: list[str]) -> list[str]:
-    before = "" if words[0].upper() == "GLOB" else "**/"
+    """The files that patterns match: `*` within a name; of GLOB_RECURSE in folders below, too."""
     patterns = [each for each in words[2:] if each.upper() != "CONFIGURE_DEPENDS"]
-    found = {
-        str(path.relative_to(folder))
-        for each in patterns
-        if not each.startswith("/") and ".." not in each and "RELATIVE" not in patterns
-        for path in folder.glob(before + each.removeprefix("./"))
-        if path.is_file()
-    }
-    return sorted(found)[:_MOST_FILES]
+    if patterns[:1] == ["RELATIVE"]:
+        if patterns[1:2] != ["."]:
+            return []
+        patterns = patterns[2:]
+    found: set[str] = set()
+    names = list(islice(_files_below(folder), _MOST_FILES))
+    for pattern in patterns:
+        parts = [each for each in pattern.split("/") if each not in ("", ".")]
+        if pattern.startswith("/") or ".." in parts or not parts:
+            continue
+        for name in names:
+            whole = name.split("/")
+            if words[0].upper() == "GLOB_RECURSE" and len(whole) > len(parts):
+                whole = [*whole[: len(parts) - 1], whole[-1]]
+            if len(whole) == len(parts) and all(map(fnmatch.fnmatchcase, whole, parts)):
+                found.add(name)
+    return sorted(found)
+
+
+def _files_below(folder: Path) -> Iterator[str]:
+    for at, folders, names in os.walk(folder):
+        folders.sort()
+        for name in sorted(names):
+            path = Path(at, name)
+            if paths.is_file(path):
+                yield path.relative_to(folder).as_posix()
 
 
 def _filled(word: str, variables: dict[str, str]) -> str:
     """A word with its variables put in; those that nobody knows stay as they are."""
     for _ in range(5):
         word = _VARIABLE.sub(lambda found: variables.get(found[1], found[0]), word)
+        word = word[:_MOST_CHARACTERS]
     return word
 
 
@@ -117,8 +163,7 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
     named = [each for word in words[1:end] for each in word.split(";") if each]
     unknown = [each for each in (where, *named) if "${" in each or "$<" in each]
     if unknown:
-        made.unknown.append(unknown[0])
-        return
+        raise Ended(Problem("unknown", f"it installs {unknown[0]:.200}"))
     if words[0].upper() == "TARGETS":
         programs += [f"{where}/{name}" for name in named]
         return
@@ -126,10 +171,9 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
     for name in named:
         source = Path(os.path.normpath(folder / name))
         if not source.resolve().is_relative_to(folder.resolve()):
-            made.unknown.append(name)
-            continue
+            raise Ended(Problem("unknown", f"it installs {name:.200}"))
         if words[0].upper() == "DIRECTORY":
-            if not source.is_dir():
+            if not paths.is_folder(source):
                 absent.append(name.rstrip("/"))
                 continue
             # with a slash at its end what is in it is installed, without one the folder itself
@@ -143,7 +187,7 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
                         below = path.relative_to(base).parent.as_posix()
                         to = f"{where}/{below}" if below != "." else where
                         files.append((to, os.path.relpath(path, folder)))
-        elif source.is_file():
+        elif paths.is_file(source):
             files.append((where, os.path.relpath(source, folder)))
         else:
             absent.append(name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import errno
 import os
 import re
 import shutil
@@ -15,7 +16,7 @@ from typing import Any
 from grader.scenes.package.examining import cmake, known, paths
 from grader.scenes.package.examining.packages import MANIFEST, Package
 from grader.scenes.package.examining.setup_call import is_told, run_setup
-from grader.scenes.package.examining.steps import NONSENSE, Ended, step
+from grader.scenes.package.examining.steps import NONSENSE, Ended, attempt, step
 from grader.scenes.package.trace import Problem, Script, Setup
 
 MARKS = "share/ament_index/resource_index/packages"
@@ -56,7 +57,20 @@ class Installed:
 
 def lay_out(package: Package, root: Path, prefix: Path) -> Installed:
     """Find out what a package installs, and copy that."""
-    said, problem, absent, files, programs = _said(package, prefix)
+    try:
+        return attempt(lambda: _laid_out(package, root, prefix))
+    except Ended as ended:
+        name = package.name or package.folder.name[:_LONGEST]
+        return Installed(package, name, nothing(name, ended.problem))
+
+
+def nothing(name: str, problem: Problem) -> Setup:
+    """Of a package that nobody can lay out."""
+    return Setup(name, "", "", "", "", (), problem, (), (), (), "", (), (), ())
+
+
+def _laid_out(package: Package, root: Path, prefix: Path) -> Installed:
+    said, problem, absent, files, programs = _said(package)
     lines = said.get("scripts", [])[:_MOST]
     scripts = [_script(line[:_LONGEST], package, said.get("packages")) for line in lines]
     name = (package.name or said.get("name", "") or package.folder.name)[:_LONGEST]
@@ -98,17 +112,19 @@ def lay_out(package: Package, root: Path, prefix: Path) -> Installed:
 
 
 def _said(
-    package: Package, prefix: Path
+    package: Package,
 ) -> tuple[dict[str, Any], Problem | None, list[str], list[tuple[str, str]], list[str]]:
     """The set-up's arguments, its problem, what is absent, (folder, file) of each, programs."""
     if package.is_cmake:
-        if not (package.folder / "CMakeLists.txt").is_file():
+        if not paths.is_file(package.folder / cmake.FILE):
             return {}, Problem("error", "there is no CMakeLists.txt"), [], [], []
-        found = cmake.read(package.folder)
-        unknown = f"it installs {found.unknown[0]:.200}" if found.unknown else ""
-        problem = Problem("unknown", unknown, "CMakeLists.txt") if unknown else None
+        try:
+            found = attempt(lambda: cmake.read(package.folder), cmake.FILE)
+        except Ended as ended:
+            return {}, ended.problem, [], [], []
+        problem = found.problems[0] if found.problems else None
         return {"name": found.project}, problem, found.absent, found.files, found.programs
-    if not (package.folder / "setup.py").is_file():
+    if not paths.is_file(package.folder / "setup.py"):
         return {}, Problem("error", "there is no setup.py"), [], [], []
 
     def own(path: str) -> str:
@@ -126,6 +142,7 @@ def _said(
 
 
 def _copy(path: Path, prefix: Path, to: str) -> bool:
+    """Whether it could be copied; OSError: there is no room left."""
     target = Path(os.path.normpath(prefix / to))
     if not target.is_relative_to(prefix):
         return False  # somewhere else on the machine: nobody finds it there
@@ -136,7 +153,9 @@ def _copy(path: Path, prefix: Path, to: str) -> bool:
         except OSError:  # it is longer than a run's files may be, or there is no more room
             target.unlink(missing_ok=True)
             target.symlink_to(path)
-    except (OSError, ValueError):  # where it would lie no file can be
+    except (OSError, ValueError) as error:  # where it would lie no file can be
+        if getattr(error, "errno", None) == errno.ENOSPC:
+            raise
         return False
     return True
 

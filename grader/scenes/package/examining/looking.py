@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from difflib import get_close_matches
@@ -14,7 +14,7 @@ from grader.scenes.package import strict, trace
 from grader.scenes.package.examining import descriptions, launches, paths, surfaces
 from grader.scenes.package.examining.layout import Installed
 from grader.scenes.package.examining.place import Place
-from grader.scenes.package.examining.steps import NONSENSE, SPOILT, Ended, problem_of, step
+from grader.scenes.package.examining.steps import Ended, attempt, problem_of, step
 from grader.scenes.package.trace import (
     Description,
     Launch,
@@ -27,10 +27,6 @@ from grader.scenes.package.trace import (
 _MOST_LAUNCHES, _MOST_TEXTS = 40, 20
 #: Of a launch file so much is looked at for a line [bytes].
 _LONGEST_FILE = 1_000_000
-
-
-class _TooMuch(ValueError):
-    """More than is taken of a package; the text completes "it hands on"."""
 
 
 class Looking:
@@ -75,25 +71,21 @@ class Looking:
         return {**strict.to_json(self._place.judged.setup), "depends": list(dict.fromkeys(names))}
 
     def _launch(self, file: str) -> Launch:
-        place, (of, name) = self._place, self._files[file]
-        if self._gone:
-            return _ended(file, vars(Problem("limit", f"it cannot be evaluated: {self._gone}")))
         try:
-            said = _cleaned(step(lambda: _evaluated(place, of, name), place.own), place)
+            return self._evaluate(file)
         except Ended as ended:
-            said = ended.problem
-        except SPOILT:
-            said = Problem("limit", NONSENSE)
-        if gone := self._miss(file):
-            said = Problem("limit", f"it takes away {gone}")
-        if isinstance(said, Problem):
-            return _ended(file, _cleaned(vars(said), place))
+            return _ended(file, _cleaned(vars(ended.problem), self._place))
+
+    def _evaluate(self, file: str) -> Launch:
+        """A launch file as what was taken down of it; Ended: nothing was."""
+        if self._gone:
+            raise Ended(Problem("limit", f"it cannot be evaluated: {self._gone}"))
         try:
-            return self._taken(file, said)
-        except _TooMuch as much:
-            return _ended(file, vars(Problem("limit", f"it hands on {much}")))
-        except SPOILT:
-            return _ended(file, vars(Problem("limit", NONSENSE)))
+            said = _said(partial(_evaluated, self._place, *self._files[file]), self._place)
+        finally:
+            if gone := self._miss(file):
+                raise Ended(Problem("limit", f"it takes away {gone}"))
+        return attempt(lambda: self._taken(file, said), file)
 
     def _miss(self, by: str) -> str:
         """What is not there any more, after a file was evaluated; '' for nothing."""
@@ -153,15 +145,17 @@ class Looking:
         wrong = [n for n in missing if n in borrowed or get_close_matches(n, ours, 1, 0.85)]
         return [*there, *(name for name in missing if name not in wrong)], wrong
 
-    def _number(self, text: str) -> int:
+    def _number(self, text: str, verb: str = "hands on") -> int:
+        """The number of a text; Ended: it is more than is taken."""
+        much = ""
         if len(text) > trace.LONGEST_TEXT:
-            raise _TooMuch(
-                f"a text of {len(text):,} characters; {trace.LONGEST_TEXT:,} at most are taken"
-            )
-        if text in self._texts:
+            much = f"a text of {len(text):,} characters; {trace.LONGEST_TEXT:,} at most are taken"
+        elif text in self._texts:
             return self._texts.index(text)
-        if len(self._texts) >= _MOST_TEXTS:
-            raise _TooMuch(f"more than {_MOST_TEXTS} descriptions and long texts")
+        elif len(self._texts) >= _MOST_TEXTS:
+            much = f"more than {_MOST_TEXTS} descriptions and long texts"
+        if much:
+            raise Ended(Problem("limit", f"it {verb} {much}"))
         self._texts.append(text)
         return len(self._texts) - 1
 
@@ -197,7 +191,7 @@ class Looking:
         """The number of a mesh's triangles; -1 where nobody can read it."""
         if path and path not in self._surfaces and len(self._surfaces) < surfaces.MOST_MESHES:
             self._surfaces[path] = -1
-            with suppress(Ended, *SPOILT):
+            with suppress(Ended):
                 said = str(step(partial(surfaces.surface, path), self._place.own))
                 if said and len(said) <= trace.LONGEST_SURFACE:
                     self._surfaces[path] = len(self._triangles)
@@ -224,26 +218,26 @@ class Looking:
             self._descriptions.append(Description(-1, "", False, "", problem, (), False))
             return []
         try:
-            said = _cleaned(step(lambda: descriptions.from_files(place), place.own), place)
-            for each in said["made"]:
-                file = str(each["file"])
-                self._from_file(file, str(each["text"]), str(each["errors"]))
+            said = _said(partial(descriptions.from_files, place), place)
+            attempt(partial(self._take_files, said))
         except Ended as ended:
             problem = Problem(**_cleaned(vars(ended.problem), place))
             self._descriptions.append(Description(-1, "", False, "", problem, (), False))
-        except SPOILT:
-            pass
         return []
+
+    def _take_files(self, said: dict[str, Any]) -> None:
+        for each in said["made"]:
+            self._from_file(str(each["file"]), str(each["text"]), str(each["errors"]))
 
     def _from_file(self, file: str, text: str, errors: str) -> None:
         """What xacro makes of a file, or says of it."""
         problem = Problem("error", f"xacro: {errors}"[:1000], file, 0)
         if text:
             try:
-                self._describe(self._number(text), file, [file], launched=False)
+                self._describe(self._number(text, "is"), file, [file], launched=False)
                 return
-            except _TooMuch as much:
-                problem = Problem("limit", f"it is {much}", file, 0)
+            except Ended as ended:
+                problem = replace(ended.problem, file=file)
         self._descriptions.append(Description(-1, file, False, file, problem, (), False))
 
     def _varied(self) -> list[Varied]:
@@ -251,18 +245,21 @@ class Looking:
         for of, words in list(self._commands.items())[:1]:
             if not words[0].endswith((".xacro", ".xml", ".urdf")):
                 continue
-            try:
-                said = step(partial(descriptions.varied, place, words[0], []), place.own)
-                for each in said:
-                    text = str(each["text"])
-                    if len(text) > trace.LONGEST_TEXT or len(self._texts) > 100:
-                        continue
-                    if text and text not in self._texts:
-                        self._texts.append(text)
-                    number = self._texts.index(text) if text else -1
-                    made.append(Varied(of, str(each["name"])[:200], number))
-            except (Ended, *SPOILT):
+            with suppress(Ended):
+                work = partial(descriptions.varied, place, words[0], [])
+                said = step(work, place.own)
+                made += attempt(partial(self._vary, of, said))
+        return made
+
+    def _vary(self, of: int, said: list[dict[str, str]]) -> list[Varied]:
+        made = []
+        for each in said:
+            name, text = str(each["name"])[:200], str(each["text"])
+            if len(text) > trace.LONGEST_TEXT or len(self._texts) > 100:
                 continue
+            if text and text not in self._texts:
+                self._texts.append(text)
+            made.append(Varied(of, name, self._texts.index(text) if text else -1))
         return made
 
     def _elsewhere(self, found: list[Launch]) -> None:
@@ -277,13 +274,10 @@ class Looking:
         for number, launch in enumerate(found):
             if launch.problem is not None:
                 continue
-            try:
-                said = _cleaned(
-                    step(partial(_evaluated, place, *self._files[launch.file]), place.own), place
-                )
-                again = [str(each["name"]) for each in said["lacking"] if each["kind"] == "file"]
-            except (Ended, *SPOILT):
-                again = []
+            again: list[str] = []
+            with suppress(Ended):
+                said = _said(partial(_evaluated, place, *self._files[launch.file]), place)
+                again = attempt(partial(_lacking_files, said))
             known = {each.name for each in launch.lacking}
             other = next((name for name in again if name not in known), "")
             if other:
@@ -308,6 +302,15 @@ def _evaluated(place: Place, of: Installed, file: str) -> dict[str, Any]:
     error = said["problem"]
     said["problem"] = None if error is None else vars(problem_of(error, place.own))
     return {**said, "asked": launches.asked(place)}
+
+
+def _said(work: Callable[[], Any], place: Place) -> Any:
+    """What a step says, with the places as everybody knows them; Ended: it says nothing."""
+    return _cleaned(step(work, place.own), place)
+
+
+def _lacking_files(said: dict[str, Any]) -> list[str]:
+    return [str(each["name"]) for each in said["lacking"] if each["kind"] == "file"]
 
 
 def _first(texts: Sequence[Any]) -> str:

@@ -24,11 +24,12 @@ from grader.scenes.package import trace  # noqa: E402
 from grader.scenes.package.examining import layout, leftovers, packages  # noqa: E402
 from grader.scenes.package.examining.looking import Looking  # noqa: E402
 from grader.scenes.package.examining.place import Place  # noqa: E402
+from grader.scenes.package.examining.steps import Ended, attempt  # noqa: E402
 from grader.scenes.package.trace import FAILED, PackageTrace  # noqa: E402
 
 
 def main() -> None:
-    """Look, and leave what was found; what this program fails in is no fault of a package."""
+    """Look, and leave what was found; that it cannot do so is no fault of a package."""
     try:
         _main()
     except Exception:
@@ -57,6 +58,13 @@ def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> P
         asked, folder: which of them counts, by its name or by where it lies; '' and None for the
             one that describes a robot.
     """
+    try:
+        return attempt(lambda: _look(root, asked, scratch, folder))
+    except Ended as ended:  # nothing that a step was made of: so much can be said
+        return PackageTrace(setup=layout.nothing("", ended.problem))
+
+
+def _look(root: Path, asked: str, scratch: Path, folder: Path | None) -> PackageTrace:
     found = packages.find(root.resolve())
     one = packages.judged(found, asked, folder and folder.resolve())
     if one is None:
@@ -64,14 +72,13 @@ def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> P
     with suppress(ImportError):  # once, and not by each copy that runs it
         import xacro  # noqa: F401
     prefix = scratch / "prefix"
+    stubs, empty = scratch / "stubs", scratch / "empty"
+    declared = {name for each in found for name in each.depends}
+    layout.make_stubs(stubs, declared, {each.name for each in found})
+    (empty / "home").mkdir(parents=True)
     laid = {id(each): layout.lay_out(each, root.resolve(), prefix) for each in found}
     judged, everything = laid[id(one)], tuple(laid.values())
-    stubs = scratch / "stubs"
-    declared = {name for each in everything for name in each.setup.depends}
-    layout.make_stubs(stubs, declared, {each.name for each in everything})
-    (scratch / "empty" / "home").mkdir(parents=True)
-    empty, asked_for = scratch / "empty", scratch / "asked"
-    place = Place(prefix, stubs, empty, asked_for, judged, everything, root.resolve())
+    place = Place(prefix, stubs, empty, scratch / "asked", judged, everything, root.resolve())
     return Looking(place, scratch).trace()
 
 

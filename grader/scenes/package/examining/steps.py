@@ -8,7 +8,8 @@ import re
 import sys
 import traceback
 from collections.abc import Callable
-from typing import Any, Final
+from pathlib import Path
+from typing import Any, Final, TypeVar
 
 from grader import limited
 from grader.scenes.package import strict
@@ -29,10 +30,9 @@ _LONGEST: Final = 400
 NONSENSE: Final = "it spoils what is taken down of it"
 #: Where an object lies in memory, which is another place each time.
 _ADDRESS: Final = re.compile(r"\bat 0x[0-9a-fA-F]+")
-#: What reading an answer of another form than was expected ends in.
-SPOILT: Final = (ValueError, LookupError, TypeError, AttributeError, RecursionError)
 #: Names a file of the package's own by its path; '' for others.
 Own = Callable[[str], str]
+Made = TypeVar("Made")
 
 
 class NotKnown(Exception):
@@ -82,6 +82,29 @@ def step(work: Callable[[], Any], own: Own) -> Any:
     if isinstance(said, Problem):
         raise Ended(said)
     return said[0]
+
+
+def attempt(work: Callable[[], Made], file: str = "", line: int = 0) -> Made:
+    """What a function of ours returns that reads what was handed in.
+
+    Its failure is a finding of the file, and nobody's exit: other steps go on.
+
+    Raises:
+        Ended: it raised something.
+    """
+    try:
+        return work()
+    except Ended:
+        raise
+    except OSError as error:
+        what = f"it cannot be read ({error.strerror})"
+        raise Ended(Problem("unknown", what, file, line)) from error
+    except Exception as error:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        words = start_of(" ".join(f"{type(error).__name__}: {error}".split()), _LONGEST)
+        at = f"{Path(last.filename).name}, line {last.lineno}"
+        what = f"it cannot be read ({words}, {at})"
+        raise Ended(Problem("unknown", what, file, line)) from error
 
 
 def _read(answer: bytes) -> Problem | tuple[Any]:

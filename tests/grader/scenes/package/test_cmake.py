@@ -52,11 +52,27 @@ def read(folder, text: str) -> cmake.Read:
             ["share/a/launch: launch/a.py"],
         ),
         ("# install(DIRECTORY rviz DESTINATION share/a)", []),
+        (
+            "file(GLOB found RELATIVE ${CMAKE_CURRENT_LIST_DIR} rviz/*.rviz)\n"
+            "install(FILES ${found} DESTINATION share/a)",
+            ["share/a: rviz/a.rviz"],
+        ),
+        (
+            "file(GLOB_RECURSE found ./urdf/**.urdf)\ninstall(FILES ${found} DESTINATION share/a)",
+            ["share/a: urdf/a.urdf", "share/a: urdf/more/b.urdf"],
+        ),
+        ("file(GLOB found ./)\ninstall(FILES ${found} DESTINATION share/a)", []),
+        (
+            "if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/meshes)\n"
+            "  install(DIRECTORY meshes DESTINATION share/a)\nendif()\n"
+            "install(FILES rviz/a.rviz DESTINATION share/a)",
+            ["share/a: rviz/a.rviz"],
+        ),
     ],
 )
 def test_what_is_installed_is_found(text, files, tmp_path):
     made = read(tmp_path, text)
-    assert (made.project, made.absent, made.unknown) == ("a", [], [])
+    assert (made.project, made.absent, made.problems) == ("a", [], [])
     assert [f"{where}: {name}" for where, name in made.files] == files
 
 
@@ -69,7 +85,8 @@ def test_what_nobody_knows_here_or_lies_elsewhere_is_not_followed(name, tmp_path
     (folder / "out").symlink_to("/etc")
     made = read(folder, f"install(DIRECTORY {name} DESTINATION share/a)")
     assert (made.files, made.absent) == ([], [])
-    assert len(made.unknown) == 1
+    (problem,) = made.problems
+    assert (problem.kind, problem.file, problem.line) == ("unknown", "CMakeLists.txt", 2)
 
 
 def test_what_is_not_there_is_told(tmp_path):

@@ -74,6 +74,33 @@ def test_names_that_no_file_can_have_are_files_that_are_not_there(tmp_path):
     assert trace.setup.scripts[0].fault
 
 
+DEEP = "/".join(["d" * 200] * 12)  # a path that the system takes, and longer than an answer's
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f'("share/{DEEP}", ["package.xml"]),',
+        f'*(os.makedirs("{DEEP}"), open("{DEEP}/a", "w"), [("share/a", ["{DEEP}/a"])])[2],',
+    ],
+    ids=["target", "folder"],
+)
+def test_a_set_up_with_long_paths_is_looked_at(line, tmp_path):
+    text = SETUP.replace(LISTS, f"{LISTS}{line}").replace("from glob", "import os\nfrom glob")
+    trace = found(tmp_path, {"setup.py": text})
+    assert trace.setup.problem is None
+    assert [each.problem for each in trace.launches] == [None, None]
+
+
+def test_a_package_that_lies_three_hundred_folders_deep_is_looked_at(tmp_path):
+    folder = tmp_path / Path(*["d" * 7] * 300)
+    folder.mkdir(parents=True)
+    written(folder, {})
+    trace = looked_at(tmp_path)
+    assert decode(encode(trace)) == trace
+    assert [each.problem for each in trace.launches] == [None, None]
+
+
 def test_a_package_xml_that_is_longer_than_any_is_taken_in_part(tmp_path):
     text = (REFERENCE / "package.xml").read_text(encoding="utf-8")
     more = "".join(f"<depend>d{n}</depend>" for n in range(9000))

@@ -1,0 +1,62 @@
+"""Whatever is handed in as a package is looked at and judged: it is nobody's fault but its own."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+
+import grader
+from grader.errors import SubmissionError
+from grader.exercise.check import judge
+from grader.exercise.loading import load_exercise
+from grader.scenes.package.examining.steps import Ended, attempt
+from grader.scenes.package.trace import decode, encode
+from tests.conftest import EXAMPLES
+from tests.submissions.mangled import Mangled, packages
+from tests.submissions.packages import looked_at, recorded
+
+#: So many packages are drawn; each of them costs a third of a second.
+CASES = max(200, 2 * EXAMPLES) if EXAMPLES else 30
+#: What is said where something of ours has failed, and the system has refused nothing.
+OURS = re.compile(r"cannot be read \(\w+: .*, \w+\.py, line \d+\)")
+EXERCISES = [load_exercise(name) for name in ("description_package", "thymio_package")]
+
+
+@settings(max_examples=CASES)
+@given(package=packages())
+def test_a_mangled_package_is_looked_at_and_judged(package: Mangled) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        trace = looked_at(package.lay_out(Path(folder)), cpu_s=3.0, wall_s=3.0)
+    assert decode(encode(trace)) == trace
+    problems = [
+        each.problem for each in (trace.setup, *trace.launches, *trace.descriptions) if each
+    ]
+    assert [each for each in problems if each and OURS.search(each.text)] == []
+    for exercise in EXERCISES:
+        found = judge(recorded(trace), exercise.checks, exercise.points, exercise.tolerances)
+        assert not any("fault of the exercise" in verdict.rationale for verdict in found)
+
+
+@settings(max_examples=CASES // 10)
+@given(package=packages())
+def test_a_mangled_package_that_is_handed_in_is_no_failure_of_the_grader(package: Mangled) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            result = grader.grade(package.lay_out(Path(folder)), EXERCISES[0])
+        except SubmissionError as unusable:
+            assert str(unusable)
+        else:
+            assert result.run.outcome == "finished"
+            assert 0 <= result.score <= result.max_score
+
+
+def test_a_failure_of_ours_at_a_file_is_a_finding_of_that_file() -> None:
+    with pytest.raises(Ended) as ended:
+        attempt(lambda: {}["a"], "CMakeLists.txt", 4)
+    problem = ended.value.problem
+    assert (problem.kind, problem.file, problem.line) == ("unknown", "CMakeLists.txt", 4)
+    assert OURS.search(problem.text)
