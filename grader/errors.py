@@ -6,7 +6,7 @@
 | `SubmissionError` | submission | 2 |
 | `ExerciseError` | exercise | 2 |
 | `CheckFailed` | exercise | 3 |
-| `GraderFailure` | grader | 3 |
+| `GraderFailure`, `NotNow`, `NotOffered` | grader | 3 |
 """
 
 from __future__ import annotations
@@ -75,3 +75,11 @@ class RecordingError(GraderError):
 
 class GraderFailure(GraderError):
     """The grader itself failed; never the submission's fault."""
+
+
+class NotNow(GraderFailure):
+    """The system did not do what it may do the next time; see `grader.run.processes.refusal`."""
+
+
+class NotOffered(GraderFailure):
+    """This machine does not confine submissions as all of a class are confined."""

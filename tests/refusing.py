@@ -19,6 +19,7 @@ CALLS = {
     "unshare": (272, 97, errno.EPERM),
     "setns": (308, 268, errno.EPERM),
     "mount": (165, 40, errno.EPERM),
+    "mount at present": (165, 40, errno.ENOMEM),
     "mount_setattr": (442, 442, errno.ENOSYS),
     "landlock_create_ruleset": (444, 444, errno.ENOSYS),
 }

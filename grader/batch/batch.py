@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grader.batch import grade, key
-from grader.batch.class_file import CLASS, VERSIONS, ClassFile
+from grader.batch.class_file import CLASS, MACHINE, ClassFile
 from grader.batch.entry import Entry
 from grader.batch.hand_in import HandIn
 from grader.batch.store import STUDENTS, Store
@@ -32,6 +32,7 @@ class Order:
         seed: chooses where the varied runs start; None takes the exercise's own.
         again: what is done anew although it is there: "", "failed", "all" or the id of a hand-in.
         shard: (I, N): only the I-th of N parts, counted from 1.
+        isolation: the level at which all are run; '' where it is to be found out.
     """
 
     exercise: Exercise
@@ -40,6 +41,7 @@ class Order:
     seed: int | None = None
     again: str = ""
     shard: tuple[int, int] = (1, 1)
+    isolation: str = ""
 
     def seed_of(self, hand_in: HandIn) -> int | None:
         """What chooses where the varied runs of a hand-in start; None: the exercise's own seed."""
@@ -50,7 +52,8 @@ class Order:
         """What the folder is for."""
         part, parts = self.shard
         name = f"{part}/{parts}" if parts > 1 else ""
-        return ClassFile.of(self.exercise, self.time, self.seed, name)
+        found = ClassFile.of(self.exercise, self.time, self.seed, name)
+        return replace(found, isolation=self.isolation)
 
 
 @dataclass(frozen=True)
@@ -86,7 +89,7 @@ def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
         return
     found = ClassFile.read(store.out)
     differences = wanted.differences(found)
-    if again == "all" and differences.keys() <= {*VERSIONS, "exercise_sha256"}:
+    if again == "all" and differences.keys() <= {*MACHINE, "exercise_sha256"}:
         wanted.put(store.out)
         return
     if not differences:
@@ -108,7 +111,7 @@ def _advice(differences: Mapping[str, str], store: Store) -> str:
             "See what the new one would change: grader batch --regrade {out} --exercise ...",
             out=str(store.out),
         )
-    if differences.keys() <= VERSIONS:
+    if differences.keys() <= MACHINE:
         return say("Give another --out, or have everything graded by this one: --again all.")
     return say("Give another --out.")
 
@@ -147,7 +150,8 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
         grade.nothing(hand_in, order.exercise, place / STUDENTS / hand_in.id)
         store.put("", place)
         yield hand_in
-    tasks = (replace(task, into=store.new_place()) for task in planned.tasks)
+    level = order.isolation
+    tasks = (replace(each, into=store.new_place(), isolation=level) for each in planned.tasks)
     for task, answer in work(tasks):
         place = task.into
         if answer.state != "done":

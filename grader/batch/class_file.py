@@ -19,7 +19,8 @@ SCHEMA = f"{FAMILY}v1"
 CLASS = "class.json"
 #: Characters of a value in a message: enough of a hash to tell two apart.
 MOST_SHOWN = 24
-VERSIONS = {"grader", "ros", "python"}
+#: What may be another when everything is graded anew.
+MACHINE = {"grader", "ros", "python", "isolation"}
 _NAMED = {
     "exercise": say("the exercise"),
     "exercise_sha256": say("the exercise's rubric"),
@@ -29,6 +30,7 @@ _NAMED = {
     "ros": say("the version of rclpy and the ROS release"),
     "python": say("the version of Python"),
     "shard": say("the shard (--shard)"),
+    "isolation": say("the isolation"),
 }
 
 
@@ -44,6 +46,7 @@ class ClassFile:
         grader, ros, python: versions.
         shard: "I/N" where the folder holds one of several parts of a class; '' for all of it.
         hand_ins: how many there will be when it is finished; 0 where nobody has said it yet.
+        isolation: the level at which all are run; '' where none has been yet, or there is none.
     """
 
     exercise: str
@@ -55,6 +58,7 @@ class ClassFile:
     python: str = ""
     shard: str = ""
     hand_ins: int = 0
+    isolation: str = ""
 
     @classmethod
     def of(cls, exercise: Exercise, time: Clock, seed: int | None, shard: str = "") -> Self:
@@ -102,7 +106,7 @@ class ClassFile:
                 mine=_shown(mine),
             )
             for name, (mine, others) in pairs.items()
-            if mine != others
+            if mine != others and (name != "isolation" or (mine and others))
         }
 
     @classmethod

@@ -1,7 +1,8 @@
 """The tasks of a class on a dask cluster: `grader batch --scheduler ADDRESS`.
 
 Each worker of the cluster has the grader installed, as this machine has; nothing else is shared
-with it, no folder and no file. A task that was lost with a worker is given to another one by the
+with it, no folder and no file. All are graded at one level of isolation: a worker that cannot offer
+it is named and gets no task. A task that was lost with a worker is given to another one by the
 scheduler. When the scheduler itself goes, everything that had not come back is given to the next
 that answers at its address.
 """
@@ -9,12 +10,15 @@ that answers at its address.
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from grader.batch import pool, remote
+from grader.batch.level import OfCluster
 from grader.batch.parcel import Unfit
 from grader.batch.task import Answer, Task
 from grader.errors import UsageError
@@ -28,6 +32,8 @@ if TYPE_CHECKING:
 FIRST_S, AGAIN_S = 30.0, 600.0
 #: So often in a row, with no task done between, a scheduler may be lost.
 MOST_LOSSES = 3
+#: So often a task goes to other workers, since those that should have it are gone or not fit.
+MOST_MOVES = 3
 #: So many more tasks are underway than the cluster has threads: none of them waits for the next.
 AHEAD = 2
 #: Of all that is underway [bytes]: the scheduler holds it in memory.
@@ -41,7 +47,7 @@ Done = tuple[Task, Answer]
 Tell = Callable[[str], None]
 
 
-def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: str = "") -> Iterator[Done]:
+def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: OfCluster) -> Iterator[Done]:
     """Do tasks on a cluster; yields each as soon as it is over.
 
     A task is taken from the iterable when there is room for it. What is underway when the iterator
@@ -50,7 +56,7 @@ def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: str = "") -
     Args:
         address: of the scheduler, as dask takes it.
         tell: is told what a person may want to know meanwhile.
-        isolation: the least that a worker has to offer; see `grader.run.processes.levels`.
+        isolation: the level at which all workers grade.
 
     Raises:
         UsageError: there is no scheduler, or a worker is not fit to grade this class.
@@ -132,14 +138,34 @@ def _connected(address: str, patience_s: float) -> Iterator[Client]:
             client.close()
 
 
+class _Underway(NamedTuple):
+    """A task that was given to the scheduler.
+
+    Attributes:
+        size: of its package [bytes].
+        to: the workers that may have it; None: any.
+    """
+
+    task: Task
+    size: int
+    to: list[str] | None
+
+
 class _Session:
     """Tasks on one scheduler, for as long as that is there."""
 
-    def __init__(self, client: Client, waiting: Iterator[Task], isolation: str, tell: Tell) -> None:
+    def __init__(
+        self, client: Client, waiting: Iterator[Task], isolation: OfCluster, tell: Tell
+    ) -> None:
         self._client, self._waiting = client, waiting
         self._isolation, self._tell = isolation, tell
-        self._underway: dict[Future, tuple[Task, int]] = {}
+        self._underway: dict[Future, _Underway] = {}
         self._homeless: list[Task] = []
+        #: address -> why it gets no task
+        self._unfit: dict[str, str] = {}
+        self._moved: list[Task] = []
+        #: by key of a task
+        self._moves: Counter[str] = Counter()
         self._has_workers = True
         self._here = pool.Process()
 
@@ -159,7 +185,7 @@ class _Session:
 
     def unfinished(self) -> list[Task]:
         """What was given to this scheduler, and did not come back."""
-        return [*(task for task, _ in self._underway.values()), *self._homeless]
+        return [*(each.task for each in self._underway.values()), *self._homeless, *self._moved]
 
     def cancel(self) -> None:
         """Have nothing underway any more."""
@@ -172,18 +198,52 @@ class _Session:
 
     def _check_workers(self) -> None:
         """Refuse a cluster that would come to other verdicts, before anything is sent to it."""
-        found = self._ask(lambda: self._client.run(remote.own_versions, on_error="return"))
+        level = self._isolation.level
+        found = self._ask(lambda: self._client.run(remote.offer, level, on_error="return"))
         wanted = remote.own_versions()
+        offers = {}
         for address, theirs in found.items():
             worker = say("the worker at {address}", address=address)
             if isinstance(theirs, dict):
-                remote.check_versions(wanted, theirs, worker)
+                remote.check_versions(wanted, theirs["versions"], worker)
+                offers[address] = theirs
             elif not isinstance(theirs, OSError):  # it has not just gone
                 raise _cannot_grade(worker, theirs)
+        self._isolation.choose(each["isolation"] for each in offers.values())
+        for address, theirs in offers.items():
+            if theirs["isolation"] != self._isolation.level and not theirs["again"]:
+                best = say("the best there is {level!r}", level=theirs["isolation"])
+                self._decline(address, theirs["why"] or best)
+
+    def _decline(self, address: str, why: str) -> None:
+        """Give a worker no task any more.
+
+        Raises:
+            UsageError: there is no other.
+        """
+        if address in self._unfit:
+            return
+        self._unfit[address], level = why, self._isolation.level
+        self._tell(
+            say(
+                "The worker at {address} takes no hand-in: this class is graded with isolation by "
+                "{level} ({why}).",
+                address=address,
+                level=level,
+                why=why,
+            )
+        )
+        if not self._fit():
+            raise self._isolation.none_offers(level)
+
+    def _fit(self) -> list[str]:
+        """The workers that may get tasks."""
+        return [each for each in self._ask(self._client.nthreads) if each not in self._unfit]
 
     def _threads(self) -> int:
         """How much the cluster does at once."""
-        threads: int = sum(self._ask(self._client.nthreads).values())
+        there = self._ask(self._client.nthreads)
+        threads: int = sum(n for address, n in there.items() if address not in self._unfit)
         if bool(threads) != self._has_workers:
             self._has_workers = bool(threads)
             none = say("The scheduler has no worker. Waiting for one ...")
@@ -194,11 +254,11 @@ class _Session:
         """Have enough tasks underway; those that cannot be sent are over at once."""
         most = AHEAD + self._threads()
         while len(self._underway) < most and self._bytes() < MOST_BYTES:
-            task = next(self._waiting, None)
+            task = self._moved.pop() if self._moved else next(self._waiting, None)
             if task is None:
                 return
             try:
-                package = remote.packed(task, self._isolation)
+                package = remote.packed(replace(task, isolation=self._isolation.level))
             except Unfit:  # too large to be a submission: it is refused, not run
                 yield task, self._here.done(task)
             except OSError as error:
@@ -211,14 +271,34 @@ class _Session:
 
         self._homeless = [task]
         quiet = {"distributed.admin.large-graph-warning-threshold": f"{2 * MOST_BYTES}B"}
+        to = self._fit() if self._unfit else None  # any: also one that comes later
         with dask.config.set(quiet):
             # each has a name of its own: an equal task is not an equal call
-            future = self._ask(lambda: self._client.submit(remote.graded, package, pure=False))
-        self._underway[future] = task, len(package)
+            future = self._ask(
+                lambda: self._client.submit(remote.graded, package, pure=False, workers=to)
+            )
+        self._underway[future] = _Underway(task, len(package), to)
         self._homeless = []
 
+    def _move(self, future: Future) -> Iterator[Done]:
+        """Have a task wait for others again; after `MOST_MOVES` it is over."""
+        task = self._underway.pop(future).task
+        self._moves[task.key] += 1
+        if self._moves[task.key] > MOST_MOVES:
+            yield task, Answer("failed", _lost(self._moves[task.key]))
+        else:
+            self._moved.append(task)
+
+    def _move_stranded(self) -> Iterator[Done]:
+        """Move tasks of which all workers are gone that may have them."""
+        fit = set(self._fit()) if self._unfit else set()
+        for future, each in list(self._underway.items()):
+            if fit and each.to is not None and not fit & set(each.to) and not future.done():
+                self._client.cancel([future])
+                yield from self._move(future)
+
     def _bytes(self) -> int:
-        return sum(size for _, size in self._underway.values())
+        return sum(each.size for each in self._underway.values())
 
     def _look(self) -> Iterator[Done]:
         """Wait a moment, and take out what is over."""
@@ -230,14 +310,19 @@ class _Session:
             raise _SchedulerLost(say("the connection is closed"))
         # lost: with the worker that had it, and done again elsewhere
         for future in [f for f in self._underway if f.status not in ("pending", "lost")]:
-            answer = self._answer(future)
+            try:
+                answer = self._answer(future)
+            except remote.Declined as declined:
+                self._decline(declined.address, declined.message)
+                yield from self._move(future)
+                continue
             if answer is not None:
-                task, _ = self._underway.pop(future)
-                yield task, answer
+                yield self._underway.pop(future).task, answer
+        yield from self._move_stranded()
 
     def _answer(self, future: Future) -> Answer | None:
         """How a task has ended; None: look again."""
-        task, _ = self._underway[future]
+        task = self._underway[future].task
         if future.status == "error":
             return self._failure(self._ask(future.exception))
         try:
@@ -251,19 +336,14 @@ class _Session:
         return remote.unpack(package, task)
 
     def _failure(self, error: BaseException | None) -> Answer:
-        if isinstance(error, UsageError):  # no task should go there
+        if isinstance(error, (UsageError, remote.Declined)):  # no task should go there
             raise error
         if isinstance(error, ImportError):
             raise _cannot_grade(say("a worker"), error)
         from distributed import KilledWorker
 
         if isinstance(error, KilledWorker):
-            lost = say_many(
-                "{n:,} worker of the cluster ended while grading it",
-                "{n:,} workers of the cluster ended while grading it",
-                error.allowed_failures + 1,
-            )
-            return Answer("failed", lost)
+            return Answer("failed", _lost(error.allowed_failures + 1))
         what = f"{type(error).__name__}: {error}"
         return Answer("failed", say("a worker failed: {what}", what=what))
 
@@ -279,6 +359,14 @@ class _Session:
             return call()
         except (OSError, CancelledError) as error:
             raise _SchedulerLost(str(error) or type(error).__name__) from None
+
+
+def _lost(times: int) -> str:
+    return say_many(
+        "{n:,} worker of the cluster ended while grading it",
+        "{n:,} workers of the cluster ended while grading it",
+        times,
+    )
 
 
 def _cannot_grade(worker: str, why: object) -> UsageError:

@@ -54,7 +54,8 @@ def _common(found: dict[Path, ClassFile]) -> ClassFile:
     hand_ins = {file.shard: file.hand_ins for file in found.values()}
     (first, whole), *others = (
         (part, replace(file, shard="", hand_ins=sum(hand_ins.values())))
-        for part, file in found.items()
+        # nothing of a part may have been run: it fits to any level
+        for part, file in sorted(found.items(), key=lambda each: not each[1].isolation)
     )
     cuts = {shard.partition("/")[2] for shard in hand_ins}
     if len(cuts) > 1:

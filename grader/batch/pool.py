@@ -1,7 +1,7 @@
 """Several workers at once on this machine.
 
 One that dies takes nothing with it: its task goes to a new one, once more, and is then told as
-failed.
+failed. So does the task of one that cannot confine it now, or not as asked.
 """
 
 from __future__ import annotations
@@ -122,13 +122,19 @@ class Process:
     def done(self, task: Task) -> Answer:
         """Have a task done; whatever becomes of the process is an answer."""
         ended = ""
+        answer = None
         for _ in range(_TRIES):
             if self.is_over:
                 break
             line = self._ask(task)
+            answer = None
             with suppress(ValueError):
-                return Answer.from_line(line)
+                answer = Answer.from_line(line)
+                if answer.state not in ("again", "unfit"):
+                    return answer
             ended = self.end()
+        if answer is not None:
+            return answer
         return Answer(
             "failed",
             say("the process that graded it ended ({how}), {times} times", how=ended, times=_TRIES),

@@ -6,19 +6,21 @@ what a cluster calls.
 
 from __future__ import annotations
 
+import asyncio
 import json
 import socket
 import threading
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from grader import scratch, strict_json, versions
 from grader.batch import parcel, pool
 from grader.batch.parcel import Unfit
 from grader.batch.store import RUN, STUDENTS
 from grader.batch.task import Answer, Task
-from grader.errors import UsageError
+from grader.errors import GraderFailure, NotNow, NotOffered, UsageError
 from grader.exercise import places
 from grader.exercise.places import CHECKS
 from grader.language.phrase import Phrase, joined, reason, say
@@ -30,6 +32,14 @@ TASK, ANSWER, NEEDS = "task.json", "answer.json", "needs.json"
 SUBMISSION, EXERCISE, STORED, MADE = map(Path, ("submission", "exercise", "stored", "made"))
 
 _of_thread = threading.local()
+
+
+class Declined(NotOffered):
+    """A worker of a cluster cannot confine submissions as all of the class are."""
+
+    def __init__(self, message: str, address: str = "") -> None:
+        super().__init__(message)
+        self.address = address
 
 
 def own_versions() -> dict[str, str]:
@@ -72,11 +82,22 @@ def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: 
         )
 
 
-def packed(task: Task, isolation: str = "") -> bytes:
-    """A task with what was handed in, the run if there is one and, unless installed, the exercise.
+async def offer(level: str) -> dict[str, Any]:
+    """What a worker of a cluster says of its machine: `versions`, `isolation`, and `why` not more.
 
     Args:
-        isolation: the least that the worker has to offer; see `grader.run.processes.levels`.
+        level: the one that it should offer; '': its best. See `grader.run.processes.levels`.
+    """
+    told = {"versions": own_versions(), "isolation": "", "why": "", "again": False}
+    try:  # in a thread: the worker has more to do meanwhile
+        told["isolation"] = (await asyncio.to_thread(levels.here, level)).level
+    except GraderFailure as error:
+        told |= {"why": str(error.message), "again": isinstance(error, NotNow)}
+    return told
+
+
+def packed(task: Task) -> bytes:
+    """A task with what was handed in, the run if there is one and, unless installed, the exercise.
 
     Raises:
         Unfit: it is too large.
@@ -93,8 +114,7 @@ def packed(task: Task, isolation: str = "") -> bytes:
     if task.run is not None:
         sent = replace(sent, run=Path(STORED, RUN))
         trees[str(sent.run)] = task.run
-    needs = {"versions": own_versions(), "isolation": isolation}
-    texts = {TASK: sent.to_line(), NEEDS: json.dumps(needs).encode()}
+    texts = {TASK: sent.to_line(), NEEDS: json.dumps(own_versions()).encode()}
     return parcel.pack(texts, trees, _is_left_out)
 
 
@@ -103,16 +123,17 @@ def graded(package: bytes) -> bytes:
 
     Raises:
         UsageError: this machine is not fit for it; no other task should come here either.
+        Declined: the same; others may be fit.
     """
     with scratch.make_folder() as folder:
         texts = parcel.unpack(package, folder, "tar")
         needs = strict_json.loads(texts[NEEDS].decode())
         worker = say("the worker {name}", name=Phrase(socket.gethostname()))
-        check_versions(needs["versions"], own_versions(), worker)
-        if needs["isolation"]:
-            levels.require(needs["isolation"])
+        check_versions(needs, own_versions(), worker)
         task = _here(Task.from_line(texts[TASK]), folder)
         answer = _process().done(task)
+        if answer.state == "unfit":
+            raise Declined(answer.message, _address())
         try:
             return parcel.pack({ANSWER: answer.to_line()}, _made(task))
         except Unfit as unfit:
@@ -173,6 +194,13 @@ def _process() -> pool.Process:
         _of_thread.process = pool.Process()
     process: pool.Process = _of_thread.process
     return process
+
+
+def _address() -> str:
+    """What the cluster calls this worker."""
+    from distributed import get_worker
+
+    return str(get_worker().address)
 
 
 def _made(task: Task) -> dict[str, Path]:

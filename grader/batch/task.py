@@ -31,6 +31,7 @@ class Task:
         run: the folder of the run, if it is made already.
         into: an empty folder for what is made; see `grader.batch.store`.
         judge_only: whether results alone are asked for: no pages, no pictures.
+        isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
         language: of the pages; that of whoever asks.
     """
 
@@ -44,6 +45,7 @@ class Task:
     run: Path | None
     into: Path
     judge_only: bool = False
+    isolation: str = ""
     language: str = field(default_factory=spoken)
 
     def to_line(self) -> bytes:
@@ -52,6 +54,7 @@ class Task:
             **{name: getattr(self, name) for name in ("key", "filename", "exercise", "time")},
             "seed": self.seed,
             "judge_only": self.judge_only,
+            "isolation": self.isolation,
             "language": self.language,
             "path": str(self.path),
             "run": None if self.run is None else str(self.run),
@@ -81,12 +84,13 @@ class Answer:
 
     Attributes:
         state: "done": everything is in its folder. "failed": the grader could not; "exercise":
-            the exercise's own code failed.
+            the exercise's own code failed; "again": it could not now, but may the next time;
+            "unfit": it cannot confine submissions as the task asks.
         message: why.
         ran: whether there was a run.
     """
 
-    state: Literal["done", "failed", "exercise"]
+    state: Literal["done", "failed", "exercise", "again", "unfit"]
     message: str = ""
     ran: bool = True
 

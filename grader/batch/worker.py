@@ -7,6 +7,7 @@ nothing behind that goes on working.
 
 from __future__ import annotations
 
+import errno
 import os
 import queue
 import sys
@@ -15,10 +16,13 @@ import traceback
 from typing import IO
 
 from grader.batch.task import Answer, Task
-from grader.errors import CheckFailed, GraderError
+from grader.errors import CheckFailed, GraderError, NotNow, NotOffered
 from grader.language.catalogue import speak
 from grader.language.phrase import say
 from grader.text import plain, plain_phrase
+
+#: What a process may have run out of: another one, or the same a little later, may have it.
+SCARCE = (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
 
 
 def main() -> None:
@@ -38,18 +42,27 @@ def main() -> None:
 def done(task: Task) -> Answer:
     """Do a task; whatever goes wrong is an answer."""
     from grader.batch.grade import make  # here: it takes long, and a line may wait meanwhile
+    from grader.run.processes import levels
 
     try:
         speak(task.language)
+        levels.only(task.isolation)
         make(task)
     except CheckFailed as error:
         return Answer("exercise", plain_phrase(error.message))
+    except NotOffered as error:
+        return Answer("unfit", plain_phrase(error.message))
+    except NotNow as error:
+        return Answer("again", plain_phrase(error.message))
     except GraderError as error:
         return Answer("failed", plain_phrase(error.message))
     except Exception as error:
         traceback.print_exc()
         what = "".join(traceback.format_exception_only(error)).strip()
-        return Answer("failed", say("unexpected: {what}", what=plain(what)))
+        is_scarce = isinstance(error, OSError) and error.errno in SCARCE
+        return Answer(
+            "again" if is_scarce else "failed", say("unexpected: {what}", what=plain(what))
+        )
     return Answer("done", ran=task.run is None)
 
 

@@ -6,6 +6,8 @@ import argparse
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -132,6 +134,7 @@ def main(args: argparse.Namespace) -> int:
     from grader.batch import outputs
     from grader.batch.batch import Order, check_same_class
     from grader.batch.entry import entries
+    from grader.batch.level import begun_at
     from grader.batch.store import Store
     from grader.cli import class_progress
     from grader.exercise.loading import load_exercise
@@ -146,6 +149,7 @@ def main(args: argparse.Namespace) -> int:
         if found is None:
             _merge(args, exercise, store, messages)
         else:
+            order = replace(order, isolation=begun_at(store, args.again, args.isolation or ""))
             check_same_class(store, order.class_file, order.again)
             _grade(args, order, found, store, messages)
         graded = entries(args.out)
@@ -180,13 +184,19 @@ def _are_same(one: Path, other: Path) -> bool:
 def _grade(
     args: argparse.Namespace, order: Order, found: Found, store: Store, messages: Console
 ) -> None:
-    from grader.batch import batch
+    from grader.batch import batch, level
     from grader.batch.store import ASIDE
     from grader.cli import class_progress
     from grader.submission.folder import listed
 
-    work = _on_a_cluster(args, messages) if args.scheduler else _on_this_machine(args)
     planned = batch.plan(found.hand_ins, order, store)
+    if args.scheduler:
+        work = _on_a_cluster(args, order, store, messages)
+    else:
+        work = _on_this_machine(args)
+        if any(task.run is None for task in planned.tasks):
+            order = replace(order, isolation=level.on_this_machine(order.isolation))
+            level.note(store, order.isolation)
     if aside := store.set_aside(hand_in.id for hand_in in found.hand_ins):
         note = tell_many(
             "{n:,} hand-in in {out} not among these submissions, and set aside in {aside}: {names}",
@@ -229,13 +239,14 @@ def _on_this_machine(args: argparse.Namespace) -> Work:
     return lambda tasks: pool.work(tasks, jobs)
 
 
-def _on_a_cluster(args: argparse.Namespace, messages: Console) -> Work:
-    from grader.batch import cluster
+def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> Work:
+    from grader.batch import cluster, level
 
     def tell(note: str) -> None:
         _tell(messages, [note])
 
-    return lambda tasks: cluster.work(tasks, args.scheduler, tell, args.isolation or "")
+    isolation = level.OfCluster(order.isolation, args.isolation or "", partial(level.note, store))
+    return lambda tasks: cluster.work(tasks, args.scheduler, tell, isolation)
 
 
 def _merge(args: argparse.Namespace, exercise: Exercise, store: Store, messages: Console) -> None:

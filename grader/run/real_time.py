@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Callable
 
-from grader.errors import GraderFailure
+from grader.errors import GraderFailure, NotNow
 from grader.recording.recording import Outcome, Recording
 from grader.run import evidence, handover, stage
 from grader.run.audience import Audience, seats
@@ -91,6 +91,8 @@ def run(
             finally:
                 student.end()
             trace, topics = handover.fetch(place.recording, scene)
+        except NotNow:  # it was never started
+            raise
         except GraderFailure as failure:
             raise SimulatorLost(failure, ending("killed", None)) from failure
     how = outcome(done["reason"], exit_code)

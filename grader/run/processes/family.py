@@ -17,10 +17,11 @@ from typing import Any
 import psutil
 
 from grader import system
-from grader.errors import GraderFailure
+from grader.errors import GraderFailure, NotNow
 from grader.language.phrase import say
 from grader.run.processes import supervisor
 from grader.run.processes.appetite import Appetite
+from grader.run.processes.refusal import Refusal
 from grader.run.processes.sandbox.confinement import OWN
 from grader.run.processes.watched import Watched, await_ends
 from grader.run.processes.zygote import Warm
@@ -32,12 +33,14 @@ NOT_STARTED = 1 << 16
 SUPERVISOR = (sys.executable, "-I", "-S", supervisor.__file__, "run")
 
 
-class NotConfined(GraderFailure):
-    """A submission's process could not be confined or started; `why`: in a few words."""
+class NotConfined(NotNow):
+    """A submission's process could not be confined or started, which was to be had before."""
 
-    def __init__(self, message: str, why: str) -> None:
-        super().__init__(message)
-        self.why = why
+    def __init__(self, refusal: Refusal) -> None:
+        super().__init__(
+            say("the submission's process could not be started: {why}", why=refusal.why)
+        )
+        self.refusal = refusal
 
 
 def start_student(
@@ -151,10 +154,8 @@ class Student(Watched):
         """
         code = self._await_end(timeout_s)
         if code == NOT_STARTED:
-            why = self._words().removeprefix(supervisor.REFUSED).strip()
-            raise NotConfined(
-                say("the submission's process could not be started: {why}", why=why), why
-            )
+            line = self._words().removeprefix(supervisor.REFUSED).strip()
+            raise NotConfined(Refusal.from_line(line))
         return code
 
     def _await_end(self, timeout_s: float) -> int | None:

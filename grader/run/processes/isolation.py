@@ -9,7 +9,9 @@ Where the system is not Linux, the name also says what is less out of a submissi
 
 from __future__ import annotations
 
+import errno
 import os
+import select
 import shutil
 import subprocess
 import sys
@@ -17,13 +19,19 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from grader import system
+from grader.errors import NotNow
+from grader.language.phrase import say
 from grader.run.processes import domain, linux, supervisor
+from grader.run.processes.refusal import TRIES, Refusal, insist
 
 #: Fast DDS would use shared memory for discovery range LOCALHOST, whatever its settings say.
 RANGE = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+#: How long who makes a namespace may take to come up [s].
+PATIENCE_S = 20.0
 #: Keeps the subnet out where there is no private network.
 ONLY_LOOPBACK = """<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
@@ -87,6 +95,7 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
 
     Raises:
         GraderFailure: there is no private network, and all ROS domains are taken.
+        NotNow: there may be a private network, but not now.
     """
     if namespaces := private_network():
         try:
@@ -121,20 +130,46 @@ def weakness() -> str:
     return ", process tree, recording within reach"
 
 
-#: Ways that this system has refused once; it will not change its mind.
+#: Ways that this system has refused for good.
 _refused: set[Callable[[], Namespaces]] = set()
 
 
 def private_network() -> Namespaces | None:
-    """A network namespace with a loopback device; None where there can be none."""
+    """A network namespace with a loopback device; None where there can be none.
+
+    Raises:
+        NotNow: what kept it from being made may pass; it was tried `refusal.TRIES` times.
+    """
     if shutil.which("nsenter") is None:
         return None
+    found: list[Namespaces] = []
+    last: Refusal | None = None
     for way in (_as_root, _as_user):
-        if way not in _refused:
-            try:
-                return way()
-            except OSError:
-                _refused.add(way)
+        if way in _refused:
+            continue
+        refusal = insist(partial(_attempt, way, found))
+        if refusal is None:
+            return found[0]
+        if refusal.is_final:
+            _refused.add(way)
+        else:
+            last = refusal
+    if last is not None:
+        raise NotNow(
+            say(
+                "no network of its own could be made for a run, in {times} tries: {why}",
+                times=TRIES,
+                why=last.why,
+            )
+        )
+    return None
+
+
+def _attempt(way: Callable[[], Namespaces], found: list[Namespaces]) -> Refusal | None:
+    try:
+        found.append(way())
+    except (OSError, RuntimeError) as error:  # no more threads
+        return Refusal.of(error)
     return None
 
 
@@ -164,9 +199,10 @@ def _as_user() -> Namespaces:
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     ) as holder:
-        assert holder.stdout is not None
-        if holder.stdout.readline() != b"ready\n":
-            raise PermissionError("no user namespaces here")
+        answer = _first_line(holder)
+        if answer != "ready":
+            refusal = Refusal.from_line(answer.removeprefix(supervisor.REFUSED).strip())
+            raise OSError(refusal.number, refusal.words, refusal.step)
         spaces = Namespaces()
         try:
             for kind in ("user", "net"):
@@ -175,3 +211,21 @@ def _as_user() -> Namespaces:
             spaces.close()
             raise
     return spaces
+
+
+def _first_line(holder: subprocess.Popen[bytes]) -> str:
+    """What it says; what does not answer in time is ended.
+
+    Raises:
+        OSError: it has not answered.
+    """
+    assert holder.stdout is not None
+    poll = select.poll()
+    poll.register(holder.stdout, select.POLLIN)
+    if not poll.poll(PATIENCE_S * 1000):
+        holder.kill()
+        raise TimeoutError(errno.ETIMEDOUT, os.strerror(errno.ETIMEDOUT), "hold")
+    line = holder.stdout.readline().decode("utf-8", "replace").strip()
+    if not line:
+        raise ChildProcessError(errno.ECHILD, "it ended without a word", "hold")
+    return line

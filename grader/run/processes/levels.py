@@ -1,5 +1,7 @@
 """How well a submission's process can be confined here: tried once for each grader process.
 
+What may pass (see `.refusal`) is tried again, lowers no level, and is not remembered.
+
 `namespaces`: a root of its own, and processes, network, shared memory of its own; a user of its own
 without any capability; a filter of system calls; limits.
 `landlock`: Landlock for files, TCP, signals and abstract sockets; no capabilities, the filter,
@@ -12,6 +14,7 @@ to start Python, to read rclpy and to write a file. Elsewhere than on Linux ther
 
 from __future__ import annotations
 
+import errno
 import importlib.util
 import os
 import random
@@ -20,14 +23,16 @@ import sys
 import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from grader import scratch, system
-from grader.errors import GraderError, GraderFailure, UsageError
+from grader.errors import GraderError, GraderFailure, NotNow, NotOffered, UsageError
 from grader.language.phrase import say
 from grader.run.processes import family, isolation
 from grader.run.processes.isolation import Isolation
+from grader.run.processes.refusal import TRIES, Refusal, insist
 from grader.run.processes.sandbox import landlock, view
 from grader.run.processes.sandbox.confinement import (
     LANDLOCK,
@@ -42,15 +47,22 @@ from grader.run.processes.sandbox.confinement import (
 LEVELS = (NAMESPACES, LANDLOCK, LIMITS)
 #: Users of a moment: a range of systemd's for such, in which nobody has an account.
 USERS = range(61184, 65520)
-#: What a submission's process must be able to do.
-TRIES = """
+#: What a submission's process must be able to do; it ends with a line of `Refusal`.
+TRIAL = """
 import importlib.machinery, sys
-if sys.argv[2] and not importlib.machinery.PathFinder.find_spec("rclpy", sys.argv[2].split(":")):
-    sys.exit("rclpy is not found")
-open(sys.argv[1] + "/tried", "w").close()
-for path in sys.argv[3:]:
-    open(path).close()
+try:
+    paths = sys.argv[2].split(":")
+    if sys.argv[2] and not importlib.machinery.PathFinder.find_spec("rclpy", paths):
+        sys.exit("rclpy is not found")
+    open(sys.argv[1] + "/tried", "w").close()
+    for path in sys.argv[3:]:
+        open(path).close()
+except OSError as error:
+    sys.exit(f"{error.errno} {error.filename}: {error.strerror}")
+except MemoryError:
+    sys.exit("12 trial: no memory")
 """
+TRIAL_STEP = "trial"
 PATIENCE_S = 20.0
 #: What programs write to that is no file.
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full")
@@ -171,31 +183,59 @@ def _open_ways(path: Path) -> None:
 
 
 _lock = threading.Lock()
-#: with a network of one's own, and without
-_found: dict[bool, Level] = {}
-#: what `require` was asked for
-_least = ""
+#: (that of `only`, whether with a network of one's own) -> what there is
+_found: dict[tuple[str, bool], Level] = {}
+#: what `require` and `only` were asked for
+_least = _only = ""
 
 
-def best(isolated: Isolation) -> Level:
+def best(isolated: Isolation, level: str = "") -> Level:
     """The best that there is here.
 
     Args:
         isolated: what keeps the run apart; if that is a network, there is more.
+        level: this one, no less and no more; '': that of `only`, if any.
 
     Raises:
         GraderFailure: that is less than what was required.
+        NotOffered: there is no such level.
+        NotNow: what there is cannot be told at present.
     """
-    is_apart = bool(isolated.namespaces)
+    level = level or _only
+    tried = level, bool(isolated.namespaces)
     with _lock:
-        if is_apart not in _found:
-            _found[is_apart] = _look(isolated)
-        found = _found[is_apart]
+        if tried not in _found:
+            _found[tried] = _look(isolated, level)
+        found = _found[tried]
+    if level and found.level != level:
+        raise NotOffered(
+            say(
+                "isolation by {level}, at which this class is graded, is not to be had here: {why}",
+                level=level,
+                why=found.refused.get(level, say("this system has nothing of it")),
+            )
+        )
     if _least and not found.is_at_least(_least):
         raise GraderFailure(
             say("isolation by {least} was to be had before, and now is not", least=_least)
         )
     return found
+
+
+def only(level: str) -> None:
+    """Have every run from now on confined at one level, no less and no more; '': at the best."""
+    global _only
+    _only = level
+
+
+def here(level: str = "") -> Level:
+    """What a run would have here; see `best`.
+
+    Raises:
+        GraderFailure, NotOffered, NotNow: see `best`.
+    """
+    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        return best(isolated, level)
 
 
 def require(level: str) -> None:
@@ -205,8 +245,7 @@ def require(level: str) -> None:
         UsageError: there is not; the text says what there is, what is missing, and how to get it.
     """
     global _least
-    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
-        there = best(isolated)
+    there = here()
     if not there.is_at_least(level):
         missing = there.refused.get(level, say("this system has nothing of it"))
         what = (
@@ -226,21 +265,37 @@ def require(level: str) -> None:
     _least = level
 
 
-def _look(isolated: Isolation) -> Level:
+def _look(isolated: Isolation, wanted: str) -> Level:
     refused: dict[str, str] = {}
     if not system.has_supervision():
         return Level("", refused=dict.fromkeys(LEVELS, say("this is not Linux, or it lacks /proc")))
     for level in _candidates():
-        if why := _try(level, isolated):
-            refused.setdefault(level.level, why)
-        else:
-            return Level(level.level, level.user, refused)
+        if wanted in ("", level.level):
+            refusal = insist(partial(_try, level, isolated))
+            if refusal is None:
+                return Level(level.level, level.user, refused)
+            if not (refusal.is_final or _is_answer(refusal)):
+                raise NotNow(
+                    say(
+                        "whether isolation by {level} is to be had could not be told in {times} "
+                        "tries: {why}",
+                        level=level.level,
+                        times=TRIES,
+                        why=refusal.why,
+                    )
+                )
+            refused.setdefault(level.level, refusal.why)
     return Level("", refused=refused)
+
+
+def _is_answer(refusal: Refusal) -> bool:
+    """Whether a trial came to its end, each time, without something that it needs."""
+    return refusal.number == errno.ENOENT and refusal.step == TRIAL_STEP
 
 
 def offered(isolated: Isolation) -> list[Level]:
     """All that there is here, the best first; for tests and benchmarks."""
-    return [level for level in _candidates() if not _try(level, isolated)]
+    return [level for level in _candidates() if _try(level, isolated) is None]
 
 
 def _candidates() -> Iterator[Level]:
@@ -251,34 +306,37 @@ def _candidates() -> Iterator[Level]:
     yield Level(LIMITS)
 
 
-def _try(level: Level, isolated: Isolation) -> str:
-    """Confine a process so; what is refused, or ''."""
+def _try(level: Level, isolated: Isolation) -> Refusal | None:
+    """Confine a process so; what is refused."""
     if level.level == LANDLOCK and not landlock.abi():
-        return say("this kernel has no Landlock, or a container refuses it")
+        why = say("this kernel has no Landlock, or a container refuses it")
+        return Refusal(errno.ENOSYS, "", why)
     is_apart = bool(isolated.namespaces)
     if level.level == NAMESPACES and not is_apart:
-        return say("namespaces of users and networks are refused")
-    with scratch.make_folder() as folder:
-        tried = folder / "tried"
-        (folder / "tmp").mkdir()
-        tried.mkdir()
-        try:
+        return Refusal(errno.EPERM, "", say("namespaces of users and networks are refused"))
+    try:
+        with scratch.make_folder() as folder:
+            tried = folder / "tried"
+            (folder / "tmp").mkdir()
+            tried.mkdir()
             place = prepare(level, tried, tried, folder, is_apart=is_apart)
             return _start(place, folder, isolated.entry)
-        except family.NotConfined as error:
-            return error.why
-        except (OSError, GraderError) as error:
-            return str(error)
+    except family.NotConfined as error:
+        return error.refusal
+    except GraderError as error:
+        return Refusal(0, "", error.message)
+    except OSError as error:
+        return Refusal.of(error)
 
 
-def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> str:
+def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> Refusal | None:
     needed = [os.__file__, str(view.ROOT / view.HOST[0])]
     rclpy, package = importlib.util.find_spec("rclpy"), ""
     if rclpy and rclpy.origin:
         needed.append(rclpy.origin)
         package = str(Path(rclpy.origin).parents[1])
     written = place.env.get("TMPDIR", str(folder / "tmp"))
-    words = [sys.executable, "-I", "-S", "-c", TRIES, written, package, *needed]
+    words = [sys.executable, "-I", "-S", "-c", TRIAL, written, package, *needed]
     env = {**os.environ, **place.env}
     process = family.start_student(words, env, folder / "tried", (), entry, None, place.order)
     try:
@@ -286,4 +344,11 @@ def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> str:
     finally:
         process.end(gently=False)
     lines = process.output().strip().splitlines()  # whole only after the end
-    return "" if ended == 0 else lines[-1] if lines else f"a trial ended with {ended}"
+    if ended == 0:
+        return None
+    if ended is None:
+        return Refusal(errno.ETIMEDOUT, "", say("a trial took {s:g} s", s=PATIENCE_S))
+    told = Refusal.from_line(lines[-1] if lines else say("a trial ended with {code}", code=ended))
+    if ended > 0 and told.number in (0, errno.ENOENT):  # Python itself says so
+        return Refusal(errno.ENOENT, TRIAL_STEP, told.why)
+    return told

@@ -13,6 +13,11 @@ from typing import Any
 
 CLONE_NEWNS, CLONE_NEWIPC, CLONE_NEWUSER = 0x00020000, 0x08000000, 0x10000000
 CLONE_NEWPID, CLONE_NEWNET = 0x20000000, 0x40000000
+#: As /proc/sys/user calls them.
+KINDS = {
+    **{CLONE_NEWNS: "mnt", CLONE_NEWIPC: "ipc", CLONE_NEWUSER: "user"},
+    **{CLONE_NEWPID: "pid", CLONE_NEWNET: "net"},
+}
 MS_RDONLY, MS_NOSUID, MS_NODEV, MS_NOEXEC, MS_REMOUNT = 1, 2, 4, 8, 32
 MS_BIND, MS_REC, MS_PRIVATE = 0x1000, 0x4000, 0x40000
 MNT_DETACH = 2
@@ -35,23 +40,27 @@ def call(function: str, *arguments: object) -> None:
     """Call a function of C's that tells failure by its value, and the reason by errno.
 
     Raises:
-        OSError: the system does not allow it, or does not know it.
+        OSError: the system does not allow it, or does not know it; its `filename` is the function.
     """
     there = getattr(_libc, function, None)
     if there is None:
-        raise OSError(errno.ENOSYS, f"no {function} here")
+        raise OSError(errno.ENOSYS, "there is none here", function)
     if there(*arguments) != 0:
         number = ctypes.get_errno()
-        raise OSError(number, f"{function}: {os.strerror(number)}")
+        raise OSError(number, os.strerror(number), function)
 
 
 def unshare(kinds: int) -> None:
     """Leave the namespaces that the calling thread shares with others.
 
     Raises:
-        OSError: the system does not allow it.
+        OSError: the system does not allow it; its `filename` names the kinds: "unshare (net)".
     """
-    call("unshare", kinds)
+    try:
+        call("unshare", kinds)
+    except OSError as error:
+        names = ", ".join(name for kind, name in KINDS.items() if kinds & kind)
+        raise OSError(error.errno, error.strerror, f"unshare ({names})") from None
 
 
 def enter(namespace: int, kind: int) -> None:

@@ -4,15 +4,15 @@
     python -I -S supervisor.py hold
 
 `run` writes two lines to REPORT_FD: the process id of the command, and, when it has ended, its exit
-code (negative for a signal), or `refused` and why it was not started. How it is to be confined
-(`sandbox/confinement.py`) is read from ORDER_FD, as JSON. The descendants may go on until SIGTERM
-comes, or the parent dies: the grader, or the zygote that has forked instead of starting this script
-(`forking.py`).
+code (negative for a signal), or `refused` and why it was not started (`refusal.py`). How it is to
+be confined (`sandbox/confinement.py`) is read from ORDER_FD, as JSON. The descendants may go on
+until SIGTERM comes, or the parent dies: the grader, or the zygote that has forked instead of
+starting this script (`forking.py`).
 Where the system allows it the command gets a process namespace of its own, so that it can neither
 see nor kill the simulator; else the supervisor adopts what its family leaves behind.
 
-`hold` makes a network namespace inside a user namespace, says `ready`, and keeps both until its
-standard input closes.
+`hold` makes a network namespace inside a user namespace, says `ready` (or `refused` and why), and
+keeps both until its standard input closes.
 
 A script of its own, with nothing but the standard library and little of ours: it starts in a few
 milliseconds.
@@ -34,6 +34,7 @@ if __name__ == "__main__":
     sys.path.append(os.path.realpath(f"{__file__}/../../../.."))
 
 from grader.run.processes import linux
+from grader.run.processes.refusal import Refusal
 from grader.run.processes.sandbox import confinement
 
 #: Stands before the reason why a command was not started.
@@ -44,7 +45,7 @@ NOT_OURS = [
 ]
 
 
-def confine(order: dict[str, Any] | None, *, has_namespace: bool) -> None:
+def confine(order: dict[str, Any] | None, lacking: OSError | None) -> None:
     """What confines a submission's own process, and nothing else of its run.
 
     The one place for a sandbox, however the process came to be: it is called in it, after its
@@ -53,15 +54,15 @@ def confine(order: dict[str, Any] | None, *, has_namespace: bool) -> None:
 
     Args:
         order: see `.sandbox.confinement`; None: nothing is confined but what is seen of processes.
-        has_namespace: whether there is a process namespace for it.
+        lacking: why there is no process namespace for it; None where there is one.
 
     Raises:
         OSError: it cannot be confined as ordered.
     """
     level = None if order is None else order["level"]
-    if level == confinement.NAMESPACES and not has_namespace:
-        raise OSError("no process namespace is to be had")
-    if has_namespace and level != confinement.NAMESPACES:
+    if level == confinement.NAMESPACES and lacking is not None:
+        raise lacking
+    if lacking is None and level != confinement.NAMESPACES:
         _see_only_own_processes()
     if order is not None:
         confinement.confine(order)
@@ -76,6 +77,7 @@ class Supervisor:
         self._order = order
         self._refusal, self._refuses = os.pipe()
         self._init = 0  # the first process of the namespace, whose end is the end of all in it
+        self._lacking: OSError | None = None
 
     def run(self, command: list[str] | None) -> None:
         """Run the command; ends when the grader has had enough.
@@ -91,9 +93,11 @@ class Supervisor:
         # A SIGCHLD that nobody handles would not wake sigwait below.
         signal.signal(signal.SIGCHLD, lambda *_: None)
         linux.control(linux.PR_SET_CHILD_SUBREAPER, 1)
-        with suppress(OSError):
+        try:
             linux.unshare(linux.CLONE_NEWPID | linux.CLONE_NEWIPC)
             self._init = os.fork() or self._be_init()
+        except OSError as error:
+            self._lacking = error
         child = os.fork()
         if not child:
             self._be_command(command)
@@ -160,7 +164,7 @@ class Supervisor:
             os.setsid()
             linux.signal_at_parents_death(signal.SIGKILL)
             os.close(self._refusal)
-            confine(self._order, has_namespace=bool(self._init))
+            confine(self._order, self._lacking)
             os.close(self._report)
             _reset_signals()
             if command is not None:
@@ -171,15 +175,8 @@ class Supervisor:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             os.close(self._refuses)
         except BaseException as error:
-            os.write(self._refuses, _said(error).encode("utf-8", "replace")[:1000])
+            os.write(self._refuses, Refusal.of(error).to_line().encode("utf-8", "replace")[:1000])
             os._exit(127)
-
-
-def _said(error: BaseException) -> str:
-    """An error in one line, and never in none."""
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.strerror}: {error.filename}" if error.filename else error.strerror
-    return str(error) or repr(error)
 
 
 def _reset_signals() -> None:
@@ -218,15 +215,19 @@ def _descendants(ancestor: int) -> list[int]:
 def hold() -> None:
     """Make the namespaces and keep them until standard input closes."""
     user, group = os.getuid(), os.getgid()
-    linux.unshare(linux.CLONE_NEWUSER | linux.CLONE_NEWNET)
-    for name, text in (
-        ("setgroups", "deny"),
-        ("uid_map", f"0 {user} 1"),
-        ("gid_map", f"0 {group} 1"),
-    ):
-        with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
-            file.write(text)
-    linux.raise_loopback()
+    try:
+        linux.unshare(linux.CLONE_NEWUSER | linux.CLONE_NEWNET)
+        for name, text in (
+            ("setgroups", "deny"),
+            ("uid_map", f"0 {user} 1"),
+            ("gid_map", f"0 {group} 1"),
+        ):
+            with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
+                file.write(text)
+        linux.raise_loopback()
+    except OSError as error:
+        os.write(1, f"{REFUSED} {Refusal.of(error).to_line()}\n".encode("utf-8", "replace"))
+        return
     os.write(1, b"ready\n")
     os.read(0, 1)
 

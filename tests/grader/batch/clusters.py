@@ -6,14 +6,14 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
 import psutil
 
-from tests.grader.batch.classes import DEADLINE_S, ENV
+from tests.grader.batch.classes import DEADLINE_S, ENV, ROOT
 
 Found = TypeVar("Found")
 
@@ -47,11 +47,17 @@ class Cluster:
         self.address = until(lambda: _address(file))
         return process
 
-    def start_worker(self, **env: str) -> subprocess.Popen[bytes]:
-        """Start one that grades one at a time; it ends if its scheduler does."""
+    def start_worker(self, refused: str = "", **env: str) -> subprocess.Popen[bytes]:
+        """Start one that grades one at a time; it ends if its scheduler does.
+
+        Args:
+            refused: what its system refuses; see `tests/refusing.py`.
+        """
         one = ["--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1"]
         scratch = ["--local-directory", str(self.folder)]
-        return self._start("worker", self.address, *one, *scratch, **env)
+        before = [sys.executable, str(ROOT / "tests" / "refusing.py"), refused] if refused else []
+        words = (self.address, *one, *scratch)
+        return self._start("worker", *words, before=before, **env)
 
     def held(self, worker: subprocess.Popen[bytes]) -> psutil.Process:
         """The process that does a worker's task, as soon as there is one, stopped in the middle."""
@@ -69,10 +75,12 @@ class Cluster:
         self._held.append(grading)
         return grading
 
-    def _start(self, what: str, *words: str, **env: str) -> subprocess.Popen[bytes]:
+    def _start(
+        self, what: str, *words: str, before: Sequence[str] = (), **env: str
+    ) -> subprocess.Popen[bytes]:
         with (self.folder / f"{len(self._processes)}.{what}.log").open("wb") as log:
             process = subprocess.Popen(
-                [sys.executable, "-P", "-m", f"distributed.cli.dask_{what}", *words],
+                [*before, sys.executable, "-P", "-m", f"distributed.cli.dask_{what}", *words],
                 env={**ENV, "DASK_TEMPORARY_DIRECTORY": str(self.folder), **env},
                 cwd=self.folder,
                 stdout=log,

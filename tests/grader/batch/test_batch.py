@@ -10,13 +10,17 @@ import signal
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import replace
 from pathlib import Path
 
 import psutil
 import pytest
 
+from grader.batch import pool
+from grader.batch.class_file import ClassFile
 from grader.batch.entry import Entry, entries
 from grader.cli import main
+from grader.run.processes import levels
 from tests import once
 from tests.files import lay
 from tests.programs import ROOT
@@ -201,6 +205,79 @@ def test_what_kill_9_interrupts_goes_on_and_comes_out_the_same(
     assert (code, "graded before." in messages) == (0, True), messages
     assert made_together(out) == made_together(graded)
     assert scores(out) == scores(graded)
+
+
+MORE = {**HANDED_IN, "erin/node.py": CRASHES + "# by erin\n"}
+
+
+@pytest.mark.skipif(levels.here().level != "namespaces", reason="there is nothing to refuse")
+@pytest.mark.parametrize(
+    ("refused", "why"),
+    [
+        (
+            "namespaces",
+            "isolation by namespaces, at which this class is graded, is not to be had here: "
+            "namespaces of users and networks are refused",
+        ),
+        (
+            "mount at present",
+            "whether isolation by namespaces is to be had could not be told in 3 tries: "
+            "mount: Cannot allocate memory",
+        ),
+    ],
+)
+def test_what_a_worker_cannot_confine_as_the_class_is_not_graded_and_told_why(
+    rubric: tuple[str, Path],
+    graded: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    refused: str,
+    why: str,
+) -> None:
+    refusing = (str(ROOT / "tests" / "refusing.py"), refused, sys.executable)
+    monkeypatch.setattr(pool, "_COMMAND", (*refusing, *pool._COMMAND))
+    before = scores(graded)
+    words = (lay(tmp_path / "handed_in", MORE), "--out", graded, *rubric)
+    code, messages = batch(*words)
+    assert code == 3, messages
+    assert scores(graded) == {**before, "erin": ("failed", None)}
+    assert Entry.read(graded / "submissions" / "erin").message == why
+    assert why in (graded / "index.html").read_text("utf-8")
+    monkeypatch.undo()
+    code, messages = batch(*words, "--again", "failed")
+    assert (code, scores(graded)["erin"][0]) == (0, "judged"), messages
+
+
+@pytest.mark.skipif(levels.here().level != "namespaces", reason="nothing is better")
+def test_a_class_goes_on_at_the_level_at_which_it_was_begun_or_not_at_all(
+    handed_in: Path,
+    rubric: tuple[str, Path],
+    graded: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    begun = ClassFile.read(graded)
+    assert begun.isolation == "namespaces"
+    words = (lay(tmp_path / "handed_in", MORE), "--out", graded, *rubric)
+    with monkeypatch.context() as less:
+        less.setattr(levels, "_found", {})
+        less.setattr(levels, "_look", lambda *_: levels.Level("", refused={"namespaces": "no"}))
+        code, messages = batch(*words)
+        assert code == 2
+        assert "at which this class is graded, is not to be had here: no. To get it:" in messages
+        assert "--again all" in messages
+        code, messages = batch(handed_in, "--out", graded, *rubric)  # there is nothing to run
+        assert code == 0, messages
+    replace(begun, isolation="limits").put(graded)
+    with monkeypatch.context() as asked:
+        asked.setattr(levels, "_least", "")  # which is for all of a process
+        code, messages = batch(*words, "--isolation", "landlock")
+    assert code == 2
+    assert "(the isolation: there limits, here landlock)" in messages
+    code, messages = batch(*words)
+    assert (code, scores(graded)["erin"][0]) == (0, "judged"), messages
+    result = Entry.read(graded / "submissions" / "erin").result
+    assert result is not None and result.run.isolation.startswith("limits")
 
 
 def test_who_is_no_longer_among_the_submissions_is_set_aside_and_comes_back_without_a_run(

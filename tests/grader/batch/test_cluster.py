@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
 from distributed import KilledWorker
 
-from grader.batch import cluster
+from grader.batch import cluster, remote
 from grader.batch.entry import entries
+from grader.batch.level import OfCluster
 from grader.errors import UsageError
+from grader.run.processes import levels
 from tests.grader.batch.classes import DEADLINE_S, Class, told
 from tests.grader.batch.clusters import Call, Cluster, kill
 
@@ -104,40 +107,119 @@ def test_what_ends_every_worker_is_told_as_failed_and_nobody_pays(
     assert {entry.score for entry in failed} == {None}
 
 
+@pytest.mark.more("what a worker offers is asked without a cluster as well")
+def test_a_worker_that_confines_less_well_is_named_and_the_others_grade(
+    small_class: Class, graded: Path, dask: Cluster, tmp_path: Path
+) -> None:
+    if levels.here().level != "namespaces":
+        pytest.skip("this system has no better level than such a worker")
+    dask.start_scheduler()
+    first = dask.start_worker()
+    with call(small_class, dask, tmp_path / "out") as grading:
+        process = dask.held(first)
+        dask.start_worker(refused="namespaces")
+        grading.wait_for("takes no hand-in: this class is graded with isolation by namespaces")
+        process.resume()
+        assert grading.wait() == 0, grading.text()
+    assert told(tmp_path / "out") == told(graded)
+
+
 class Fake:
-    """A client of a cluster whose only worker has another ROS."""
+    """A client of a cluster: what each of its workers offers."""
 
     status = "running"
 
-    def run(self, call: Callable[[], dict[str, str]], on_error: str) -> dict[str, dict[str, str]]:
-        return {"tcp://10.0.0.1:7": {**call(), "ros_distro": "rolling"}}
+    def __init__(self, *offers: dict[str, Any]) -> None:
+        own = {"versions": remote.own_versions(), "isolation": "", "why": "", "again": False}
+        self.offers = {f"tcp://10.0.0.{n}:7": own | offer for n, offer in enumerate(offers, 1)}
+
+    def run(self, call: object, level: str, on_error: str) -> dict[str, dict[str, Any]]:
+        return self.offers
+
+    def nthreads(self) -> dict[str, int]:
+        return dict.fromkeys(self.offers, 1)
+
+
+def session(fake: Fake, isolation: OfCluster | None = None) -> tuple[cluster._Session, list[str]]:
+    said: list[str] = []
+    isolation = isolation or OfCluster()
+    return cluster._Session(fake, iter(()), isolation, said.append), said  # type: ignore[arg-type]
 
 
 def test_a_cluster_with_other_versions_is_refused_before_anything_is_sent_to_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(cluster, "_connected", lambda *_: nullcontext(Fake()))
+    fake = Fake({"versions": {**remote.own_versions(), "ros_distro": "rolling"}})
+    monkeypatch.setattr(cluster, "_connected", lambda *_: nullcontext(fake))
     other = "the worker at tcp://10.0.0.1:7 has other versions: ros_distro rolling, and "
     with pytest.raises(UsageError, match=other):
-        list(cluster.work([], "tcp://10.0.0.1:8", print))
+        list(cluster.work([], "tcp://10.0.0.1:8", print, OfCluster()))
+
+
+BEST = {"isolation": "namespaces"}
+LESS = {"isolation": "landlock"}
+CANNOT = {"why": "unshare (user, net): Operation not permitted"}
+AT_PRESENT = {"why": "no network of its own could be made", "again": True}
+
+
+@pytest.mark.parametrize(
+    ("offers", "begun_at", "level", "unfit"),
+    [
+        ([BEST, BEST], "", "namespaces", []),
+        ([LESS, BEST, LESS], "", "namespaces", [1, 3]),
+        ([LESS, AT_PRESENT], "", "landlock", []),  # it may be fit for the next task
+        ([BEST, CANNOT], "namespaces", "namespaces", [2]),
+    ],
+)
+def test_a_worker_that_does_not_offer_the_class_s_level_gets_no_task_and_is_named(
+    offers: list[dict[str, Any]], begun_at: str, level: str, unfit: list[int]
+) -> None:
+    settled: list[str] = []
+    isolation = OfCluster(begun_at, "", settled.append)
+    found, said = session(Fake(*offers), isolation)
+    found._check_workers()
+    assert isolation.level == level
+    assert settled == ([] if begun_at else [level])
+    assert [f"tcp://10.0.0.{n}:7" for n in unfit] == list(found._unfit)
+    assert len(said) == len(unfit)
+    for n, text in zip(unfit, said, strict=True):
+        why = offers[n - 1].get("why") or "the best there is 'landlock'"
+        told = "takes no hand-in: this class is graded with isolation by namespaces"
+        assert text == f"The worker at tcp://10.0.0.{n}:7 {told} ({why})."
+
+
+@pytest.mark.parametrize(
+    ("offers", "isolation"),
+    [
+        ([LESS, LESS], OfCluster(least="namespaces")),
+        ([CANNOT, CANNOT], OfCluster("namespaces")),
+        ([CANNOT], OfCluster(least="namespaces")),
+    ],
+)
+def test_where_no_worker_offers_the_level_nothing_is_graded(
+    offers: list[dict[str, Any]], isolation: OfCluster
+) -> None:
+    found, _ = session(Fake(*offers), isolation)
+    with pytest.raises(UsageError, match="no worker of the cluster offers isolation by namespaces"):
+        found._check_workers()
 
 
 def test_a_task_that_ended_its_workers_is_answered_as_failed() -> None:
-    session = cluster._Session(Fake(), iter(()), "", print)  # type: ignore[arg-type]
+    found, _ = session(Fake())
     ended = KilledWorker("task", None, 1)
-    answer = session._failure(ended)
+    answer = found._failure(ended)
     told = "2 workers of the cluster ended while grading it"
     assert (answer.state, answer.message) == ("failed", told)
-    answer = session._failure(ValueError("x"))
+    answer = found._failure(ValueError("x"))
     assert (answer.state, answer.message) == ("failed", "a worker failed: ValueError: x")
 
 
 def test_what_is_no_address_is_told() -> None:
     with pytest.raises(UsageError, match="nonsense is no address of a scheduler"):
-        list(cluster.work([], "nonsense", print))
+        list(cluster.work([], "nonsense", print, OfCluster()))
 
 
 def test_where_there_is_no_scheduler_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster, "FIRST_S", 0.5)
     with pytest.raises(UsageError, match=r"there is no scheduler at .*:9"):
-        list(cluster.work([], "tcp://127.0.0.1:9", print))
+        list(cluster.work([], "tcp://127.0.0.1:9", print, OfCluster()))

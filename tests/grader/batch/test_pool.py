@@ -55,6 +55,23 @@ def test_who_dies_once_is_asked_again(monkeypatch: pytest.MonkeyPatch, tmp_path:
     assert mark.exists()
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_who_cannot_now_is_asked_again_as_a_new_process(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, times: int
+) -> None:
+    log = tmp_path / "asked"
+    then = (
+        f"open({str(log)!r}, 'a').write(f'{{os.getpid()}}\\n'); "
+        f"len(open({str(log)!r}).readlines()) <= {times} and ("
+        'print(json.dumps({"state": "again", "message": "full", "ran": False}), flush=True), '
+        "sys.stdin.read(), os._exit(0))"
+    )
+    workers_that(monkeypatch, then)
+    ((_, answer),) = pool.work(tasks(1), 1, PATIENT_S)
+    assert (answer.state, answer.message) == (("done", "0") if times == 1 else ("again", "full"))
+    assert len(set(log.read_text().split())) == 2
+
+
 def test_who_answers_nothing_sensible_is_told_as_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     workers_that(monkeypatch, 'print("hello", flush=True)')
     ((_, answer),) = pool.work(tasks(1), 1, PATIENT_S)

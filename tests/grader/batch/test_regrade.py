@@ -290,7 +290,7 @@ def test_a_recording_that_cannot_be_read_is_told_and_no_other_is_touched_by_it(
 
 def test_a_worker_that_dies_is_told_for_its_own_recording(whole, changed, monkeypatch):
     dies = (
-        "import os, sys; sys.path.append(sys.argv[1]); from grader.batch import worker; "
+        "import os, sys; sys.path.insert(0, sys.argv[1]); from grader.batch import worker; "
         "done = worker.done; "
         "worker.done = lambda task: os._exit(9) if task.key[0] == 'c' else done(task); "
         "worker.main()"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import pickle
 import tarfile
 from collections.abc import Iterator
 from dataclasses import replace
@@ -106,16 +107,19 @@ def test_a_worker_with_other_versions_does_not_begin(
     assert done == []
 
 
-def test_a_worker_that_confines_less_well_than_asked_does_not_begin(
-    task: Task, done: list[Task], monkeypatch: pytest.MonkeyPatch
+def test_a_worker_that_cannot_confine_as_asked_says_which_it_is(
+    task: Task, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def require(level: str) -> None:
-        raise UsageError(f"isolation by {level} is not to be had")
+    class Process:
+        def done(self, task: Task) -> Answer:
+            return Answer("unfit", f"isolation by {task.isolation} is not to be had here")
 
-    monkeypatch.setattr(remote.levels, "require", require)
-    with pytest.raises(UsageError, match="isolation by namespaces is not to be had"):
-        remote.graded(remote.packed(task, "namespaces"))
-    assert done == []
+    monkeypatch.setattr(remote, "_process", Process)
+    monkeypatch.setattr(remote, "_address", lambda: "tcp://10.0.0.1:7")
+    with pytest.raises(remote.Declined, match="isolation by namespaces is not to be") as raised:
+        remote.graded(remote.packed(replace(task, isolation="namespaces")))
+    again = pickle.loads(pickle.dumps(raised.value))  # as dask sends it
+    assert (again.address, again.message) == ("tcp://10.0.0.1:7", raised.value.message)
 
 
 def test_what_is_too_large_for_a_parcel_is_refused(

@@ -3,16 +3,21 @@
 import os
 import subprocess
 import sys
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from grader import scratch
+from grader import scratch, system
+from grader.errors import NotNow
 from grader.run import environment, real_time, virtual_time
+from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
 from grader.run.processes import domain, levels
 from grader.scenes.scene import Limits
-from grader.submission.opening import open_submission
+from grader.submission.opening import Submission, open_submission
 from turtlesim_py.world.events import CmdVel
 
 ROOT = Path(__file__).parents[3]
@@ -345,3 +350,24 @@ def test_locks_that_a_submission_has_taken_are_free_when_its_run_is_over(
             lock = scratch.take_lock(f"domain-{number}")
             assert lock is not None
             lock.close()
+
+
+@pytest.mark.skipif(not system.has_supervision(), reason="nothing is confined here")
+@pytest.mark.parametrize("run", [virtual_time.run, real_time.run], ids=["virtual", "real"])
+def test_what_could_not_be_confined_is_not_judged(
+    run: Callable[[Submission, Plan], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    prepare = levels.prepare
+
+    def prepare_badly(*words: Any, **more: Any) -> levels.Place:
+        place = prepare(*words, **more)
+        steps = [["bind", "/there/is/none"]]
+        return replace(place, order={**(place.order or {}), "level": "namespaces", "steps": steps})
+
+    levels.here()  # the trial has been good
+    monkeypatch.setattr(levels, "prepare", prepare_badly)
+    (tmp_path / "node.py").write_text("print('it runs')\n")
+    with open_submission(tmp_path / "node.py") as submission, pytest.raises(NotNow) as raised:
+        run(submission, Plan(Limits(first_motion_s=2, rest_s=0.2, total_s=60)))
+    assert not isinstance(raised.value, SimulatorLost)
+    assert "could not be started" in raised.value.message

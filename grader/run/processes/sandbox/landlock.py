@@ -142,5 +142,5 @@ def _call(number: int, *words: int | bytes) -> int:
     answer = _libc.syscall(number, *passed)
     if answer < 0:
         found = ctypes.get_errno()
-        raise OSError(found, f"Landlock: {os.strerror(found)}")
+        raise OSError(found, os.strerror(found), "Landlock")
     return int(answer)

@@ -5,6 +5,7 @@ In the process itself, and for good: what it starts has no more either.
 
 from __future__ import annotations
 
+import errno
 import os
 
 from grader.run.processes import linux
@@ -77,4 +78,4 @@ def forbid_new() -> None:
         OSError: the system does not know this.
     """
     if not linux.control(linux.PR_SET_NO_NEW_PRIVS, 1):
-        raise OSError("no_new_privs is refused")
+        raise OSError(errno.EINVAL, os.strerror(errno.EINVAL), "no_new_privs")

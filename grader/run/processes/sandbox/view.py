@@ -186,7 +186,8 @@ def import_path() -> list[str]:
 
 def _added(folder: str) -> Iterator[str]:
     """Folders that are put on the import path by files in another one."""
-    for file in sorted(Path(folder).glob("*.pth")):
+    # not by glob, which finds nothing where no descriptor is free
+    for file in sorted(path for path in Path(folder).iterdir() if path.suffix == ".pth"):
         for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
             if line.strip() and not line.startswith(("#", "import ", "import\t")):
                 path = os.path.normpath(os.path.join(folder, line.strip()))

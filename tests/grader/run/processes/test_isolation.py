@@ -1,5 +1,7 @@
 """No run hears another, and none leaves anything in shared memory."""
 
+import errno
+import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -9,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from grader import scratch
-from grader.run.processes import isolation
+from grader.errors import NotNow
+from grader.run.processes import isolation, refusal
 from grader.run.stage import Stage, open_stage
 
 #: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning
@@ -81,19 +84,71 @@ def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
     assert [line.split(":")[0].strip() for line in shown.stdout.splitlines()[2:]] == ["lo"]
 
 
-def test_what_is_refused_once_is_not_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
+@pytest.mark.parametrize(
+    ("number", "asked_for"),
+    [(errno.EPERM, [1, 0]), (errno.EMFILE, [refusal.TRIES, refusal.TRIES])],
+)
+def test_what_is_refused_for_good_is_not_asked_for_again_and_the_rest_is(
+    monkeypatch: pytest.MonkeyPatch, number: int, asked_for: list[int]
+) -> None:
+    asked = [0]
 
     def refuse() -> isolation.Namespaces:
-        asked.append(1)
-        raise PermissionError
+        asked[-1] += 1
+        raise OSError(number, os.strerror(number), "unshare (net)")
 
     monkeypatch.setattr(isolation, "_as_root", refuse)
     monkeypatch.setattr(isolation, "_as_user", refuse)
     monkeypatch.setattr(isolation, "_refused", set())
-    assert isolation.private_network() is None
-    assert isolation.private_network() is None
-    assert len(asked) == 1
+    monkeypatch.setattr(refusal, "PAUSES_S", (0.0, 0.0))
+    told = []
+    for _ in range(2):
+        try:
+            assert isolation.private_network() is None
+        except NotNow as error:
+            told.append(error.message)
+        asked.append(0)
+    once = 1 if number == errno.EPERM else 2  # the same function twice
+    assert asked[:2] == [each * once for each in asked_for]
+    assert len(told) == (0 if number == errno.EPERM else 2)
+    assert all(text.endswith("unshare (net): Too many open files") for text in told)
+
+
+#: In a user namespace in which there may be so many networks, one of which is there already.
+FEW_NETWORKS = """
+import os, sys
+from pathlib import Path
+from grader.errors import NotNow
+from grader.run.processes import isolation, linux, refusal
+refusal.PAUSES_S = (0.0, 0.0)
+user, group = os.getuid(), os.getgid()
+linux.unshare(linux.CLONE_NEWUSER)
+for name, text in ("setgroups", "deny"), ("uid_map", f"0 {user} 1"), ("gid_map", f"0 {group} 1"):
+    Path("/proc/self", name).write_text(text)
+linux.unshare(linux.CLONE_NEWNET)
+Path("/proc/sys/user/max_net_namespaces").write_text(sys.argv[1])
+try:
+    print(isolation.private_network())
+except NotNow as error:
+    print(error.message)
+"""
+
+
+@pytest.mark.parametrize(
+    ("most", "told"),
+    [("0", "None"), ("1", "net): No space left on device"), ("9", "Namespaces(fds=")],
+)
+def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most: str, told: str) -> None:
+    if isolation.private_network() is None:
+        pytest.skip("this system allows none")
+    done = subprocess.run(
+        [sys.executable, "-c", FEW_NETWORKS, most],
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[4])},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert told in done.stdout, done.stdout + done.stderr
 
 
 def test_a_stage_leaves_nothing(kind: str) -> None:

@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
+import json
 import os
+import resource
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from grader import cli
+from grader import cli, scratch, system
 from grader.cli import run
-from grader.errors import GraderFailure, UsageError
+from grader.errors import GraderFailure, NotNow, UsageError
 from grader.run import stage
-from grader.run.processes import isolation, levels
+from grader.run.processes import isolation, levels, refusal
 from grader.run.processes.family import Student
 from grader.run.processes.sandbox import view
 from grader.run.processes.zygote import Warm, Zygote
+from tests.children import in_child
 from tests.grader.run.processes.test_zygote import COMMAND, ENV
 
+TESTS = Path(__file__).parents[3]
 WEAK = levels.Level("landlock", "same", {"namespaces": "mount: Operation not permitted"})
+
+
+def there_is(level: levels.Level, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(levels, "_found", {})
+    monkeypatch.setattr(levels, "_look", lambda isolated, wanted: level)
 
 
 @pytest.fixture
 def weak(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(levels, "_found", {True: WEAK, False: WEAK})
+    there_is(WEAK, monkeypatch)
     monkeypatch.setattr(levels, "_least", "")
 
 
@@ -65,8 +75,7 @@ def test_what_is_there_is_enough() -> None:
 @pytest.mark.usefixtures("weak")
 def test_no_run_is_made_below_what_was_required(monkeypatch: pytest.MonkeyPatch) -> None:
     levels.require("landlock")
-    weaker = levels.Level("limits")
-    monkeypatch.setattr(levels, "_found", {True: weaker, False: weaker})
+    there_is(levels.Level("limits"), monkeypatch)
     with (
         pytest.raises(GraderFailure, match="isolation by landlock was to be had before"),
         stage.open_stage(),
@@ -82,6 +91,99 @@ def test_where_nothing_can_be_confined_nothing_is_said_of_it(
     found = levels.best(isolation.Isolation("", {}))
     assert (found.level, found.name()) == ("", "")
     assert levels.prepare(found, *[Path("/")] * 3, is_apart=False) == levels.Place(None, {})
+
+
+def _without_descriptors(free: int) -> list[str]:
+    """What is told where so few are free, and the level when there are enough again."""
+    levels._found.clear()
+    isolation._refused.clear()
+    refusal.PAUSES_S = (0.0, 0.0)
+    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        before = resource.getrlimit(resource.RLIMIT_NOFILE)
+        next_one = os.dup(0)
+        os.close(next_one)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (next_one + free, before[1]))
+        try:
+            told = [levels.best(isolated).level]
+        except NotNow as error:
+            told = [error.message]
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, before)
+        return [*told, levels.best(isolated).level]
+
+
+@pytest.mark.skipif(not system.has_supervision(), reason="there is no level here")
+@pytest.mark.parametrize("free", [0, 3])
+def test_a_lack_of_descriptors_lowers_no_level_and_is_not_remembered(free: int) -> None:
+    there = levels.here().level
+    told, later = in_child(_without_descriptors, free)
+    assert told.startswith(
+        f"whether isolation by {there} is to be had could not be told in 3 tries"
+    )
+    assert told.endswith(": Too many open files")
+    assert later == there
+
+
+@pytest.mark.skipif(not system.has_supervision(), reason="there is no level here")
+def test_a_slow_trial_lowers_no_level_and_is_not_remembered(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    there = levels.here().level
+    monkeypatch.setattr(levels, "_found", {})
+    monkeypatch.setattr(refusal, "PAUSES_S", (0.0, 0.0))
+    with monkeypatch.context() as impatient:
+        impatient.setattr(levels, "PATIENCE_S", 0.0)
+        with pytest.raises(NotNow, match="in 3 tries: a trial took 0 s"):
+            levels.here()
+    assert levels.here().level == there
+
+
+#: Levels where the system refuses something, and what it says of namespaces, as JSON.
+TELLS = """
+import json, sys
+from grader.errors import GraderError
+from grader.run.processes import levels
+found = []
+for wanted in sys.argv[1:]:
+    try:
+        there = levels.here(wanted)
+        found.append([there.level, there.refused.get("namespaces", "")])
+    except GraderError as error:
+        found.append([type(error).__name__, error.message])
+print(json.dumps(found))
+"""
+
+
+@pytest.mark.skipif(levels.here().level != "namespaces", reason="there is nothing to refuse")
+@pytest.mark.parametrize(
+    ("refused", "level", "why"),
+    [
+        ("mount", "landlock", "mount: Operation not permitted"),
+        ("unshare", "landlock", "namespaces of users and networks are refused"),
+        (
+            "mount at present",
+            "NotNow",
+            "whether isolation by namespaces is to be had could not be told in 3 tries: "
+            "mount: Cannot allocate memory",
+        ),
+    ],
+)
+def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(
+    refused: str, level: str, why: str
+) -> None:
+    words = [sys.executable, str(TESTS / "refusing.py"), refused, sys.executable, "-c", TELLS]
+    done = subprocess.run(
+        [*words, "", "limits", "namespaces"],
+        env={**os.environ, "PYTHONPATH": str(TESTS.parent)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    best, lower, same = json.loads(done.stdout)
+    assert best == [level, why], done.stderr
+    assert lower == ["limits", ""]
+    at = "isolation by namespaces, at which this class is graded, is not to be had here: "
+    assert same == (best if level == "NotNow" else ["NotOffered", f"{at}{why}"])
 
 
 @pytest.fixture(params=["started", "forked"])

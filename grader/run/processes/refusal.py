@@ -1,0 +1,101 @@
+"""What a system answers where it does not do what a level needs: no for good, or not now.
+
+What is refused for good is not asked for again. Anything else (no descriptor is free, no memory, a
+trial that takes too long) may pass: it is tried again, a few times, and then told. It never lowers
+a level.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import time
+from collections.abc import Callable
+from types import FrameType
+from typing import NamedTuple, Self  # no dataclass, no re: a supervisor starts in milliseconds
+
+#: The numbers of errors that a system does not take back.
+FINAL = frozenset(
+    getattr(errno, name) for name in ("EPERM", "EACCES", "ENOSYS", "EINVAL", "EOPNOTSUPP", "EUSERS")
+)
+#: Between two tries [s]: there is one try more.
+PAUSES_S = (0.1, 0.5)
+TRIES = len(PAUSES_S) + 1
+#: How many namespaces of a kind there may be.
+MOST = "/proc/sys/user/max_{kind}_namespaces"
+
+
+class Refusal(NamedTuple):
+    """What was refused.
+
+    Attributes:
+        number: the system's number of the error; 0 for none.
+        step: what was to be done: "unshare (net)", a path, a function: "privileges.become".
+        words: why, for people.
+    """
+
+    number: int
+    step: str
+    words: str
+
+    @classmethod
+    def of(cls, error: BaseException) -> Self:
+        """What an error tells; where it names no file, its step is the function it comes from."""
+        place = error.__traceback__
+        while place is not None and place.tb_next is not None:
+            place = place.tb_next
+        step = "" if place is None else _name(place.tb_frame)
+        if not isinstance(error, OSError):
+            return cls(0, step, " ".join(str(error).split()) or repr(error))
+        words = error.strerror or str(error)
+        return cls(error.errno or 0, os.fsdecode(error.filename or step), " ".join(words.split()))
+
+    @classmethod
+    def from_line(cls, line: str) -> Self:
+        """What `to_line` has written, or anything else."""
+        number, _, told = line.partition(" ")
+        step, colon, words = told.partition(": ")
+        if colon and number.isascii() and number.isdigit() and len(number) < 5:
+            return cls(int(number), step, words)
+        return cls(0, "", line)
+
+    def to_line(self) -> str:
+        """As another process tells it."""
+        step = " ".join(self.step.replace(": ", " ").split())
+        return f"{self.number} {step}: {self.words}"
+
+    @property
+    def why(self) -> str:
+        """For people, in one line."""
+        return f"{self.step}: {self.words}" if self.step else self.words
+
+    @property
+    def is_final(self) -> bool:
+        """Whether it would be refused again: there is none, it is forbidden, or none may be had."""
+        if self.number == errno.ENOSPC and self.step.startswith("unshare"):
+            kinds = self.step.removeprefix("unshare (").removesuffix(")").split(", ")
+            return any(_most(kind) == 0 for kind in kinds)
+        return self.number in FINAL
+
+
+def insist(attempt: Callable[[], Refusal | None]) -> Refusal | None:
+    """Try until it works or is refused for good, `TRIES` times at most; the last refusal."""
+    for pause_s in PAUSES_S:
+        refusal = attempt()
+        if refusal is None or refusal.is_final:
+            return refusal
+        time.sleep(pause_s)
+    return attempt()
+
+
+def _name(frame: FrameType) -> str:
+    module = frame.f_globals.get("__name__", "").rpartition(".")[2]
+    return f"{module}.{frame.f_code.co_name}"
+
+
+def _most(kind: str) -> int | None:
+    try:
+        with open(MOST.format(kind=kind), "rb") as file:  # noqa: PTH123  pathlib is slow to import
+            return int(file.read())
+    except (OSError, ValueError):
+        return None
