@@ -38,6 +38,8 @@ _NUMBER = Struct("<q")
 _DONE, _HIT = b"=", b"!"
 #: So long after its last second the kernel has surely ended a copy [s].
 _GRACE_S = 10.0
+#: So often it is asked whether it has stalled [s].
+_LOOK_S = 0.5
 _PR_SET_PDEATHSIG = 1
 _ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIGPIPE")
 
@@ -72,6 +74,10 @@ class NoEnd(LimitHit):
     """Its time was over: the processor's or that on the wall, which depends on the machine."""
 
 
+class Stalled(NoEnd):
+    """It waited, and nothing that it had started did anything either."""
+
+
 class _Slow(NoEnd):
     """The time on the wall is over, though the processor's is not."""
 
@@ -84,11 +90,18 @@ class Copy:
     Args:
         answer: makes an answer of the number of a question; it raises nothing.
         limits: of each answer.
+        is_stalled: asked now and then whether to wait any longer.
     """
 
-    def __init__(self, answer: Callable[[int], bytes], limits: Limits) -> None:
+    def __init__(
+        self,
+        answer: Callable[[int], bytes],
+        limits: Limits,
+        is_stalled: Callable[[], bool] = lambda: False,
+    ) -> None:
         self._answer = answer
         self._limits = limits
+        self._is_stalled = is_stalled
         self._pid: int | None = None
         self._questions = self._answers = -1
 
@@ -166,10 +179,14 @@ class Copy:
         rest = memoryview(found)
         while rest:
             left_s = deadline - time.monotonic()
-            if left_s <= 0 or not waiting.poll(left_s * 1000):
+            if left_s <= 0:
                 raise _Slow(
                     say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
                 )
+            if not waiting.poll(min(left_s, _LOOK_S) * 1000):
+                if self._is_stalled():
+                    raise Stalled(say("waited for what did not come"))
+                continue
             count = os.readv(self._answers, [rest])
             if not count:
                 raise EOFError
@@ -257,13 +274,15 @@ class Copy:
             os._exit(code)
 
 
-def call(work: Callable[[], bytes], limits: Limits) -> bytes:
-    """What one call of a function returns, within limits.
+def call(
+    work: Callable[[], bytes], limits: Limits, is_stalled: Callable[[], bool] = lambda: False
+) -> bytes:
+    """What one call of a function returns, within limits; see `Copy`.
 
     Raises:
         LimitHit: it returned nothing.
     """
-    with Copy(lambda _: work(), limits) as copy:
+    with Copy(lambda _: work(), limits, is_stalled) as copy:
         return copy.ask(0)
 
 

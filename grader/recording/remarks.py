@@ -53,6 +53,7 @@ KEYS = (
     marked("its process does not read what it has asked for"),
     marked("its process sent what only a simulator says"),
     marked("its process made more than {number} requests that let no time pass"),
+    marked("the node sent more than {number} messages"),
     marked("the node published on more than {number} topics"),
     marked("messages on {channel} were too long or too many to be taken"),
     marked("a message on {channel} could not be read"),

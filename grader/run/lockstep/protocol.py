@@ -52,6 +52,11 @@ class ProtocolError(Exception):
     """A packet that neither side of ours sends."""
 
 
+#: Messages, requests and responses that a submission may send in a run, whoever hears them: five a
+#: millisecond would be so many in 20 s. That it says so itself is believed: it has other limits.
+MOST_SENT = 100_000
+
+
 class State(IntEnum):
     """What a `Reply` says about the run."""
 
@@ -66,6 +71,7 @@ class Kind(IntEnum):
     WAITING = 2  # its threads wait for something that will not come, as a program may at its end
     UNSUPPORTED = 3  # it did what virtual time cannot follow: `text` says what
     FAILED = 4  # virtual time does not work here; `text` says why, as a clause
+    FLOODING = 5  # it has sent more than `MOST_SENT` messages
 
 
 class Parcel(NamedTuple):

@@ -14,6 +14,7 @@ from typing import Literal
 
 from grader.run.lockstep.link import PacketReader, pieces
 from grader.run.lockstep.protocol import (
+    MOST_SENT,
     PROGRESS,
     Advance,
     Interests,
@@ -49,6 +50,7 @@ LIMIT_BYTES = 8_000_000
 WANTS_PROCESSOR = "R"
 ELSEWHERE = "the submission waits for something outside of Python's and ROS's own waiting"
 NONSENSE = "its process sent what ours never sends"
+TOO_MANY = f"the node sent more than {MOST_SENT} messages"
 
 
 @dataclass(frozen=True)
@@ -224,6 +226,8 @@ class StudentLink:
                 raise Refused(f"the submission {text}")
             case Kind.FAILED:
                 raise Refused(text)
+            case Kind.FLOODING:
+                self.break_off(TOO_MANY)
 
     def break_off(self, why: str) -> None:
         """Hear nothing more of it, for it does what no process of ours does; `why` is a flag."""

@@ -26,8 +26,16 @@ _CLAUSES: Final = (
     say("needed more memory than it may have"),
     say("called itself too deeply"),
     say("could not be started: {error}", error=_ANY),
+    say("waited for what did not come"),
+    say(
+        "was not tried: the package took {cpu} s of processor time, or let {most} steps wait in "
+        "vain, before",
+        cpu=_ANY,
+        most=_ANY,
+    ),
     say("spoils what is taken down of it"),
     say("takes away {file}", file=_ANY),
+    say("cannot be read ({error})", error=_ANY),
     say("cannot be evaluated: {why}", why=_ANY),
     say("hands on a text of {length} characters; {most} at most are taken", length=_ANY, most=_ANY),
     say("hands on more than {most} descriptions and long texts", most=_ANY),

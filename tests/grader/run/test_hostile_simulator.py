@@ -15,6 +15,7 @@ from grader.errors import GraderFailure
 from grader.recording.recording import Recording, Recordings
 from grader.run import handover, real_time, virtual_time
 from grader.run.plan import Plan
+from grader.run.simulator import link
 from grader.run.simulator import virtual_time as simulator
 from grader.run.simulator.link import Patience
 from grader.scenes.scene import Limits
@@ -107,6 +108,14 @@ def test_who_keeps_the_simulator_busy_is_told_so() -> None:
     recording = run("lets_no_time_pass", replace(PATIENCE, simulator_cpu_s=0.2))
     assert recording.run.outcome == "killed"
     assert virtual_time.FLOODING.format(0.2) in recording.run.flags
+
+
+@pytest.mark.more("a hundred thousand messages take five seconds")
+def test_who_sends_without_measure_is_ended() -> None:
+    limits = Limits(first_motion_s=30, rest_s=2, total_s=30)
+    recording = run("sends_without_measure", limits=limits)
+    assert recording.run.outcome == "killed"
+    assert link.TOO_MANY in recording.run.flags
 
 
 def test_a_flood_on_the_link_is_no_failure() -> None:

@@ -11,7 +11,7 @@ import signal
 from contextlib import suppress
 from ctypes import CDLL
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 _PR_SET_CHILD_SUBREAPER: Final = 36
 _PROC: Final = Path("/proc")
@@ -32,7 +32,7 @@ def end() -> None:
         return
     stopped: set[int] = set()
     for _ in range(_MOST_ROUNDS):  # who is stopped has no more children
-        found = _below(os.getpid())
+        found = _below(os.getpid(), _stats())
         if found <= stopped:
             break
         _tell(found - stopped, signal.SIGSTOP)
@@ -49,22 +49,41 @@ def _tell(processes: set[int], what: signal.Signals) -> None:
             os.kill(each, what)
 
 
-def _below(ancestor: int) -> set[int]:
-    """All descendants of a process that are not over yet."""
-    children: dict[int, list[int]] = {}
-    over: set[int] = set()
+def used() -> tuple[int, bool]:
+    """Of all that is below this process: the processor time [ticks], and whether any wants more."""
+    stats = _stats()
+    below = _below(os.getpid(), stats)
+    return sum(stats[each].used for each in below), any(stats[each].state in "RD" for each in below)
+
+
+class _Stat(NamedTuple):
+    state: str
+    parent: int
+    used: int  # of itself and of those that it has waited for [ticks]
+
+
+def _stats() -> dict[int, _Stat]:
+    """Of every process that there is."""
+    found = {}
     for folder in _PROC.iterdir():
         if folder.name.isdecimal():
             with suppress(OSError, ValueError, IndexError):
-                stat = (folder / "stat").read_text("latin-1")
-                state, parent = stat.rpartition(")")[2].split()[:2]  # a name may hold anything
-                children.setdefault(int(parent), []).append(int(folder.name))
-                if state in "ZX":
-                    over.add(int(folder.name))
+                text = (folder / "stat").read_text("latin-1")
+                words = text.rpartition(")")[2].split()  # a name may hold anything
+                used = sum(map(int, words[11:15]))
+                found[int(folder.name)] = _Stat(words[0], int(words[1]), used)
+    return found
+
+
+def _below(ancestor: int, stats: dict[int, _Stat]) -> set[int]:
+    """All descendants of a process that are not over yet."""
+    children: dict[int, list[int]] = {}
+    for number, stat in stats.items():
+        children.setdefault(stat.parent, []).append(number)
     found: set[int] = set()
     pending = [ancestor]
     while pending:
         below = [each for each in children.get(pending.pop(), []) if each not in found]
         found.update(below)
         pending += below
-    return found - over
+    return {each for each in found if stats[each].state not in "ZX"}

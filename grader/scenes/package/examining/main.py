@@ -24,7 +24,7 @@ from grader.scenes.package import trace  # noqa: E402
 from grader.scenes.package.examining import layout, leftovers, packages  # noqa: E402
 from grader.scenes.package.examining.looking import Looking  # noqa: E402
 from grader.scenes.package.examining.place import Place  # noqa: E402
-from grader.scenes.package.examining.steps import Ended, attempt  # noqa: E402
+from grader.scenes.package.examining.steps import Ended, attempt, open_account  # noqa: E402
 from grader.scenes.package.trace import FAILED, PackageTrace  # noqa: E402
 
 
@@ -65,6 +65,7 @@ def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> P
 
 
 def _look(root: Path, asked: str, scratch: Path, folder: Path | None) -> PackageTrace:
+    open_account()
     found = packages.find(root.resolve())
     one = packages.judged(found, asked, folder and folder.resolve())
     if one is None:

@@ -6,12 +6,13 @@ import json
 import os
 import subprocess
 import sys
+import threading
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
-from grader.scenes.package.examining import main, paths
+from grader.scenes.package.examining import main, paths, steps
 from grader.scenes.package.examining.setup_call import is_told
 from grader.scenes.package.examining.steps import (
     NONSENSE,
@@ -185,6 +186,26 @@ def test_texts_that_are_cut_have_no_part_of_a_path_and_no_address():
     assert start_of(path, 50) == end_of(path, 50) == path
     problem = problem_of(ValueError(f"found {object()}"), str)
     assert problem.text == "ValueError: found <object object at 0x...>"
+
+
+def test_a_step_that_waits_in_vain_is_ended_and_after_some_no_other_is_tried(tmp_path, monkeypatch):
+    monkeypatch.setattr(steps, "STALL_S", 0.1)
+    monkeypatch.setattr(steps, "MOST_IN_VAIN", 2)
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    steps.open_account()
+
+    def why(work):
+        with pytest.raises(Ended) as ended:
+            step(work, str)
+        return ended.value.problem.text
+
+    assert why(pipe.read_text) == "it waited for what did not come"
+    assert step(lambda: sum(range(10**7)) > 0, str)  # which waits for nothing
+    assert why(threading.Event().wait) == "it waited for what did not come"
+    assert why(lambda: 1).startswith("it was not tried: the package took 120 s")
+    steps.open_account()
+    assert step(lambda: 1, str) == 1
 
 
 def test_nothing_is_waited_for_that_is_no_file(tmp_path):
