@@ -23,6 +23,7 @@ from grader.batch.find.times import zone
 
 MAX_COMMIT_BYTES: Final = 1_000_000  # a commit is a message and a few names
 _MAX_FILE_BYTES: Final = 5_000_000  # packed-refs of a repository with 50,000 branches
+_MOST_OBJECTS: Final = 100_000
 _WAIT_S: Final = 20.0
 _NAME: Final = re.compile(r"[0-9a-f]{40}")
 _REF: Final = re.compile(r"ref: (?P<ref>refs/heads/[\w./+@-]+)")
@@ -56,7 +57,7 @@ class LastCommits:
         theirs = clone / ".git"
         objects = theirs / "objects"
         try:
-            if not (_is_folder(theirs) and _is_folder(objects)):
+            if not (_is_folder(theirs) and _is_folder(objects) and _are_plain(objects)):
                 return None  # a link, or a file that says where else it lies
             name = _commit(theirs)
         except OSError:
@@ -146,3 +147,15 @@ def _read(path: Path) -> str:
 
 def _is_folder(path: Path) -> bool:
     return stat.S_ISDIR(path.lstat().st_mode)
+
+
+def _are_plain(objects: Path) -> bool:
+    """Whether git finds nothing that it would wait for, or that leads it elsewhere."""
+    looked_at = 0
+    for at, folders, files in os.walk(objects):
+        looked_at += len(folders) + len(files)
+        if looked_at > _MOST_OBJECTS or {"alternates", "http-alternates"} & {*files, *folders}:
+            return False
+        if not all(stat.S_ISREG(Path(at, name).lstat().st_mode) for name in files):
+            return False
+    return True

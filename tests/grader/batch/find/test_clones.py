@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from datetime import datetime
 from pathlib import Path
 
+import pytest
+
+from grader.batch.find import git_time
 from tests.grader.batch.find.exports import (
     NODE,
     Finder,
@@ -91,6 +95,19 @@ def test_nothing_of_a_repository_is_run_and_no_link_followed(
     }
     assert not ran.exists()
     assert noted(found, "Nothing says when", "elsewhere", "linked", "up")
+
+
+@pytest.mark.parametrize("name", ["info/alternates", "pack/pack-a.idx", "00/" + 38 * "0"])
+def test_git_is_not_asked_where_it_would_wait_for_a_pipe(
+    name: str, tmp_path: Path, finder: Finder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    repository(tmp_path / "class" / "spiral-anna")
+    pipe = tmp_path / "class" / "spiral-anna" / ".git" / "objects" / name
+    pipe.parent.mkdir(exist_ok=True)
+    os.mkfifo(pipe)
+    monkeypatch.setattr(git_time.subprocess, "run", lambda *_, **__: pytest.fail("git was asked"))
+    (found,) = finder(tmp_path / "class").hand_ins
+    assert found.at is None
 
 
 def test_a_damaged_repository_is_a_hand_in_still(tmp_path: Path, finder: Finder) -> None:
