@@ -26,6 +26,9 @@ pytest_plugins = ["tests.apart", "tests.needs"]
 
 #: So many examples has each search, in `make test-all`; without it, few.
 EXAMPLES = int(os.environ.get("EXAMPLES") or 0)
+#: So many hand-ins and recordings, as nobody makes them, are drawn by each search for a failure of
+#: the grader.
+CASES = max(200, 2 * EXAMPLES) if EXAMPLES else 30
 settings.register_profile(
     "ours",
     max_examples=EXAMPLES or 30,

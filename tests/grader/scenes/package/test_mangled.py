@@ -15,12 +15,10 @@ from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.scenes.package.examining.steps import Ended, attempt
 from grader.scenes.package.trace import decode, encode
-from tests.conftest import EXAMPLES
+from tests.conftest import CASES
 from tests.submissions.mangled import Mangled, packages
 from tests.submissions.packages import looked_at, recorded
 
-#: So many packages are drawn; each of them costs a third of a second.
-CASES = max(200, 2 * EXAMPLES) if EXAMPLES else 30
 #: What is said where something of ours has failed, and the system has refused nothing.
 OURS = re.compile(r"cannot be read \(\w+: .*, \w+\.py, line \d+\)")
 EXERCISES = [load_exercise(name) for name in ("description_package", "thymio_package")]
