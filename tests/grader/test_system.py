@@ -67,9 +67,9 @@ def test_a_libc_that_knows_nothing_of_linux(monkeypatch, load) -> None:
 def test_namespaces_that_libc_does_not_know_are_refused(monkeypatch, libc) -> None:
     monkeypatch.setattr(linux, "_libc", libc)
     monkeypatch.setattr(isolation, "_refused", set())
-    with pytest.raises(OSError, match=r"\[Errno 38\].*unshare \(net\)"):
+    with pytest.raises(OSError, match=r"unshare \(net\)"):
         linux.unshare(linux.CLONE_NEWNET)
-    with pytest.raises(OSError, match="no unshare here"):
+    with pytest.raises(OSError, match=r"unshare \(net\)"):
         isolation._as_root()
 
 
