@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import shutil
 import socket
+import stat
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,10 @@ BASES = (
     *(read_solutions(load_exercise(name))[0].path for name in _INSTALLED),
     *(FOLDER / name for name in ("r2d2_tutorial", "urdf_to_package")),
 )
+
+
+#: A file beside a package, to which links lead.
+OUTSIDE, SAYS = "outside.yaml", "name: outside\n"
 
 
 @dataclass(frozen=True)
@@ -55,16 +60,22 @@ class Mangled:
     changes: tuple[Change, ...]
 
     def lay_out(self, folder: Path) -> Path:
-        """Make it; where it lies."""
+        """Make it; where it lies. What lies outside, beside it, is never written to."""
         base = BASES[self.base]
         root = folder / base.name
+        (folder / OUTSIDE).write_text(SAYS, encoding="ascii")
         shutil.copytree(base, root, ignore=shutil.ignore_patterns("__pycache__"))
         for change in self.changes:
-            files = sorted(each for each in root.rglob("*") if each.is_file())
+            files = sorted(each for each in root.rglob("*") if _is_plain(each))
             fitting = [each for each in files if each.name.endswith(change.end)] or files
             if fitting:
                 _KINDS[change.kind](fitting[change.file % len(fitting)], change, files)
         return root
+
+
+def _is_plain(path: Path) -> bool:
+    """Whether writing to it writes to it, and to nothing that it leads to."""
+    return stat.S_ISREG(path.lstat().st_mode)
 
 
 # Kinds of changes ---------------------------------------------------------------------------------
@@ -169,7 +180,9 @@ def _linked(path: Path, change: Change, files: list[Path]) -> None:
         case 1:
             path.symlink_to("..")
         case 2:
-            path.symlink_to("/etc/passwd")
+            path.symlink_to(
+                next(each for each in path.parents if (each / OUTSIDE).exists()) / OUTSIDE
+            )
         case 3:
             path.symlink_to("nothing/there")
         case 4:

@@ -16,7 +16,7 @@ from grader.exercise.loading import load_exercise
 from grader.scenes.package.examining.steps import Ended, attempt
 from grader.scenes.package.trace import decode, encode
 from tests.conftest import CASES
-from tests.submissions.mangled import Mangled, packages
+from tests.submissions.mangled import OUTSIDE, SAYS, Change, Mangled, packages
 from tests.submissions.packages import looked_at, recorded
 
 #: What is said where something of ours has failed, and the system has refused nothing.
@@ -24,11 +24,20 @@ OURS = re.compile(r"cannot be read \(\w+: .*, \w+\.py, line \d+\)")
 EXERCISES = [load_exercise(name) for name in ("description_package", "thymio_package")]
 
 
+@pytest.mark.parametrize("kind", ["_written", "_resized", "_encoded", "_added", "_swapped"])
+def test_a_link_out_of_a_mangled_package_is_not_written_through(kind: str, tmp_path: Path) -> None:
+    changes = [Change("_linked", number, 0, 2, "", "") for number in range(40)]
+    changes += [Change(kind, number, 0, 3, "a", "") for number in range(40)]
+    Mangled(0, tuple(changes)).lay_out(tmp_path)
+    assert (tmp_path / OUTSIDE).read_text(encoding="ascii") == SAYS
+
+
 @settings(max_examples=CASES)
 @given(package=packages())
 def test_a_mangled_package_is_looked_at_and_judged(package: Mangled) -> None:
     with tempfile.TemporaryDirectory() as folder:
         trace = looked_at(package.lay_out(Path(folder)), cpu_s=3.0, wall_s=3.0)
+        assert (Path(folder) / OUTSIDE).read_text(encoding="ascii") == SAYS
     assert decode(encode(trace)) == trace
     problems = [
         each.problem for each in (trace.setup, *trace.launches, *trace.descriptions) if each
