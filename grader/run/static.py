@@ -38,14 +38,14 @@ from grader.submission.opening import EntryPoint, Submission, Whole
 Progress = Callable[[float], None]
 #: The scene of what is looked at beside a run.
 SCENE: Final = "package"
-#: So long may all of it take [s]; each step within has limits of its own.
-PATIENCE_S: Final = 300.0
+#: Whatever a package does has come to an end by then [s]: its steps have an account of processor
+#: time and waiting. More is the machine's doing, and no verdict.
+PATIENCE_S: Final = 900.0
 #: So often it is looked whether it was stopped [s], and so many times together it has to be.
 EVERY_S, STOPPED_LOOKS = 0.5, 4
 #: The process leaves no more [bytes].
 MOST_BYTES: Final = 32_000_000
 ROOT: Final = Path(__file__).resolve().parents[2]
-TOO_LONG: Final = f"looking at the package took more than {PATIENCE_S:.0f} s"
 STOPPED: Final = "the package's own code has stopped (SIGSTOP) the process that looks at it"
 NOTHING: Final = "the process that looked at the package left nothing that can be read: {}"
 
@@ -132,7 +132,11 @@ def _look(submission: Submission, scene: Scene) -> _Looked:
 
 
 def _wait(student: Watched) -> tuple[int | None, str]:
-    """Its exit code; None where it has to be ended, and why."""
+    """Its exit code; None where it has to be ended, and why.
+
+    Raises:
+        GraderFailure: it comes to no end.
+    """
     end = time.monotonic() + PATIENCE_S
     stopped = 0
     while (left_s := end - time.monotonic()) > 0:
@@ -142,7 +146,8 @@ def _wait(student: Watched) -> tuple[int | None, str]:
         stopped = stopped + 1 if _is_stopped(student.pid) else 0
         if stopped >= STOPPED_LOOKS:
             return None, STOPPED
-    return None, TOO_LONG
+    seconds = f"{PATIENCE_S:.0f}"
+    raise GraderFailure(say("looking at the package took more than {seconds} s", seconds=seconds))
 
 
 def _is_stopped(process: int) -> bool:

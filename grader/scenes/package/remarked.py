@@ -6,7 +6,6 @@ from grader.language.phrase import marked
 
 #: Remarks on a run; see `grader.recording.remarks`.
 REMARKS = (
-    marked("looking at the package took more than {seconds} s"),
     marked("the package's own code has stopped (SIGSTOP) the process that looks at it"),
     marked("the process that looked at the package left nothing that can be read: {why_not}"),
 )

@@ -28,10 +28,9 @@ _CLAUSES: Final = (
     say("could not be started: {error}", error=_ANY),
     say("waited for what did not come"),
     say(
-        "was not tried: the package took {cpu} s of processor time, or let {most} steps wait in "
-        "vain, before",
+        "was not tried: the package had taken {cpu} s of processor time, or {idle} s of waiting",
         cpu=_ANY,
-        most=_ANY,
+        idle=_ANY,
     ),
     say("spoils what is taken down of it"),
     say("takes away {file}", file=_ANY),

@@ -28,7 +28,7 @@ REFUSED = (*_OTHER_PROCESS.values(), "becomes another program (bash)")
 REMARKS = (
     *(virtual_time.WAITS_FOR_EVER, virtual_time.STUCK, virtual_time.STOPPED),
     *(virtual_time.FLOODING.format(9), link.NONSENSE, link.TOO_MANY, VAIN, real_time.OVERTIME),
-    *(static.TOO_LONG, static.STOPPED, static.NOTHING.format("nothing")),
+    *(static.STOPPED, static.NOTHING.format("nothing")),
     *(flag for code in finish.SIGNALS for flag in finish.limits_struck(code, "", "")),
     *(flag for line in finish.LAST_LINES for flag in finish.limits_struck(1, line, "")),
     *(f"graded in real time, because the submission {does}" for does in REFUSED),

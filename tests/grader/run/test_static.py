@@ -153,6 +153,14 @@ def test_what_fails_in_the_grader_is_no_fault_of_the_package(monkeypatch):
         grader.grade(REFERENCE, EXERCISE)
 
 
+def test_a_look_that_comes_to_no_end_is_no_verdict(monkeypatch):
+    sleeps = [sys.executable, "-c", "import time; time.sleep(600)"]
+    monkeypatch.setattr(static, "command", lambda *_: sleeps)
+    monkeypatch.setattr(static, "PATIENCE_S", 0.1)
+    with pytest.raises(GraderFailure, match=r"took more than 0 s"):
+        grader.grade(REFERENCE, EXERCISE)
+
+
 def test_an_exercise_without_nodes_has_no_limits(tmp_path):
     (tmp_path / "exercise.yaml").write_text(
         "{exercise: mine, title: Mine, scene: package, limits: {total_s: 5}, points: {a: 1}}"

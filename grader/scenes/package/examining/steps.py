@@ -6,7 +6,6 @@ import json
 import os
 import re
 import sys
-import time
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any, Final, TypeVar
 from grader import limited
 from grader.scenes.package import strict
 from grader.scenes.package.examining import leftovers
+from grader.scenes.package.examining.account import Account, Watch
 from grader.scenes.package.trace import Problem
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
@@ -26,14 +26,6 @@ LIMITS: Final = limited.Limits(
 _NOT_OF_A_STEP: Final = 160
 _NO_END: Final = (
     f"it did not come to an end in {LIMITS.cpu_s:.0f} s of processor time, or {LIMITS.wall_s:.0f} s"
-)
-#: A step in which nothing wants the processor for so long waits in vain [s].
-STALL_S: Final = 4.0
-#: All steps of a look may take so much processor time [s], and so many wait in vain.
-LOOK_CPU_S, MOST_IN_VAIN = 120.0, 4
-_SPENT: Final = (
-    f"it was not tried: the package took {LOOK_CPU_S:.0f} s of processor time, or let "
-    f"{MOST_IN_VAIN} steps wait in vain, before"
 )
 _LONGEST: Final = 400
 NONSENSE: Final = "it spoils what is taken down of it"
@@ -56,47 +48,13 @@ class Ended(Exception):
         self.problem = problem
 
 
-def _children_cpu_s() -> float:
-    import resource  # here: Windows has none
-
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-class _Account:
-    """What the steps of a look have taken; `in_vain` came to no end."""
-
-    def __init__(self) -> None:
-        self._before_s = _children_cpu_s()
-        self.in_vain = 0
-
-    @property
-    def is_spent(self) -> bool:
-        """Whether there is to be no further step."""
-        used_s = _children_cpu_s() - self._before_s
-        return used_s > LOOK_CPU_S or self.in_vain >= MOST_IN_VAIN
-
-
-_account = _Account()
+_account = Account()
 
 
 def open_account() -> None:
     """Begin a look: what steps took before does not count."""
     global _account
-    _account = _Account()
-
-
-class _Watch:
-    """Tells whether a step has stalled: for some time nothing of it has run, or wanted to."""
-
-    def __init__(self) -> None:
-        self._used, self._since_s = -1, time.monotonic()
-
-    def __call__(self) -> bool:
-        used, wants_more = leftovers.used()
-        if wants_more or used != self._used:
-            self._used, self._since_s = used, time.monotonic()
-        return time.monotonic() - self._since_s > STALL_S
+    _account = Account()
 
 
 def step(work: Callable[[], Any], own: Own) -> Any:
@@ -119,12 +77,11 @@ def step(work: Callable[[], Any], own: Own) -> Any:
             made = {"problem": vars(problem_of(error, own))}
         return json.dumps(made).encode("ascii")
 
-    if _account.is_spent:
-        raise Ended(Problem("limit", _SPENT))
+    if _account.why_closed:
+        raise Ended(Problem("limit", _account.why_closed))
     try:
-        said = _read(limited.call(answer, LIMITS, _Watch()))
+        said = _read(limited.call(answer, LIMITS, Watch(_account).is_stalled))
     except limited.NoEnd as hit:
-        _account.in_vain += 1
         text = f"it {hit}" if isinstance(hit, limited.Stalled) else _NO_END
         raise Ended(Problem("limit", text)) from None
     except limited.LimitHit as hit:
