@@ -8,6 +8,7 @@ import sys
 from _thread import allocate_lock, get_ident, start_new_thread
 from contextlib import suppress
 from time import (
+    asctime,
     clock_gettime_ns,
     ctime,
     gmtime,
@@ -19,6 +20,7 @@ from time import (
 
 __all__ = [
     "allocate_lock",
+    "asctime",
     "clock_gettime_ns",
     "ctime",
     "get_ident",

@@ -1,9 +1,16 @@
-"""Time, as the submission sees it: `time` and `datetime`. For rclpy's: `lockstep.rclpy_clocks`."""
+"""Time, as the submission sees it: `time` and `datetime`. For rclpy's: `lockstep.rclpy_clocks`.
+
+Processor time is virtual, too: a program has computed for as long as it has run. So a loop that
+waits for it ends, and what it says is the same in every run.
+"""
 
 from __future__ import annotations
 
 import datetime as _datetime
+import importlib
+import os
 import queue
+import resource
 import sched
 import threading
 import time
@@ -16,6 +23,9 @@ from grader.run.lockstep.times import BOOT_NS, EPOCH_NS
 from grader.run.student.scheduler import Scheduler
 
 SCHEDULER: Scheduler
+_REAL_GETRUSAGE = resource.getrusage
+#: Between two runs the peak of memory differs by less [KB], mostly.
+_STEP_KB = 65_536
 
 
 def install(scheduler: Scheduler) -> None:
@@ -26,16 +36,23 @@ def install(scheduler: Scheduler) -> None:
     time.time, time.time_ns = _seconds(EPOCH_NS), _nanoseconds(EPOCH_NS)
     time.monotonic, time.monotonic_ns = _seconds(BOOT_NS), _nanoseconds(BOOT_NS)
     time.perf_counter, time.perf_counter_ns = time.monotonic, time.monotonic_ns
+    time.process_time, time.process_time_ns = _seconds(0), _nanoseconds(0)
+    time.thread_time, time.thread_time_ns = time.process_time, time.process_time_ns
+    os.times = _times
+    resource.getrusage = _getrusage
     time.clock_gettime_ns = _clock_gettime_ns
     time.clock_gettime = lambda clk_id: _clock_gettime_ns(clk_id) / 1e9
     time.localtime = lambda seconds=None: pass_on(real.localtime, _or_now(seconds))
     time.gmtime = lambda seconds=None: pass_on(real.gmtime, _or_now(seconds))
     time.ctime = lambda seconds=None: pass_on(real.ctime, _or_now(seconds))
+    time.asctime = lambda when=None: pass_on(real.asctime, when or time.localtime())
     time.strftime = lambda form, when=None: pass_on(real.strftime, form, when or time.localtime())
     # these have imported the names
     threading._time = queue.time = sched._time = time.monotonic  # type: ignore[attr-defined]
     _datetime.datetime = _VirtualDatetime  # type: ignore[misc]
     _datetime.date = _VirtualDate  # type: ignore[misc]
+    in_c: Any = importlib.import_module("_datetime")
+    in_c.datetime, in_c.date = _VirtualDatetime, _VirtualDate
 
 
 def _sleep(seconds: Any) -> None:
@@ -70,7 +87,20 @@ def _clock_gettime_ns(clk_id: int) -> int:
         return time.time_ns()
     if clk_id in (time.CLOCK_MONOTONIC, time.CLOCK_MONOTONIC_RAW, time.CLOCK_BOOTTIME):
         return time.monotonic_ns()
-    return int(pass_on(real.clock_gettime_ns, clk_id))  # processor time stays real
+    if clk_id in (time.CLOCK_PROCESS_CPUTIME_ID, time.CLOCK_THREAD_CPUTIME_ID):
+        return time.process_time_ns()
+    return int(pass_on(real.clock_gettime_ns, clk_id))
+
+
+def _times() -> os.times_result:
+    return os.times_result((time.process_time(), 0.0, 0.0, 0.0, time.monotonic()))
+
+
+def _getrusage(who: int, /) -> resource.struct_rusage:
+    """Processor time as the other clocks have it, the peak of memory in steps, nothing else."""
+    found = pass_on(_REAL_GETRUSAGE, who)
+    used_s = 0.0 if who == resource.RUSAGE_CHILDREN else time.process_time()
+    return resource.struct_rusage((used_s, 0.0, found.ru_maxrss // _STEP_KB * _STEP_KB, *[0] * 13))
 
 
 def _or_now(seconds: Any) -> Any:
