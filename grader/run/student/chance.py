@@ -65,16 +65,6 @@ def install() -> Callable[[], object]:
         import ssl
 
         ssl.RAND_bytes = urandom
-    os.getuid = os.geteuid = os.getgid = os.getegid = lambda: USER
-    by_number = pwd.getpwuid
-
-    def getpwuid(uid: int, /) -> pwd.struct_passwd:
-        home = os.path.expanduser("~")  # noqa: PTH111  as HOME says
-        own = ("student", "x", USER, USER, "", home, "/bin/sh")
-        return pwd.struct_passwd(own) if uid == USER else pass_on(by_number, uid)
-
-    pwd.getpwuid = getpwuid
-    _replace_devices(urandom)
     random._urandom = urandom  # type: ignore[attr-defined]
     if hasattr(os, "getrandom"):
         os.getrandom = getrandom
@@ -89,8 +79,20 @@ def install() -> Callable[[], object]:
     return lambda: (source.getstate(), repr(seeds), random.getstate())
 
 
-def _replace_devices(urandom: Callable[[int], bytes]) -> None:
-    """Whoever opens a device of random numbers reads what else would be drawn."""
+def replace_surroundings() -> None:
+    """Replace who the user is, and what devices of random numbers give.
+
+    After `install`, and after the process was confined, which needs both as they are.
+    """
+    os.getuid = os.geteuid = os.getgid = os.getegid = lambda: USER
+    by_number = pwd.getpwuid
+
+    def getpwuid(uid: int, /) -> pwd.struct_passwd:
+        home = os.path.expanduser("~")  # noqa: PTH111  as HOME says
+        own = ("student", "x", USER, USER, "", home, "/bin/sh")
+        return pwd.struct_passwd(own) if uid == USER else pass_on(by_number, uid)
+
+    pwd.getpwuid = getpwuid
     opened, os_opened = builtins.open, os.open
 
     def is_device(file: object) -> bool:
@@ -98,7 +100,7 @@ def _replace_devices(urandom: Callable[[int], bytes]) -> None:
 
     def device() -> int:
         found, end = os.pipe()
-        os.write(end, urandom(DEVICE_BYTES))
+        os.write(end, os.urandom(DEVICE_BYTES))
         os.close(end)
         return found
 

@@ -75,6 +75,7 @@ def main() -> None:
     if fault:
         give_up(Kind.FAILED, fault)
     try:
+        chance.replace_surroundings()
         signals.install(scheduler, refuse)
         from grader.run.student import install as inside_rclpy
 

@@ -25,7 +25,7 @@ def drawn() -> list[str]:
     code = (
         "import _random, os, random, secrets, ssl, uuid\n"
         "from grader.run.student import chance\n"
-        "chance.install()\n"
+        "chance.install(), chance.replace_surroundings()\n"
         f"for way in {WAYS!r}: print(way, eval(way), eval(way), sep='\\t')"
     )
     command = [sys.executable, "-c", code]
