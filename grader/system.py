@@ -82,7 +82,6 @@ def has_limited_copies() -> bool:
 def lacks_for_lockstep() -> list[str]:
     """What virtual time needs and this system lacks."""
     needed = {
-        "eventfd": hasattr(os, "eventfd") and is_in_libc("eventfd_write"),
         "SOCK_SEQPACKET": hasattr(socket, "AF_UNIX") and hasattr(socket, "SOCK_SEQPACKET"),
         "/proc": has_proc(),
         "inherited descriptors": inherits_descriptors(),

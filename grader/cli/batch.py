@@ -44,7 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help=tell("the folder of the class"))
     parser.add_argument(
-        "--jobs", type=_jobs, metavar="N", help=tell("so many gradings at once (as many as cores)")
+        "--jobs",
+        type=processes,
+        metavar="N",
+        help=tell("so many gradings at once (as many as cores)"),
     )
     parser.add_argument(
         "--scheduler",
@@ -260,7 +263,8 @@ def _tell(console: Console, notes: Sequence[str]) -> None:
         console.print(Text(for_terminal(told(note))), soft_wrap=True)
 
 
-def _jobs(text: str) -> int:
+def processes(text: str) -> int:
+    """A number of processes from the command line."""
     if not re.fullmatch(r"[1-9]\d{0,3}", text):
         raise argparse.ArgumentTypeError(
             tell("expected a number of processes, found {text}", text=text)

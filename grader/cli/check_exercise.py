@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from grader import files
+from grader.cli.batch import processes
 from grader.exercise.loading import load_exercise
 from grader.language.telling import tell, told
 from grader.testing.checking import Progress, check_exercise
@@ -33,17 +34,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=tell("the solutions (mutants.yaml in its folder)"),
     )
     parser.add_argument(
-        "--jobs", type=_jobs, metavar="N", help=tell("so many at once (one a core)")
+        "--jobs", type=processes, metavar="N", help=tell("so many at once (one a core)")
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help=tell("write all of it here"))
     parser.add_argument("--markdown", type=Path, metavar="FILE", help=tell("write the table here"))
-
-
-def _jobs(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(tell("expected a number from 1, found {text}", text=text))
-    return number
 
 
 def main(args: argparse.Namespace) -> int:

@@ -296,5 +296,5 @@ def _points(points: object, checks: Checks) -> dict[str, float]:
                 say("expected a number from 0, found {value}", value=repr(value)),
             )
     if not any(points.values()):
-        raise Mistake(("points",), "all are 0")
+        raise Mistake(("points",), say("all are 0"))
     return {check: float(value) for check, value in points.items()}

@@ -52,6 +52,8 @@ _READ: Final = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBL
 _WRITE: Final = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _BINARY
 #: Where the middle of a long output is missing; see `grader.run.processes.watched`.
 _LEFT_OUT: Final = re.compile(r"(\n\[\.\.\. \d+ bytes left out \.\.\.\]\n)")
+#: So much of a path that was cut through is known as part of one: less are letters like others.
+_LEAST: Final = 8
 
 
 @dataclass(frozen=True)
@@ -96,11 +98,11 @@ class PrivateCopy:
         text = text.replace(self.prefix, self.shown)
         parts = _LEFT_OUT.split(text)
         for at in range(0, len(parts) - 1, 2):  # a path may have been cut through
-            for size in range(len(self.prefix) - 1, 0, -1):
+            for size in range(len(self.prefix) - 1, _LEAST - 1, -1):
                 if parts[at].endswith(self.prefix[:size]):
                     parts[at] = parts[at][:-size] + self.shown[:size]
                     break
-            for size in range(len(self.prefix) - 1, 0, -1):
+            for size in range(len(self.prefix) - 1, _LEAST - 1, -1):
                 if parts[at + 2].startswith(self.prefix[-size:]):
                     parts[at + 2] = self.shown[-size:] + parts[at + 2][size:]
                     break

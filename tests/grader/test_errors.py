@@ -5,7 +5,15 @@ from typing import get_args
 import pytest
 
 from grader import errors
-from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, Whose
+from grader.errors import (
+    CheckFailed,
+    GraderError,
+    GraderFailure,
+    NotNow,
+    NotOffered,
+    SubmissionError,
+    Whose,
+)
 
 
 def kinds():
@@ -24,9 +32,12 @@ def test_only_our_own_failure_and_that_of_a_check_exit_with_3():
     assert {kind for kind in kinds() if kind.exit_code == 3} == {
         GraderError,
         GraderFailure,
+        NotNow,
+        NotOffered,
         CheckFailed,
     }
-    assert {kind for kind in kinds() if kind.whose == "grader"} == {GraderError, GraderFailure}
+    ours = {kind for kind in kinds() if kind.whose == "grader"}
+    assert ours == {GraderError, GraderFailure, NotNow, NotOffered}
 
 
 @pytest.mark.parametrize(

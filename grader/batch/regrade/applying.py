@@ -120,7 +120,7 @@ def _judged_anew(found: Regrade, store: Store, jobs: int, tell: judging.Tell) ->
         for hand_in in task.hand_ins:
             tell(judged[hand_in.id])
             if answer.state != "done":
-                yield Failure(judged[hand_in.id], answer.message)
+                yield Failure(judged[hand_in.id], answer.why)
 
 
 def _keep_run(task: Task, store: Store) -> None:

@@ -23,7 +23,7 @@ from grader.batch.hand_in import HandIn, Person
 from grader.batch.regrade import applying, html, judging, shown, table
 from grader.batch.regrade.changes import Regrade, compared, is_of_words
 from grader.batch.store import RECORDING, RUN, STUDENTS, Store
-from grader.batch.task import Task
+from grader.batch.task import Answer, Task
 from grader.cli import regrading
 from grader.errors import ExerciseError, UsageError
 from grader.exercise.loading import load_exercise
@@ -321,6 +321,17 @@ def test_a_recording_that_lies_with_the_hand_in_alone_is_judged_and_kept(
     assert far.score == expected["far"][1]
     assert (far.folder / RECORDING / "recording.mcap").is_file()
     assert Store(out).has("b" * 32)
+
+
+def test_an_exercise_that_fails_is_named_where_it_is_applied_too(
+    out, changed, in_process, monkeypatch, capsys
+):
+    failed = Answer("exercise", "ValueError: mine (checks.py, line 3)")
+    done = worker.done
+    monkeypatch.setattr(worker, "done", lambda task: done(task) if task.judge_only else failed)
+    call(out, changed, jobs=1, apply=True)
+    said = " ".join(capsys.readouterr().out.split())
+    assert "The exercise's own code failed: ValueError: mine (checks.py, line 3)" in said
 
 
 # Writing --------------------------------------------------------------------------------------

@@ -74,6 +74,12 @@ def test_what_cannot_be_used_ends_with_exit_code_2(tmp_path, check):
     assert "Traceback" not in messages
 
 
+@pytest.mark.parametrize("number", ["x", "0", "-1", "99999"])
+def test_a_number_of_jobs_that_is_none_is_named(number, capsys):
+    assert main(["check-exercise", "square", "--jobs", number]) == 2
+    assert f"--jobs: expected a number of processes, found {number}" in capsys.readouterr().err
+
+
 def test_the_tables_in_the_docs_are_of_the_solutions_that_there_are():
     page = (ROOT / "docs" / "check-exercise.md").read_text(encoding="utf-8")
     square = ROOT / "tests" / "submissions" / "square_mutants.yaml"

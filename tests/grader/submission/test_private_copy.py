@@ -240,7 +240,14 @@ def test_a_path_that_was_cut_through_tells_nothing_of_the_copy() -> None:
     for at in range(1, len(prefix)):
         text = f"{prefix} {prefix[:at]}{note}{prefix[at:]}/x {prefix}"
         told = copy.as_handed_in(text)
-        assert told.startswith(f"{shown} {shown[:at]}\n[")
+        begin = shown[:at] if at >= 8 else prefix[:at]  # which tells nothing yet
+        assert told.startswith(f"{shown} {begin}\n[")
         assert told.endswith(f"/x {shown}")
         assert "0123" not in told and "89ab" not in told
         assert note in told
+
+
+def test_letters_beside_a_cut_that_are_no_path_stay_as_they_are() -> None:
+    copy = PrivateCopy(Path("/tmp/a/copy/x"), Path("/home/ada/x"), "/tmp/a/copy", "/home/ada")
+    text = "it is /\n[... 7 bytes left out ...]\nyes, py"
+    assert copy.as_handed_in(text) == text
