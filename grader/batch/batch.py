@@ -154,24 +154,29 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
     tasks = (replace(each, into=store.new_place(), isolation=level) for each in planned.tasks)
     for task, answer in work(tasks):
         place = task.into
-        if answer.state != "done":
+        is_done = answer.state == "done"
+        why = _unusable(task, order) if is_done else answer.why
+        if why or not is_done:
             place = store.new_place()
             for hand_in in task.hand_ins:
                 folder = place / STUDENTS / hand_in.id
-                grade.failed(hand_in, order.exercise, folder, answer.why)
-        _check_same_exercise(task, place, order)
+                grade.failed(hand_in, order.exercise, folder, why)
         store.put(task.key, place)
         yield from task.hand_ins
 
 
-def _check_same_exercise(task: Task, place: Path, order: Order) -> None:
-    """Refuse what was judged by another exercise than everything else.
+def _unusable(task: Task, order: Order) -> str:
+    """Why what was made of a task is none of what was asked for; '' where it is.
 
     Raises:
-        UsageError: it was.
+        UsageError: it was judged by another exercise than everything else.
     """
     for hand_in in task.hand_ins:
-        if Entry.read(place / STUDENTS / hand_in.id).exercise_sha256 != order.exercise.sha256:
+        try:
+            entry = Entry.read(task.into / STUDENTS / hand_in.id)
+        except UsageError as error:
+            return say("what a worker sent back cannot be used: {why}", why=error.message)
+        if entry.exercise_sha256 != order.exercise.sha256:
             raise UsageError(
                 say(
                     "the exercise {name} was changed while a class was graded by it, or a worker "
@@ -180,6 +185,7 @@ def _check_same_exercise(task: Task, place: Path, order: Order) -> None:
                     name=Phrase(order.exercise.name),
                 )
             )
+    return ""
 
 
 def is_in(name: str, shard: tuple[int, int]) -> bool:
@@ -226,8 +232,9 @@ def _is_done(entry: Entry | None, hand_in: HandIn, run: str, order: Order) -> bo
     if entry is None or _is_asked_again(entry, order.again):
         return False
     is_same = entry.hand_in == replace(hand_in, path=None)
-    is_run = entry.key == run or entry.state == "failed"
-    return is_same and is_run and entry.exercise_sha256 == order.exercise.sha256
+    is_run = entry.state == "failed" or (entry.key == run and (entry.state != "nothing" or not run))
+    is_exercise = entry.exercise_sha256 == order.exercise.sha256
+    return is_same and is_run and is_exercise and entry.max_score == order.exercise.max_score
 
 
 def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> Task:

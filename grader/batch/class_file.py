@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -10,15 +11,18 @@ from typing import Any, Self
 from grader import files, versions
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
-from grader.language.phrase import Phrase, say
+from grader.language.phrase import Phrase, say, say_many
 from grader.recording.recording import Clock
 from grader.result import json_file
+from grader.run.processes.levels import LEVELS
 
 FAMILY = "turtlesim-grader/class/"
 SCHEMA = f"{FAMILY}v1"
 CLASS = "class.json"
 #: Characters of a value in a message: enough of a hash to tell two apart.
 MOST_SHOWN = 24
+#: What `shard` may be.
+_SHARD = r"([1-9]\d{0,5}/[1-9]\d{0,5})?"
 #: What may be another when everything is graded anew.
 MACHINE = {"grader", "ros", "python", "isolation"}
 _NAMED = {
@@ -92,7 +96,7 @@ class ClassFile:
                     file=CLASS,
                 )
             )
-        found: Self = json_file.made(cls._from_json, path, json_file.read(path))
+        found: Self = json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
         return found
 
     def differences(self, other: Self) -> dict[str, str]:
@@ -109,14 +113,33 @@ class ClassFile:
             if mine != others and (name != "isolation" or (mine and others))
         }
 
+    def unfinished(self, out: Path, graded: int) -> list[str]:
+        """What to say of a folder in which so many are graded; nothing where all are."""
+        if graded >= self.hand_ins:
+            return []
+        return [
+            say_many(
+                "{part} is not finished: {graded} of {n:,} hand-in.",
+                "{part} is not finished: {graded} of {n:,} hand-ins.",
+                self.hand_ins,
+                part=str(out),
+                graded=graded,
+            )
+        ]
+
     @classmethod
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             raise ValueError(say("is no class: expected the schema {schema}", schema=SCHEMA))
         try:
-            return cls(**{name: value for name, value in data.items() if name != "schema"})
+            found = cls(**{name: value for name, value in data.items() if name != "schema"})
         except TypeError as error:
             raise ValueError(say("is damaged: {why}", why=str(error))) from None
+        json_file.typed(found)
+        if not re.fullmatch(_SHARD, found.shard) or found.isolation not in ("", *LEVELS):
+            told = f"{found.shard!r}, {found.isolation!r}"
+            raise ValueError(say("is damaged: its shard and isolation are {told}", told=told))
+        return found
 
 
 def _shown(value: object) -> str:

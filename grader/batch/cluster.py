@@ -204,7 +204,7 @@ class _Session:
         offers = {}
         for address, theirs in found.items():
             worker = say("the worker at {address}", address=address)
-            if isinstance(theirs, dict):
+            if remote.is_offer(theirs):
                 remote.check_versions(wanted, theirs["versions"], worker)
                 offers[address] = theirs
             elif not isinstance(theirs, OSError):  # it has not just gone

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +20,7 @@ from grader.errors import UsageError
 from grader.language import stored
 from grader.language.phrase import say
 from grader.result import json_file
-from grader.result.result import RESULT, Result
+from grader.result.result import RESULT, ROUNDING, Result
 
 SCHEMA = "turtlesim-grader/entry/v1"
 ENTRY = "entry.json"
@@ -88,9 +89,28 @@ class Entry:
             UsageError: it is not finished, or not one of ours.
         """
         path = folder / ENTRY
-        entry: Self = json_file.made(cls._from_json, path, json_file.read(path))
-        result = Result.read(folder / RESULT) if entry.state == "judged" else None
-        return replace(entry, result=result, folder=folder)
+        entry: Self = json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
+        if entry.id != folder.name:
+            raise UsageError(say("{path} is that of another hand-in", path=str(path)))
+        if entry.state == "judged":
+            path = folder / RESULT
+            data = json_file.read(path, is_ours=True)
+            entry = replace(entry, result=json_file.made(Result.from_file, path, data))
+            json_file.made(entry._check_result, path, entry.result)
+        return replace(entry, folder=folder)
+
+    def _check_result(self, result: Result) -> None:
+        """Hold a result against what entry.json says of it.
+
+        Raises:
+            ValueError: it is that of another hand-in, or of another exercise.
+        """
+        whose, origin = result.handed_in, result.provenance
+        if whose is not None and whose.id != self.id:
+            raise ValueError(say("is that of another hand-in"))
+        is_same = origin is None or origin.judged.exercise_sha256 == self.exercise_sha256
+        if not is_same or abs(result.max_score - self.max_score) > ROUNDING:
+            raise ValueError(say("is that of another exercise"))
 
     @classmethod
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
@@ -103,9 +123,12 @@ class Entry:
             hand_in = HandIn.from_json(data["hand_in"])
             told = (own["message"], hand_in.problem)
             own["message"], problem = stored.restored(told, data.get("phrases", {}))
-            return cls(hand_in=replace(hand_in, problem=problem), **own)
+            entry = json_file.typed(cls(hand_in=replace(hand_in, problem=problem), **own))
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(say("is damaged: {why}", why=str(error))) from None
+        if not re.fullmatch("[0-9a-f]*", entry.key):  # it names a folder
+            raise ValueError(say("is damaged: its {name} is {value}", name="key", value=entry.key))
+        return entry
 
 
 def entries(out: Path) -> list[Entry]:

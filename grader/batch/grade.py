@@ -6,6 +6,7 @@ machine or on another one.
 
 from __future__ import annotations
 
+import os
 import shutil
 from contextlib import ExitStack
 from dataclasses import replace
@@ -20,7 +21,7 @@ from grader.batch.page.thumb import THUMB, thumb
 from grader.batch.similar import signature, sources
 from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
 from grader.batch.task import Task
-from grader.errors import SubmissionError, UsageError
+from grader.errors import RecordingError, SubmissionError, UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
@@ -46,7 +47,7 @@ def make(task: Task) -> None:
         RecordingError: the run that is said to be there cannot be read.
     """
     exercise = _exercise(task.exercise)
-    found = _run(task, exercise) if task.run is None else _loaded(task.run)
+    found = _loaded(task) or _run(task, exercise)
     for hand_in in task.hand_ins:
         folder = task.into / STUDENTS / hand_in.id
         files.make_folder(folder)
@@ -81,11 +82,12 @@ def _run(task: Task, exercise: Exercise) -> Recordings | str:
     files.make_folder(place)
     try:
         with ExitStack() as held:
-            path = task.path
+            path = handed_in = task.path
+            assert handed_in is not None and path is not None
             if path.is_file():  # under its own name, and without its neighbours, who are others'
                 name = task.filename or path.name
                 path = held.enter_context(scratch.make_folder()) / name
-                shutil.copyfile(task.path, path)
+                shutil.copyfile(handed_in, path)
             opened = held.enter_context(open_submission(path, **exercise.opening))
             submission = _without_place(opened)
             runner = grading.runner(exercise, task.time)
@@ -122,11 +124,24 @@ def _without_place(submission: Submission) -> Submission:
     return replace(submission, copy=replace(copy, prefix=str(copy.folder), shown=SHOWN))
 
 
-def _loaded(run: Path) -> Recordings | str:
-    """What an earlier run has left."""
-    if (run / ERROR).is_file():
-        return ErrorResult.from_json(json_file.read(run / ERROR)).message
-    return grading.load_recordings(run / RECORDING)
+def _loaded(task: Task) -> Recordings | str | None:
+    """What an earlier run has left; None where that is nothing, or nothing that can be read.
+
+    Raises:
+        RecordingError, UsageError: it cannot be read, and there is nothing to run instead.
+    """
+    if task.run is None:
+        return None
+    error = task.run / ERROR
+    try:
+        if os.path.lexists(error):
+            data = json_file.read(error, is_ours=True)
+            return json_file.made(ErrorResult.from_json, error, data).message
+        return grading.load_recordings(task.run / RECORDING)
+    except (RecordingError, UsageError):
+        if task.path is None:
+            raise
+        return None
 
 
 def _judge(

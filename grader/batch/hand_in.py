@@ -8,6 +8,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, Self
 
+from grader.language.phrase import say
+from grader.result import json_file
+
 
 @dataclass(frozen=True)
 class Person:
@@ -66,8 +69,15 @@ class HandIn:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What `to_json` has written."""
+        """What `to_json` has written.
+
+        Raises:
+            ValueError: it is something else; so may be KeyError, TypeError and AttributeError.
+        """
         at = data["at"]
         when = None if at is None else datetime.fromisoformat(at)
-        people = tuple(Person(**person) for person in data["people"])
-        return cls(**{**data, "people": people, "at": when})
+        people = tuple(json_file.typed(Person(**person)) for person in data["people"])
+        found = json_file.typed(cls(**{**data, "people": people, "at": when}))
+        if when is not None and when.utcoffset() is None:
+            raise ValueError(say("is damaged: its {name} is {value}", name="at", value=str(at)))
+        return found

@@ -13,6 +13,7 @@ from grader import content, versions
 from grader.exercise.exercise import Exercise
 from grader.recording.recording import Clock
 from grader.submission.folder import MAX_ENTRIES, is_junk
+from grader.submission.private_copy import UNREADABLE
 
 
 def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -> str:
@@ -55,13 +56,18 @@ def _below(top: Path) -> list[tuple[str, str]]:
     found: list[tuple[str, str]] = []
     for at, folders, names in os.walk(top):
         folders[:] = sorted(name for name in folders if not is_junk(name))
-        links = [name for name in folders if Path(at, name).is_symlink()]
+        links = [name for name in folders if os.path.islink(os.path.join(at, name))]  # noqa: PTH114, PTH118  never fails
         for path in (Path(at, name) for name in (*sorted(names), *links) if not is_junk(name)):
             name = path.relative_to(top).as_posix()
-            if path.is_symlink():
-                found.append((name, content.of_bytes(os.fsencode(path.readlink()))))
-            elif path.is_file():  # no pipe, socket or device: they would be waited for
-                found.append((name, content.of_file(path)))
+            try:
+                if path.is_symlink():
+                    found.append((name, content.of_bytes(os.fsencode(path.readlink()))))
+                elif path.is_file():  # no pipe, socket or device: they would be waited for
+                    found.append((name, content.of_file(path)))
+            except OSError as error:
+                if error.errno not in UNREADABLE:
+                    raise
+                found.append((name, ""))  # a run leaves it out, too
             if len(found) > MAX_ENTRIES:  # refused by whoever opens it
                 return found
     return found

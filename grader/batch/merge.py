@@ -13,7 +13,7 @@ from grader.batch.entry import Entry, entries
 from grader.batch.store import RUN, SHARED, STUDENTS, Store
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
-from grader.language.phrase import Phrase, joined, say, say_many
+from grader.language.phrase import Phrase, joined, say
 
 
 def merge(parts: Sequence[Path], exercise: Exercise, store: Store) -> list[str]:
@@ -37,15 +37,7 @@ def merge(parts: Sequence[Path], exercise: Exercise, store: Store) -> list[str]:
             _take(entry, Store(part), store)
     whole.put(store.out)
     unfinished = [
-        say_many(
-            "{part} is not finished: {graded} of {n:,} hand-in.",
-            "{part} is not finished: {graded} of {n:,} hand-ins.",
-            file.hand_ins,
-            part=str(part),
-            graded=len(graded[part]),
-        )
-        for part, file in found.items()
-        if len(graded[part]) < file.hand_ins
+        note for part, file in found.items() for note in file.unfinished(part, len(graded[part]))
     ]
     return [*_missing([file.shard for file in found.values()]), *unfinished]
 
@@ -116,9 +108,9 @@ def _take(entry: Entry, source: Store, store: Store) -> None:
     place = store.new_place()
     try:
         if source.has(entry.key) and not store.has(entry.key):
-            shutil.copytree(source.run(entry.key), place / RUN)
+            shutil.copytree(source.run(entry.key), place / RUN, symlinks=True)
         leave = shutil.ignore_patterns(*SHARED)
-        shutil.copytree(entry.folder, place / STUDENTS / entry.id, ignore=leave)
+        shutil.copytree(entry.folder, place / STUDENTS / entry.id, symlinks=True, ignore=leave)
     except (OSError, shutil.Error) as error:
         raise UsageError(
             say("cannot copy {folder}: {why}", folder=str(entry.folder), why=str(error))

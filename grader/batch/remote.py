@@ -7,7 +7,9 @@ what a cluster calls.
 from __future__ import annotations
 
 import asyncio
+import errno
 import json
+import os
 import socket
 import threading
 from collections.abc import Mapping
@@ -30,6 +32,12 @@ from grader.submission.folder import is_generated, is_junk
 TASK, ANSWER, NEEDS = "task.json", "answer.json", "needs.json"
 #: Where all else lies on the worker, below a folder of the task's own.
 SUBMISSION, EXERCISE, STORED, MADE = map(Path, ("submission", "exercise", "stored", "made"))
+
+#: What is wrong with a name in a parcel, and not with the disk.
+_OF_NAMES = (
+    *(errno.ENAMETOOLONG, errno.ENOTDIR, errno.EISDIR, errno.ENOTEMPTY),
+    *(errno.EEXIST, errno.ENOENT, errno.EINVAL),
+)
 
 _of_thread = threading.local()
 
@@ -82,6 +90,17 @@ def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: 
         )
 
 
+def is_offer(told: object) -> bool:
+    """Whether something is what `offer` says."""
+    return (
+        isinstance(told, dict)
+        and isinstance(told.get("versions"), dict)
+        and told.get("isolation") in ("", *levels.LEVELS)
+        and isinstance(told.get("why"), str)
+        and isinstance(told.get("again"), bool)
+    )
+
+
 async def offer(level: str) -> dict[str, Any]:
     """What a worker of a cluster says of its machine: `versions`, `isolation`, and `why` not more.
 
@@ -103,6 +122,7 @@ def packed(task: Task) -> bytes:
         Unfit: it is too large.
         OSError: something of it cannot be read.
     """
+    assert task.path is not None
     sent = replace(task, path=Path(SUBMISSION, task.path.name), into=Path(MADE))
     trees = {str(sent.path): task.path}
     if not places.is_installed(task.exercise):
@@ -126,9 +146,14 @@ def graded(package: bytes) -> bytes:
         Declined: the same; others may be fit.
     """
     with scratch.make_folder() as folder:
-        texts = parcel.unpack(package, folder, "tar")
-        needs = strict_json.loads(texts[NEEDS].decode())
         worker = say("the worker {name}", name=Phrase(socket.gethostname()))
+        try:
+            texts = parcel.unpack(package, folder, "tar")
+        except OSError as error:
+            why = error.strerror or str(error)
+            said = say("{worker} has no room for it: {why}", worker=worker, why=why)
+            return parcel.pack({ANSWER: Answer("failed", said).to_line()}, {})
+        needs = strict_json.loads(texts[NEEDS].decode())
         check_versions(needs, own_versions(), worker)
         task = _here(Task.from_line(texts[TASK]), folder)
         answer = _process().done(task)
@@ -142,23 +167,32 @@ def graded(package: bytes) -> bytes:
             return parcel.pack({ANSWER: answer.to_line()}, {})
 
 
-def unpack(package: bytes, task: Task) -> Answer:
+def unpack(package: object, task: Task) -> Answer:
     """Put what `graded` has made into a task's folder; how it ended.
 
     Raises:
         UsageError: it cannot be written.
     """
     try:
+        if not isinstance(package, bytes):
+            raise Unfit(say("damaged: {why}", why=type(package).__name__))
         texts = parcel.unpack(package, task.into)
         answer = Answer.from_line(texts.get(ANSWER, b""))
     except (Unfit, ValueError) as error:
-        said = say("what a worker sent back cannot be used: {why}", why=reason(error))
-        return Answer("failed", said)
+        why = reason(error)
     except OSError as error:
         why = error.strerror or str(error)
-        raise UsageError(
-            say("cannot write into {folder}: {why}", folder=str(task.into), why=why)
-        ) from None
+        if error.errno not in _OF_NAMES:
+            raise UsageError(
+                say("cannot write into {folder}: {why}", folder=str(task.into), why=why)
+            ) from None
+    else:
+        return _as_asked(answer, task)
+    return Answer("failed", say("what a worker sent back cannot be used: {why}", why=why))
+
+
+def _as_asked(answer: Answer, task: Task) -> Answer:
+    """The answer; a failure where more lies in the task's folder than was asked for."""
     expected = {RUN, *(f"{STUDENTS}/{each.id}" for each in task.hand_ins)}
     if answer.state == "done" and not _names(task.into) <= expected:
         return Answer("failed", say("a worker sent back what nobody has asked for"))
@@ -171,7 +205,7 @@ def _here(task: Task, folder: Path) -> Task:
     is_sent = Path(task.exercise).is_relative_to(EXERCISE)
     return replace(
         task,
-        path=folder / task.path,
+        path=None if task.path is None else folder / task.path,
         exercise=str(folder / task.exercise) if is_sent else task.exercise,
         run=None if task.run is None else folder / task.run,
         into=folder / MADE,
@@ -180,8 +214,11 @@ def _here(task: Task, folder: Path) -> Task:
 
 def _is_left_out(path: Path) -> bool:
     """Whether something is neither handed in nor part of an exercise, as far as a run sees."""
-    is_folder = path.is_dir() and not path.is_symlink()
-    return is_junk(path.name) or (is_folder and is_generated(path))
+    if is_junk(path.name):
+        return True
+    if os.path.islink(path):  # noqa: PTH114  where the path is too long, it is none
+        return False
+    return not os.access(path, os.R_OK) or (path.is_dir() and is_generated(path))
 
 
 def _process() -> pool.Process:

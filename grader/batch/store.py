@@ -4,6 +4,7 @@
                         everybody who has handed it in has too; or error.json
     submissions/ID/     what came of it for one hand-in; see `grader.batch.entry`
     aside/ID/           what is no longer among the submissions
+    before/N/           what a regrade has replaced; see `grader.batch.regrade.applying`
     .unfinished/        what is being made; whatever an interrupted call has left there goes
 
 A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
@@ -28,7 +29,7 @@ from grader.errors import UsageError
 from grader.language.phrase import Phrase, say
 from grader.removal import remove
 
-STORE, UNFINISHED, ASIDE = "store", ".unfinished", "aside"
+STORE, UNFINISHED, ASIDE, BEFORE = "store", ".unfinished", "aside", "before"
 #: What a worker leaves: one run, and a folder for each hand-in.
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
@@ -128,7 +129,15 @@ class Store:
 
 
 def _check_is_ours(out: Path) -> None:
-    """Refuse a folder in which somebody else's files have our names."""
+    """Refuse a folder in which somebody else's files have our names, or links lead out of it."""
+    for name in (STORE, SUBMISSIONS, ASIDE, BEFORE):
+        if (out / name).is_symlink():
+            raise UsageError(
+                say(
+                    "cannot write into {folder}: it is a link; expected a folder, or nothing",
+                    folder=str(out / name),
+                )
+            )
     if (out / CLASS).is_file():
         return
     for name in (STORE, SUBMISSIONS):
@@ -175,8 +184,10 @@ def _flush(place: Path) -> None:
 def _link_all(run: Path, student: Path) -> None:
     """What is shared, in a student's folder too: as links, or as copies where there are none."""
     for name in SHARED:
+        if (run / name).is_symlink():
+            continue  # none of ours
         if (run / name).is_dir():
-            shutil.copytree(run / name, student / name, copy_function=_link)
+            shutil.copytree(run / name, student / name, symlinks=True, copy_function=_link)
         elif (run / name).exists():
             _link(str(run / name), str(student / name))
 

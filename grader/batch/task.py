@@ -14,6 +14,7 @@ from grader.language import stored
 from grader.language.catalogue import spoken
 from grader.language.phrase import say
 from grader.recording.recording import Clock
+from grader.result import json_file
 
 
 @dataclass(frozen=True)
@@ -23,12 +24,12 @@ class Task:
     Attributes:
         key: the run's; see `grader.batch.key`.
         hand_ins: everybody's; their paths are not carried along.
-        path: what was handed in.
+        path: what was handed in; None where nothing is run any more.
         filename: what it was called there.
         exercise: its name or path.
         time: the clock that it lives by.
         seed: chooses where the varied runs start; None takes the exercise's own.
-        run: the folder of the run, if it is made already.
+        run: the folder of the run, if it is made already; one that cannot be read is made anew.
         into: an empty folder for what is made; see `grader.batch.store`.
         judge_only: whether results alone are asked for: no pages, no pictures.
         isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
@@ -37,7 +38,7 @@ class Task:
 
     key: str
     hand_ins: tuple[HandIn, ...]
-    path: Path
+    path: Path | None
     filename: str
     exercise: str
     time: Clock
@@ -56,8 +57,8 @@ class Task:
             "judge_only": self.judge_only,
             "isolation": self.isolation,
             "language": self.language,
-            "path": str(self.path),
-            "run": None if self.run is None else str(self.run),
+            "path": _text(self.path),
+            "run": _text(self.run),
             "into": str(self.into),
             "hand_ins": [each.to_json() for each in self.hand_ins],
         }
@@ -70,8 +71,8 @@ class Task:
         return cls(
             **{
                 **data,
-                "path": Path(data["path"]),
-                "run": None if data["run"] is None else Path(data["run"]),
+                "path": _path(data["path"]),
+                "run": _path(data["run"]),
                 "into": Path(data["into"]),
                 "hand_ins": tuple(map(HandIn.from_json, data["hand_ins"])),
             }
@@ -116,6 +117,14 @@ class Answer:
         try:
             data = strict_json.loads(line.decode())
             phrases = data.pop("phrases", {})
-            return stored.restored(cls(**data), phrases)
+            return stored.restored(json_file.typed(cls(**data)), phrases)
         except (TypeError, AttributeError, UnicodeDecodeError) as error:
             raise ValueError(say("is no answer: {why}", why=str(error))) from None
+
+
+def _text(path: Path | None) -> str | None:
+    return None if path is None else str(path)
+
+
+def _path(text: str | None) -> Path | None:
+    return None if text is None else Path(text)

@@ -14,9 +14,9 @@ from rich.text import Text
 from grader import files
 from grader.batch.entry import Entry
 from grader.batch.regrade import applying, html, judging, shown, table
-from grader.batch.regrade.applying import BEFORE, CHANGES_CSV, CHANGES_PAGE
+from grader.batch.regrade.applying import CHANGES_CSV, CHANGES_PAGE
 from grader.batch.regrade.changes import Regrade
-from grader.batch.store import Store
+from grader.batch.store import BEFORE, Store
 from grader.language.telling import tell, tell_many
 from grader.result.visible import View
 from grader.text import for_terminal
@@ -73,6 +73,8 @@ def _found(out: Path, exercise_path: str, jobs: int, messages: Console) -> Regra
 
 def _write(found: Regrade, into: Path, console: Console) -> None:
     to_class = Path("..") if into.resolve().parent == found.out.resolve() else found.out.resolve()
+    if into == found.out / REGRADE:
+        files.clear(into)  # a link leads somewhere else
     files.make_folder(into)
     files.put(into / CHANGES_CSV, table.render(found).encode("utf-8"))
     files.put(into / CHANGES_PAGE, html.render(found, to_class.as_posix()).encode("utf-8"))

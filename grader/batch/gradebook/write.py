@@ -63,6 +63,7 @@ def write(out: Path, entries: Sequence[Entry], options: Options) -> list[str]:
     feedback = Feedback(options.view)
     assignment = canvas.assignment_of(everybody, options.assignment or options.title)
     lacking = notes(everybody, assignment)
+    files.clear(out / EXPORT)  # a link leads somewhere else
     texts = {
         f"{EXPORT}/{MOODLE_WORKSHEET}": moodle.worksheet(everybody, feedback),
         f"{EXPORT}/{MOODLE_GRADES}": moodle.grade_import(everybody, options.title, feedback),
@@ -99,7 +100,7 @@ def _put(path: Path, content: str) -> None:
     if content:
         files.put(path, content.encode("utf-8"))
     else:
-        files.withdraw(path)
+        files.clear(path)
 
 
 def _put_zip(
@@ -108,4 +109,4 @@ def _put_zip(
     if members:
         archive.put(path, ((name, content(name, members[name])) for name in sorted(members)))
     else:
-        files.withdraw(path)
+        files.clear(path)

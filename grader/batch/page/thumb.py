@@ -21,6 +21,7 @@ from PIL import Image
 
 from grader import strict_json
 from grader.batch.page.simplify import pieces, simplified
+from grader.files import read_own
 from grader.recording.recording import Recording, Recordings
 from grader.reports.page.html import draw
 from grader.scenes import load_scene
@@ -60,10 +61,7 @@ class Thumb:
     def read(cls, folder: Path) -> Self | None:
         """What lies in the folder of a hand-in; None where nothing does that can be shown."""
         try:
-            with (folder / THUMB).open("rb") as file:
-                data = file.read(_LIMIT_BYTES + 1)
-            if len(data) > _LIMIT_BYTES:
-                return None
+            data = read_own(folder / THUMB, _LIMIT_BYTES)
             return cls._from_json(strict_json.loads(data.decode("utf-8")))
         except (OSError, ValueError, RecursionError):
             return None

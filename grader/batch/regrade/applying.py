@@ -24,14 +24,13 @@ from grader.batch.class_file import CLASS, ClassFile
 from grader.batch.entry import ENTRY, SUBMISSIONS, Entry, entries
 from grader.batch.regrade import html, judging, table
 from grader.batch.regrade.changes import Failure, Regrade
-from grader.batch.store import RECORDING, RUN, STUDENTS, Store
+from grader.batch.store import BEFORE, RECORDING, RUN, STUDENTS, Store
 from grader.batch.task import Task
 from grader.errors import UsageError
 from grader.language.phrase import say
 from grader.result.result import RESULT
 from grader.result.visible import View
 
-BEFORE = "before"
 CHANGES_CSV, CHANGES_PAGE = "changes.csv", "changes.html"
 #: What is made of all entries together and told to others.
 GRADEBOOKS = ("gradebook.csv", "gradebook.jsonl")
@@ -126,7 +125,14 @@ def _judged_anew(found: Regrade, store: Store, jobs: int, tell: judging.Tell) ->
 def _keep_run(task: Task, store: Store) -> None:
     """Have the recording in the store, where it may have lain with the hand-in alone."""
     if not store.has(task.key) and task.run is not None:
-        shutil.copytree(task.run / RECORDING, task.into / RUN / RECORDING)
+        kept = task.into / RUN / RECORDING
+        shutil.copytree(task.run / RECORDING, kept, symlinks=True, ignore=_strange)
+
+
+def _strange(folder: str, names: list[str]) -> list[str]:
+    """What no recording has: pipes, links, devices."""
+    paths = (Path(folder, name) for name in names)
+    return [p.name for p in paths if p.is_symlink() or not (p.is_dir() or p.is_file())]
 
 
 def _put_unjudged(entry: Entry, found: Regrade, store: Store) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.sentences import not_followed
-from grader.language.phrase import chained, say
+from grader.language.phrase import Phrase, chained, say
 from grader.removal import remove
 
 #: Judging a recording again takes no longer, unless something hangs [s].
@@ -63,7 +63,7 @@ def regrade(out: Path, exercise_path: str, jobs: int, tell: Tell = lambda _: Non
         tuple(change for change in changes if is_of_words(change)),
         tuple(failures),
         judged,
-        tuple(_notes(before, exercise, found)),
+        tuple(_notes(out, before, exercise, found)),
     )
 
 
@@ -102,7 +102,7 @@ def tasks(out: Path, found: Iterable[Entry], exercise_path: str) -> Iterator[Tas
         yield Task(
             key=sharing[0].key,
             hand_ins=tuple(entry.hand_in for entry in sharing),
-            path=Path(),
+            path=None,
             filename="",
             exercise=exercise_path,
             time=before.time,
@@ -130,21 +130,36 @@ def _judged_again(
         )
         for task, answer in pool.work(asked, jobs, MOST_S):
             for hand_in in task.hand_ins:
-                yield by_id[hand_in.id], _read(task, answer, hand_in.id)
+                yield by_id[hand_in.id], _read(task, answer, by_id[hand_in.id])
             remove(task.into)
 
 
-def _read(task: Task, answer: Answer, hand_in: str) -> Entry | str:
+def _read(task: Task, answer: Answer, before: Entry) -> Entry | str:
     if answer.state != "done":
         return answer.why
     try:
-        return Entry.read(task.into / STUDENTS / hand_in)
+        again = Entry.read(task.into / STUDENTS / before.id)
     except UsageError as error:
         return error.message
+    if any(then != now for then, now in zip(_traces(before), _traces(again), strict=False)):
+        return say(
+            "its recording is not the one that its result was made of. To have it graded anew: "
+            "grader batch ... --again {id}",
+            id=Phrase(before.id),
+        )
+    return again
 
 
-def _notes(before: ClassFile, exercise: Exercise, found: Iterable[Entry]) -> Iterator[str]:
+def _traces(entry: Entry) -> list[str]:
+    result = entry.result
+    return [] if result is None else [r.trace_sha256 for r in (result.run, *result.varied_runs)]
+
+
+def _notes(
+    out: Path, before: ClassFile, exercise: Exercise, found: Sequence[Entry]
+) -> Iterator[str]:
     """What of the exercise recordings cannot follow, and what else differs."""
+    yield from before.unfinished(out, len(found))
     if before.exercise_sha256 == exercise.sha256:
         yield say("The class was graded by just this exercise.")
     results = [entry.result for entry in found if entry.result is not None]

@@ -26,6 +26,7 @@ from grader.batch.similar import fingerprints
 from grader.batch.similar.fingerprints import Fingerprint
 from grader.batch.similar.sources import File, kept
 from grader.batch.similar.syntax import units
+from grader.files import read_own
 from grader.limited import Copy, LimitHit, Limits
 from grader.recording.recording import Recording
 from grader.scenes import load_scene
@@ -142,8 +143,7 @@ def signature(source: Path, nominal: Recording | None, left_out: int = 0) -> byt
 def read(folder: Path) -> Signature | None:
     """That of a hand-in's folder; None where there is none that can be used."""
     try:
-        with (folder / NAME).open("rb") as file:
-            return Signature.of_bytes(file.read(_MOST_BYTES + 1))
+        return Signature.of_bytes(read_own(folder / NAME, _MOST_BYTES))
     except (OSError, ValueError):
         return None
 

@@ -64,9 +64,16 @@ def kept(folder: Path) -> list[File]:
     Raises:
         OSError: it cannot be read.
     """
+    if folder.is_symlink():
+        return []  # none of ours
     paths = [path for path in folder.rglob("*.py") if path.is_file() and not path.is_symlink()]
     named = sorted((path.relative_to(folder).as_posix(), path) for path in paths)
-    return [File(name, path.read_bytes()[:MAX_SOURCE_BYTES]) for name, path in named[:MOST_FILES]]
+    return [File(name, _begin(path)) for name, path in named[:MOST_FILES]]
+
+
+def _begin(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(MAX_SOURCE_BYTES)
 
 
 def _sources(copy: Path) -> Iterator[Path]:

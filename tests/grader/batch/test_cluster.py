@@ -156,6 +156,15 @@ def test_a_cluster_with_other_versions_is_refused_before_anything_is_sent_to_it(
         list(cluster.work([], "tcp://10.0.0.1:8", print, OfCluster()))
 
 
+@pytest.mark.parametrize("told", [{"isolation": "wild"}, {"versions": 3}, "hello"], ids=str)
+def test_a_worker_that_says_something_else_of_itself_is_refused(told: object) -> None:
+    fake = Fake()
+    fake.run = lambda *_, **__: {"tcp://10.0.0.1:7": told}  # type: ignore[method-assign]
+    found, _ = session(fake)
+    with pytest.raises(UsageError, match=r"the worker at tcp://10\.0\.0\.1:7 cannot grade"):
+        found._check_workers()
+
+
 BEST = {"isolation": "namespaces"}
 LESS = {"isolation": "landlock"}
 CANNOT = {"why": "unshare (user, net): Operation not permitted"}

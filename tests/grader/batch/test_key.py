@@ -6,6 +6,7 @@ import pytest
 
 from grader.batch import key
 from grader.exercise.loading import load_exercise
+from tests.files import lay_too_deep
 
 
 def folder(at: Path, source: str, *junk: str) -> Path:
@@ -44,6 +45,15 @@ def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
         pytest.skip("no pipes with names")
     os.mkfifo(top / "pipe")
     assert key.of_hand_in(top, "") == key.of_hand_in(folder(tmp_path / "bob", "x = 1\n"), "")
+
+
+def test_what_is_too_deep_for_a_run_is_too_deep_for_a_key(tmp_path: Path) -> None:
+    alice, bob = (folder(tmp_path / name, "x = 1\n") for name in ("alice", "bob"))
+    for top in (alice, bob):
+        lay_too_deep(top)
+    assert key.of_hand_in(alice, "") == key.of_hand_in(bob, "")
+    (bob / "pkg" / "node.py").write_text("x = 2\n")
+    assert key.of_hand_in(alice, "") != key.of_hand_in(bob, "")
 
 
 def test_what_a_run_depends_on_is_in_its_key_and_the_rubric_is_not(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 import re
 import shutil
 from argparse import Namespace
@@ -323,6 +324,34 @@ def test_a_recording_that_lies_with_the_hand_in_alone_is_judged_and_kept(
     assert Store(out).has("b" * 32)
 
 
+def test_the_recording_of_somebody_else_is_not_judged_for_a_hand_in(out, changed, in_process):
+    far, right = (Store(out).run(letter * 32) for letter in "ba")
+    shutil.rmtree(far)
+    shutil.copytree(right, far)
+    found = judging.regrade(out, changed, 1)
+    assert {failure.entry.id: failure.why for failure in found.failures} == {
+        "far": "its recording is not the one that its result was made of. To have it graded anew: "
+        "grader batch ... --again far"
+    }
+
+
+def test_what_is_no_part_of_a_recording_stays_out_of_the_store(out, changed, in_process):
+    shutil.rmtree(Store(out).run("b" * 32))
+    recording = out / "submissions" / "far" / RECORDING
+    os.mkfifo(recording / "pipe")
+    (recording / "link").symlink_to(out)
+    assert call(out, changed, jobs=1, apply=True) == 0
+    kept = Store(out).run("b" * 32) / RECORDING
+    assert names(kept) == [name for name in names(recording) if name not in ("link", "pipe")]
+
+
+def test_who_is_missing_since_a_file_is_damaged_is_told(out, changed, in_process):
+    replace(ClassFile.read(out), hand_ins=6).put(out)
+    (out / "submissions" / "far" / "entry.json").write_text("{")
+    found = judging.regrade(out, changed, 1)
+    assert f"{out} is not finished: 5 of 6 hand-ins." in found.more_notes
+
+
 def test_an_exercise_that_fails_is_named_where_it_is_applied_too(
     out, changed, in_process, monkeypatch, capsys
 ):
@@ -346,6 +375,15 @@ def test_nothing_is_written_that_is_not_asked_for(out, changed, in_process, caps
     said = capsys.readouterr().out
     assert said.startswith("4 of 6 change: ")
     assert "Nothing of the class was changed." in said
+
+
+def test_a_link_in_the_place_of_table_and_page_is_not_followed(out, changed, in_process, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (out / "regrade").symlink_to(elsewhere)
+    call(out, changed, jobs=1)
+    assert names(out / "regrade") == ["changes.csv", "changes.html"]
+    assert names(elsewhere) == []
 
 
 def test_table_and_page_are_written_where_they_are_asked_for(out, changed, in_process, tmp_path):

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import errno
+import gzip
 import io
 import os
 import pickle
+import socket
 import tarfile
+import tracemalloc
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +21,7 @@ from grader.batch.hand_in import HandIn, Person
 from grader.batch.parcel import Unfit
 from grader.batch.task import Answer, Task
 from grader.errors import UsageError
+from tests.files import lay_too_deep
 
 DONE = Answer("done")
 
@@ -75,6 +80,14 @@ def test_what_was_handed_in_travels_and_what_was_made_comes_back(
     assert done[0].path.name == "zoë"
     sent = (done[0].key, done[0].hand_ins, done[0].exercise, done[0].seed, done[0].run)
     assert sent == ("ab", task.hand_ins, "square", 7, None)
+
+
+def test_what_is_too_deep_for_a_run_stays_here(task: Task, done: list[Task]) -> None:
+    assert task.path is not None
+    lay_too_deep(task.path)
+    assert remote.unpack(remote.graded(remote.packed(task)), task) == DONE
+    assert "pkg/node.py" in listed
+    assert not any(name.endswith("deep.py") for name in listed)
 
 
 def test_an_edited_exercise_travels_with_the_folder_that_it_lies_in(
@@ -154,9 +167,12 @@ def tarred(name: str, kind: bytes = tarfile.REGTYPE, link: str = "") -> bytes:
         tarred("students/bob/entry.json"),
         tarred("submissions/zoe/entry.json"),
         tarred("run/../students/bob/entry.json"),
+        tarred("students/" + "n" * 300),
+        "no bytes",
+        None,
     ],
 )
-def test_what_nobody_asked_for_is_told_as_failed(task: Task, package: bytes) -> None:
+def test_what_nobody_asked_for_is_told_as_failed(task: Task, package: object) -> None:
     assert remote.unpack(package, task).state == "failed"
     assert not (task.into.parent / "outside").exists()
     assert not any(path.is_symlink() for path in task.into.rglob("*"))
@@ -166,3 +182,34 @@ def test_a_bomb_is_not_unpacked(task: Task, monkeypatch: pytest.MonkeyPatch) -> 
     package = parcel.pack({}, {"run": task.path / "pkg"})
     monkeypatch.setattr(parcel, "MOST_BYTES", 3)
     assert "more than" in remote.unpack(package, task).message
+
+
+def test_of_a_head_that_says_it_has_gigabytes_no_more_is_unpacked_than_a_parcel_holds(
+    task: Task, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parcel, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(parcel, "MOST_MEMBERS", 10)
+    head = tarfile.TarInfo("././@PaxHeader")
+    head.type, head.size = tarfile.XHDTYPE, 2**26
+    package = gzip.compress(head.tobuf(tarfile.USTAR_FORMAT) + bytes(head.size))
+    tracemalloc.start()
+    try:
+        assert remote.unpack(package, task).state == "failed"
+        assert tracemalloc.get_traced_memory()[1] < 2**24
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_worker_without_room_is_named(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+    package, unpack = remote.packed(task), parcel.unpack
+
+    def full(data: bytes, folder: Path, trust: parcel.Trust = "data") -> dict[str, bytes]:
+        if trust == "tar":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return unpack(data, folder, trust)
+
+    monkeypatch.setattr(parcel, "unpack", full)
+    answer = remote.unpack(remote.graded(package), task)
+    assert answer.state == "failed"
+    name = socket.gethostname()
+    assert answer.message == f"the worker {name} has no room for it: No space left on device"

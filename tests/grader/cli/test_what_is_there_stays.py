@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 
 import pytest
 
@@ -81,3 +83,15 @@ def test_a_folder_that_cannot_be_made_is_told_and_no_traceback(here, capsys):
     message = capsys.readouterr().err
     assert "/proc/x" in message
     assert "Traceback" not in message
+
+
+def test_a_disk_that_is_full_by_then_is_told_and_no_traceback(here, capsys, monkeypatch):
+    def fails(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "recording/metadata.yaml")
+
+    monkeypatch.setattr("grader.cli.check.main", fails)
+    assert main(["check", "recording"]) == 3
+    message = capsys.readouterr().err
+    assert "No space left on device: 'recording/metadata.yaml'" in message
+    assert "Traceback" not in message
+    assert "report" not in message

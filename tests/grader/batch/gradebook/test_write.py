@@ -135,3 +135,17 @@ def test_every_table_has_as_many_cells_in_each_row(tmp_path: Path) -> None:
     for content in tables.values():
         rows = list(csv.reader(io.StringIO(content.decode("utf-8-sig")), strict=True))
         assert {len(row) for row in rows} == {len(rows[0])}
+
+
+def test_no_link_in_the_place_of_an_export_is_followed(tmp_path: Path) -> None:
+    out, elsewhere = tmp_path / "class", tmp_path / "elsewhere"
+    for folder in (out, elsewhere):
+        folder.mkdir()
+    (elsewhere / "notes.txt").write_text("mine")
+    everybody = [judged(out, person(0))]
+    (out / "export").symlink_to(elsewhere)
+    write(out, everybody, OPTIONS)
+    (out / "export" / "moodle-grade-import.csv").symlink_to(elsewhere / "notes.txt")
+    write(out, everybody, OPTIONS)
+    assert sorted(path.name for path in (out / "export").iterdir()) == ["feedback.zip", "notes.txt"]
+    assert [path.read_text() for path in elsewhere.iterdir()] == ["mine"]

@@ -1,0 +1,232 @@
+"""The folder of a class that somebody has changed between two calls: what is bad is made anew."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.batch import pool
+from grader.batch.class_file import CLASS, ClassFile
+from grader.batch.entry import ENTRY, Entry, entries
+from grader.batch.page.thumb import THUMB, Thumb
+from grader.batch.similar import signature, sources
+from grader.batch.store import RECORDING, STUDENTS, Store
+from grader.batch.task import Answer
+from grader.cli import main
+from grader.errors import UsageError
+from grader.result.result import RESULT
+from tests.grader.batch.classes import Class
+from tests.grader.batch.conftest import HANDED_IN
+
+#: More than any file of ours; none of it is on the disk [bytes].
+HUGE = 2**33
+
+
+def changed(path: Path, change: Callable[[Any], object]) -> None:
+    """Write JSON anew that its own function changes; what is linked to the file stays."""
+    data = json.loads(path.read_text(encoding="utf-8"))
+    change(data)
+    path.unlink()
+    path.write_text(json.dumps(data), encoding="utf-8")
+
+
+def replaced(path: Path, make: Callable[[Path], object]) -> None:
+    path.unlink()
+    make(path)
+
+
+def is_huge(path: Path) -> None:
+    path.touch()
+    os.truncate(path, HUGE)
+
+
+def leads_to_an_endless_device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+def earns_more(result: dict[str, Any]) -> None:
+    result["score"] += 1000
+    result["verdicts"][0]["score"] += 1000
+
+
+#: What is no file of ours.
+NO_FILE = {
+    "a pipe": os.mkfifo,
+    "a folder": Path.mkdir,
+    "huge": is_huge,
+    "a link": leads_to_an_endless_device,
+    "empty": Path.touch,
+    "nested": lambda path: path.write_text("[" * 200_000),
+    "no text": lambda path: path.write_bytes(b"\xff\xfe\x00"),
+}
+#: What in entry.json is not so.
+NO_ENTRY: dict[str, Callable[[dict[str, Any]], object]] = {
+    "state": lambda entry: entry.update(state="wild"),
+    "state is a list": lambda entry: entry.update(state=["judged"]),
+    "points": lambda entry: entry.update(max_score="many"),
+    "message": lambda entry: entry.update(message=5),
+    "key leads out": lambda entry: entry.update(key="../../outside"),
+    "key is a number": lambda entry: entry.update(key=7),
+    "people": lambda entry: entry["hand_in"].update(people=[{"id": 5, "name": "", "columns": {}}]),
+    "time without zone": lambda entry: entry["hand_in"].update(at="2026-11-01T12:00:00"),
+    "id leads out": lambda entry: entry["hand_in"].update(id="../../outside"),
+    "other exercise": lambda entry: entry.update(exercise_sha256="0" * 64),
+}
+#: What in result.json is not so.
+NO_RESULT: dict[str, Callable[[dict[str, Any]], object]] = {
+    "more than all points": earns_more,
+    "other hand-in": lambda result: result["handed_in"].update(id="twin"),
+    "other exercise": lambda result: result["provenance"]["judged"].update(
+        exercise_sha256="0" * 64
+    ),
+    "score is no number": lambda result: result.update(score=None),
+}
+
+
+@pytest.fixture
+def out(graded: Path, tmp_path: Path) -> Path:
+    """The class, a test's own."""
+    return Path(shutil.copytree(graded, tmp_path / "class"))
+
+
+@pytest.mark.parametrize("name", [ENTRY, RESULT])
+@pytest.mark.parametrize("how", NO_FILE)
+def test_what_is_no_file_of_ours_is_neither_waited_for_nor_read_whole(
+    out: Path, name: str, how: str
+) -> None:
+    folder = Store(out).student("right")
+    replaced(folder / name, NO_FILE[how])
+    with pytest.raises(UsageError):
+        Entry.read(folder)
+    assert "right" not in {entry.id for entry in entries(out)}
+
+
+@pytest.mark.parametrize("what", NO_ENTRY)
+def test_an_entry_whose_values_cannot_be_is_none(out: Path, what: str) -> None:
+    folder = Store(out).student("right")
+    changed(folder / ENTRY, NO_ENTRY[what])
+    with pytest.raises(UsageError):
+        Entry.read(folder)
+
+
+@pytest.mark.parametrize("what", NO_RESULT)
+def test_a_result_that_is_not_that_of_its_entry_is_none(out: Path, what: str) -> None:
+    folder = Store(out).student("right")
+    changed(folder / RESULT, NO_RESULT[what])
+    with pytest.raises(UsageError):
+        Entry.read(folder)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        *({"shard": 5}, {"shard": "1/99999999999"}, {"seed": "x"}, {"isolation": "wild"}),
+        *({"hand_ins": "x"}, {"hand_ins": True}, {"exercise": {"a": 1}}, {"time": None}),
+    ],
+    ids=str,
+)
+def test_a_class_file_whose_values_cannot_be_is_named(out: Path, values: dict[str, Any]) -> None:
+    changed(out / CLASS, lambda data: data.update(values))
+    with pytest.raises(UsageError, match=r"class\.json is damaged: its "):
+        ClassFile.read(out)
+
+
+@pytest.mark.parametrize("how", NO_FILE)
+def test_what_pages_show_of_a_run_is_left_out_where_it_is_no_file_of_ours(
+    out: Path, how: str
+) -> None:
+    folder = Store(out).student("right")
+    for name in (THUMB, signature.NAME):
+        replaced(folder / name, NO_FILE[how])
+    assert Thumb.read(folder) is None
+    assert signature.read(folder) is None
+
+
+def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(out: Path) -> None:
+    kept = Store(out).student("right") / sources.SOURCE
+    (source,) = kept.iterdir()
+    replaced(source, is_huge)
+    (file,) = sources.kept(kept)
+    assert len(file.data) == sources.MAX_SOURCE_BYTES
+    link = out / "link"
+    link.symlink_to(kept)
+    assert sources.kept(link) == []
+
+
+def test_whatever_was_changed_in_a_class_the_same_call_ends_as_before(
+    out: Path, graded: Path, small_class: Class
+) -> None:
+    folders = {entry.id: entry.folder for entry in entries(out)}
+    runs = {entry.id: Store(out).run(entry.key) for entry in entries(out) if entry.key}
+    # its recording is cut off, and its result is gone
+    (folders["right"] / ENTRY).unlink()
+    os.truncate(runs["right"] / RECORDING / "recording.mcap", 1000)
+    # the result of somebody else, and a picture that is waited for
+    replaced(folders["twin"] / RESULT, lambda path: shutil.copy(folders["leaves"] / RESULT, path))
+    replaced(runs["twin"] / THUMB, os.mkfifo)
+    # of its run nothing is there but why it could not be started, which is no file
+    replaced(folders["crashes"] / ENTRY, os.mkfifo)
+    shutil.rmtree(runs["crashes"])
+    runs["crashes"].mkdir()
+    os.mkfifo(runs["crashes"] / "error.json")
+    # nothing was handed in, it says
+    changed(folders["leaves"] / ENTRY, lambda entry: entry.update(state="nothing"))
+    changed(folders["nobody"] / ENTRY, lambda entry: entry.update(max_score=1e300))
+    words = small_class.command(out, "--jobs", "1")
+    assert main(words[words.index("batch") :]) == 0
+    for name in ("gradebook.csv", "gradebook.jsonl"):
+        assert (out / name).read_bytes() == (graded / name).read_bytes(), name
+    assert len(entries(out)) == len(folders)
+
+
+def test_no_link_in_a_run_is_followed_into_a_student_s_folder(tmp_path: Path) -> None:
+    secret = tmp_path / "secret"
+    secret.mkdir()
+    (secret / "token.py").write_text("x = 1\n")
+    with Store.opened(tmp_path / "class") as store:
+        run = store.run("ab")
+        (run / RECORDING).mkdir(parents=True)
+        (run / RECORDING / "more").symlink_to(secret)
+        (run / sources.SOURCE).symlink_to(secret)
+        (run / THUMB).symlink_to(secret / "token.py")
+        place = store.new_place()
+        (place / STUDENTS / "zoe").mkdir(parents=True)
+        store.put("ab", place)
+        zoe = store.student("zoe")
+        assert [path.name for path in zoe.iterdir()] == [RECORDING]
+        assert (zoe / RECORDING / "more").is_symlink()
+
+
+@pytest.mark.parametrize("name", ["store", "submissions", "aside", "before"])
+def test_a_class_of_which_a_part_is_a_link_is_not_written_into(tmp_path: Path, name: str) -> None:
+    elsewhere, out = tmp_path / "elsewhere", tmp_path / "class"
+    for folder in (elsewhere, out):
+        folder.mkdir()
+    (out / name).symlink_to(elsewhere)
+    with (
+        pytest.raises(UsageError, match=rf"cannot write into .*{name}: it is a link"),
+        Store.opened(out),
+    ):
+        pass
+    assert list(elsewhere.iterdir()) == []
+
+
+def test_a_worker_that_made_nothing_fails_for_its_hand_ins_and_nobody_else(
+    small_class: Class,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    nothing = Answer("done")
+    monkeypatch.setattr(pool, "work", lambda tasks, jobs: ((task, nothing) for task in tasks))
+    words = small_class.command(tmp_path / "class")
+    assert main(words[words.index("batch") :]) == 3
+    assert "what a worker sent back cannot be used" in capsys.readouterr().err
+    states = {entry.id: entry.state for entry in entries(tmp_path / "class")}
+    assert states == {"nobody": "unusable", **dict.fromkeys(HANDED_IN, "failed")}
