@@ -8,6 +8,7 @@ there (`put`): the folder may have come with a submission, and no link in it is 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import re
 import stat
@@ -215,6 +216,27 @@ def putting(path: Path) -> Iterator[BinaryIO]:
         raise UsageError(
             say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
         ) from None
+
+
+def read_own(path: Path, most_bytes: int) -> bytes:
+    """What a file of ours holds, in a folder for results that others may have changed.
+
+    No link is followed and no pipe waited for.
+
+    Raises:
+        OSError: it cannot be read, is no ordinary file, or has more than `most_bytes`.
+    """
+    with open(path, "rb", opener=_open_own) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, say("it is no ordinary file"))
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise OSError(errno.EFBIG, say("it has more than {most:,} bytes", most=most_bytes))
+    return data
+
+
+def _open_own(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
 
 
 def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] = ()) -> None:

@@ -29,6 +29,8 @@ from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result, build
 from grader.run import real_time, static, virtual_time
 from grader.run.audience import Audience
+from grader.run.budget import Budget
+from grader.run.finish import not_run
 from grader.run.lost import SimulatorLost, judged_all_the_same
 from grader.run.plan import Plan
 from grader.run.processes import cores
@@ -208,6 +210,7 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         interfaces=scene.interfaces_for(imports.surely, imports.perhaps),
         setting=exercise.setting,
         looks_at_package=exercise.looks_at_package and submission.package is not None,
+        budget=Budget(exercise.cpu_s),
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
     missing = not_handed_in(submission.name, submission.copy, (*imports.surely, *imports.perhaps))
@@ -260,6 +263,8 @@ def start(
     """
 
     def run_twice_at_most(plan: Plan) -> Recording:
+        if plan.budget.is_spent:
+            return not_run(plan)
         show = progress if plan is plans[0] else None
         again = replace(plan, flags=(REPEATED, *plan.flags))
         try:
@@ -281,18 +286,18 @@ def start(
     pool = ThreadPoolExecutor(max_workers=at_once or many)
     try:
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
-        looked = pool.submit(_look_twice_at_most, submission) if looks else None
+        looked = pool.submit(_look_twice_at_most, submission, plans[0].budget) if looks else None
         over = ((numbers[future], future.result()) for future in as_completed(numbers))
         yield ((n, r if n else _nominal(r, origin, looked)) for n, r in over)
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _look_twice_at_most(submission: Submission) -> tuple[Trace, tuple[str, ...]]:
+def _look_twice_at_most(submission: Submission, budget: Budget) -> tuple[Trace, tuple[str, ...]]:
     try:
-        return static.look_beside(submission)
+        return static.look_beside(submission, budget)
     except GraderFailure:
-        return static.look_beside(submission)
+        return static.look_beside(submission, budget)
 
 
 def _nominal(

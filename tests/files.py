@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,3 +14,15 @@ def lay(root: Path, files: Mapping[str, str | bytes]) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return root
+
+
+def lay_too_deep(top: Path) -> None:
+    """Lay a file so deep in a folder that no system call takes its whole path: 12,000 letters."""
+    at = os.open(top, os.O_RDONLY)
+    for _ in range(60):
+        os.mkdir("d" * 200, dir_fd=at)
+        below = os.open("d" * 200, os.O_RDONLY, dir_fd=at)
+        os.close(at)
+        at = below
+    os.close(os.open("deep.py", os.O_CREAT | os.O_WRONLY, dir_fd=at))
+    os.close(at)

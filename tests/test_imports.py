@@ -100,13 +100,15 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.scenes.package.examining.doubles": {"grader.scenes.package.examining"},
     "grader.recording": GROUND | {"grader.scenes"},
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
-    "grader.run.processes": GROUND,
+    # what all runs of a grading spend of
+    "grader.run.budget": set(),
+    "grader.run.processes": GROUND | {"grader.run.budget"},
     "grader.run.lockstep": GROUND | {"grader.run.processes"},
     "grader.run.student": below(
         "grader.run", "lockstep", "processes.__init__", "processes.cores", "processes.forking"
     ),
     # what the grader's process and the simulator's have to agree on
-    "grader.run.plan": {"grader.scenes"},
+    "grader.run.plan": below("grader", "scenes", "run.budget"),
     "grader.run.handover": GROUND | below("grader", "recording", "scenes"),
     "grader.run.simulator": GROUND
     | below("grader", "recording", "scenes", "run.lockstep", "run.processes")

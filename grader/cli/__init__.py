@@ -6,6 +6,7 @@ cannot be used; 3 the grader itself failed; 130 interrupted, which was the calle
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
@@ -48,6 +49,8 @@ VERBS = {
     ),
 }
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
+#: A full disk, a closed folder: where they show is no place in our code.
+_OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -100,9 +103,12 @@ def _main(words: Sequence[str]) -> int:
         _say(say("First to mend:") if is_to_mend else _who(args.verb), error.message)
         return _ended(error, args)
     except Exception as error:
-        _say(say("The grader failed; this is not the submission's fault. Please report:"))
-        print(for_terminal(traceback.format_exc()), end="", file=sys.stderr)
         what = "".join(traceback.format_exception_only(error)).strip()
+        if isinstance(error, OSError) and error.errno in _OF_THE_MACHINE:
+            _say(say("The grader failed; this is not the submission's fault:"), what)
+        else:
+            _say(say("The grader failed; this is not the submission's fault. Please report:"))
+            print(for_terminal(traceback.format_exc()), end="", file=sys.stderr)
         return _ended(GraderFailure(say("unexpected: {what}", what=what)), args)
 
 

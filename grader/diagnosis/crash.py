@@ -298,7 +298,7 @@ def _limit(case: Case) -> str:
         if flag.startswith("the node ended with "):
             known = flag.values.get("limit") if isinstance(flag, Phrase) else None
             return _remark(flag.partition(": ")[2], known or flag)
-        if case.run.outcome == "killed" and flag.startswith("the node "):
+        if case.run.outcome == "killed" and flag.startswith(("the node ", "the whole grading ")):
             return _remark(flag, flag)
     return ""
 

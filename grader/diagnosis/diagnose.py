@@ -31,6 +31,7 @@ RULES: Final[tuple[Rule, ...]] = (
     connections.misses_what_it_hears,
     crash.ended_itself,
     crash.crashed,
+    standstill.sends_too_much,
     crash.killed,
     crash.thread_crashed,
     caught.ended_by_caught,

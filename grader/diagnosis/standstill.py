@@ -305,6 +305,12 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
     return None
 
 
+def sends_too_much(case: Case) -> Diagnosis | None:
+    """The same, where the grader has ended the program for it, which then has no exit code."""
+    is_ended = case.run.outcome == "killed" and case.run.exit_code is None
+    return publishes_without_waiting(case) if is_ended else None
+
+
 def hears_once(case: Case) -> Diagnosis | None:
     """A topic that the scene publishes all the time has reached it once, and then no more."""
     run_s = case.run.simulated_s

@@ -5,6 +5,7 @@ All functions here raise a `Mistake` where a value cannot be used.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -17,7 +18,7 @@ from grader import content
 from grader.errors import ExerciseError
 from grader.exercise import handing_in, places, translated
 from grader.exercise.check import Checks
-from grader.exercise.exercise import LOOKS, PER_STUDENT, Exercise, VariedRuns
+from grader.exercise.exercise import CPU, LOOKS, PER_STUDENT, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
 from grader.exercise.yaml_file import Mistake, did_you_mean, is_amount
 from grader.language.phrase import authored, say
@@ -78,6 +79,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         scene=scene,
         setting=setting,
         looks_at_package=_looks(data.get(LOOKS, False), scene),
+        cpu_s=_cpu_s(data.get(CPU)),
         program=_program(data.get("program", "")),
         folder=place.folder,
         starter=_starter(data.get("starter"), place),
@@ -172,6 +174,14 @@ def _looks(given: object, scene: str) -> bool:
             (LOOKS,), say("the scene {scene} does nothing else: leave it out", scene=repr(scene))
         )
     return given
+
+
+def _cpu_s(given: object) -> float:
+    if given is None:
+        return math.inf
+    if not is_amount(given) or not given:
+        raise Mistake((CPU,), say("expected a number above 0, found {given}", given=repr(given)))
+    return float(given)  # type: ignore[arg-type]
 
 
 def _task(task: object) -> str:

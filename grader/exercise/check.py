@@ -18,7 +18,7 @@ from grader.exercise.asking import Asked, NoFinding
 from grader.exercise.verdict import Finding, Verdict
 from grader.language.phrase import authored, chained, reason, say
 from grader.limited import LimitHit
-from grader.recording.recording import Recordings
+from grader.recording.recording import NominalAlone, NotOver, Recordings
 
 Tolerances = Mapping[str, Any]
 CheckFunction = Callable[[Recordings, Tolerances], Finding]
@@ -150,8 +150,19 @@ def judge(
         CheckFailed: a check raised something, or returned what is no finding.
         KeyError: the exercise gives points to a check that does not exist.
     """
-    with Asked(checks.functions, recordings, tolerances) as asked:
-        return judge_by(asked, checks, points)
+    lacking = next((each.run for each in recordings.varied if each.run.outcome == "not_run"), None)
+    if lacking is None:
+        with Asked(checks.functions, recordings, tolerances) as asked:
+            return judge_by(asked, checks, points)
+
+    def ask(name: str) -> Finding:
+        try:
+            return asked(name)
+        except NotOver:
+            return Finding(0.0, say("Not judged: {why}.", why=lacking.flags[0]), judged=False)
+
+    with Asked(checks.functions, NominalAlone(recordings.nominal), tolerances) as asked:
+        return judge_by(ask, checks, points)
 
 
 def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:

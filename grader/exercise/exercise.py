@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -17,6 +18,8 @@ from grader.scenes.scene import Limits, Start
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
 LOOKS = "looks_at_package"
+#: ... how much processor time a whole grading may take [s] ...
+CPU = "cpu_s"
 #: ... and, of `varied_runs`, whether they start elsewhere for each student.
 PER_STUDENT = "per_student"
 
@@ -53,6 +56,8 @@ class Exercise:
         task: what is to be done, in Markdown; '' where the title says it all.
         limits: when a run ends; `NO_LIMITS` where nothing is started.
         varied: further runs that start elsewhere.
+        cpu_s: processor time that a whole grading may take [s]: what it has reached by then is
+            judged. Without one the limits of each run and each step are all there is.
         points: check name -> points, in the order of the report.
         tolerances: what the checks may read; their names are the checks' own business.
         checks: the exercise's check functions.
@@ -79,6 +84,7 @@ class Exercise:
     scene: str = "turtlesim"
     setting: str = ""
     looks_at_package: bool = False
+    cpu_s: float = math.inf
     program: str = ""
     folder: Path = Path()
     starter: Path | None = None

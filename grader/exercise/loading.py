@@ -14,14 +14,14 @@ from typing import Any
 from grader.errors import ExerciseError
 from grader.exercise import places, translated
 from grader.exercise.building import NAME, build
-from grader.exercise.exercise import LOOKS, PER_STUDENT, Exercise
+from grader.exercise.exercise import CPU, LOOKS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.yaml_file import Mistake, YamlFile, did_you_mean, is_amount, read_yaml
 from grader.language.phrase import reason, say
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
-    *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", LOOKS),
+    *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", LOOKS, CPU),
     *("points", "visible", "late", "tolerances", "starter", "program", translated.PART),
 )
 

@@ -18,7 +18,7 @@ from grader.scenes import load_scene
 from grader.scenes.scene import Start, Trace
 from grader.scenes.view import Pictures, Pixels
 
-Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed"]
+Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed", "not_run"]
 Clock = Literal["virtual", "real"]
 
 
@@ -30,7 +30,8 @@ class Run:
         time: which clock the submission lived by.
         outcome: `finished` - its work came to rest, or was watched to the end; `exited`, `crashed`
             - the node ended by itself, without or with an error; `stalled` - it stopped
-            responding; `time_limit` - it was still going; `killed` - somebody else killed it.
+            responding; `time_limit` - it was still going; `killed` - somebody else killed it;
+            `not_run` - a varied one was not begun, its only remark says why.
         exit_code: the node's, negative for a signal; None where it had to be stopped.
         ticks, simulated_s: how long the simulator recorded.
         wall_s: how long it took.

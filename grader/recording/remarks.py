@@ -26,6 +26,7 @@ KEYS = (
     marked("the node sent so much that the simulator used more than {seconds} s of processor time"),
     marked("the node used {seconds} s of processor time without waiting for ROS"),
     marked("the node used more than {seconds} s of processor time"),
+    marked("the whole grading used more than {seconds} s of processor time"),
     marked("the node wrote a file of more than {size}: a run may not"),
     marked(
         "the node and what it started came to the limit of {number} processes and threads: a run "
@@ -38,6 +39,10 @@ KEYS = (
     marked(
         "the node and what it started used more than {size} of memory, and were ended: a run may "
         "use no more"
+    ),
+    marked(
+        "the node and what it started printed more than {size}, and were ended: a run may print no "
+        "more"
     ),
     marked("the run was ended: the simulator was kept from ticking at its pace"),
     marked("the node ended with {said}: {limit}"),
@@ -53,7 +58,7 @@ KEYS = (
     marked("its process does not read what it has asked for"),
     marked("its process sent what only a simulator says"),
     marked("its process made more than {number} requests that let no time pass"),
-    marked("the node sent more than {number} messages"),
+    marked("the node sent more than {number} messages, or more than {most} GB in them"),
     marked("the node published on more than {number} topics"),
     marked("messages on {channel} were too long or too many to be taken"),
     marked("a message on {channel} could not be read"),

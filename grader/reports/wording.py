@@ -34,6 +34,7 @@ OUTCOMES: Final = {
     "stalled": say("stalled"),
     "time limit": say("time limit"),
     "killed": say("killed"),
+    "not run": say("not run"),
     NOTHING_MOVED: say("nothing moved"),
 }
 #: The clock that a submission lived by.

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from grader import strict_json
 from grader.errors import UsageError
+from grader.files import read_own
 from grader.language.phrase import joined, reason, say
 
 if TYPE_CHECKING:
     import jsonschema
 
 Made = TypeVar("Made")
+#: No file of ours is longer [bytes].
+MOST_BYTES = 2**26
 
 
 def schema(name: str) -> dict[str, Any]:
@@ -48,21 +51,55 @@ def text(data: dict[str, Any]) -> str:
     return json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def read(path: Path) -> Any:
+def read(path: Path, *, is_ours: bool = False) -> Any:
     """Read JSON.
+
+    Args:
+        is_ours: whether the file has a name of ours in a folder for results: see `read_own`.
 
     Raises:
         UsageError: it cannot be read or is none.
     """
     try:
         # utf-8-sig: some editors put a mark at the start
-        return strict_json.loads(path.read_text(encoding="utf-8-sig"))
+        data = read_own(path, MOST_BYTES) if is_ours else path.read_bytes()
+        return strict_json.loads(data.decode("utf-8-sig"))
     except OSError as error:
         raise UsageError(
             say("cannot read the result {path}: {why}", path=path, why=error.strerror)
         ) from None
     except (ValueError, RecursionError) as error:
         raise UsageError(say("{path} is not JSON: {why}", path=path, why=str(error))) from None
+
+
+def typed(found: Made) -> Made:
+    """A dataclass that was filled with a file's data, if all in it is of its fields' types.
+
+    Raises:
+        ValueError: something is not.
+    """
+    for name, hint in get_type_hints(type(found)).items():
+        if not _is(value := getattr(found, name), hint):
+            shown = f"{value!r:.40}"
+            raise ValueError(say("is damaged: its {name} is {value}", name=name, value=shown))
+    return found
+
+
+def _is(value: object, hint: Any) -> bool:
+    kind, args = get_origin(hint), get_args(hint)
+    if kind is Literal:
+        return isinstance(value, str) and value in args
+    if kind is tuple:
+        return isinstance(value, tuple) and all(_is(each, args[0]) for each in value)
+    if kind is Mapping:
+        return isinstance(value, dict) and all(
+            _is(each, part) for pair in value.items() for each, part in zip(pair, args, strict=True)
+        )
+    if kind is not None:
+        return any(_is(value, each) for each in args)
+    if isinstance(value, bool):  # which Python takes for a number
+        return hint is bool
+    return isinstance(value, (int, float) if hint is float else hint)
 
 
 def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:

@@ -190,6 +190,12 @@ class Result:
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise ValueError(f"is damaged: it has two verdicts of the check {twice!r}")
+        more = next((v for v in result.verdicts if v.score > v.max_score + ROUNDING), None)
+        if more is not None:
+            raise ValueError(
+                f"is damaged: it gives {more.score:g} of {more.max_score:g} points for the check "
+                f"{more.check!r}"
+            )
         for key in ("score", "max_score"):
             total, found = sum(getattr(v, key) for v in result.verdicts), getattr(result, key)
             if abs(total - found) > ROUNDING:

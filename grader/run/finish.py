@@ -8,6 +8,7 @@ from grader.recording.conduct import Conduct
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
 from grader.run.plan import Plan
 from grader.run.processes.sandbox.limits import LIMITS, size
+from grader.scenes import load_scene
 from grader.scenes.scene import Reason, Trace
 
 NOTHING_TOLD = Conduct()
@@ -63,6 +64,20 @@ def outcome(reason: Reason, exit_code: int | None) -> Outcome:
     if exit_code > 0:
         return "crashed"
     return "finished" if reason in DONE else "exited"
+
+
+def not_run(plan: Plan) -> Recording:
+    """What is left of a run that was not begun: the grading had used up its budget."""
+    ending = Ending(
+        time="virtual",
+        outcome="not_run",
+        exit_code=None,
+        wall_s=0.0,
+        isolation="",
+        output="",
+        flags=(plan.budget.remark,),
+    )
+    return record(plan, load_scene(plan.scene).untouched(plan.start), (), ending)
 
 
 def limits_struck(exit_code: int | None, output: str, excess: str) -> tuple[str, ...]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Self
 
+from grader.run.budget import Budget
 from grader.scenes.scene import Limits, Start
 
 
@@ -23,6 +24,7 @@ class Plan:
             its usual ones.
         setting: what the exercise sets the scene up with; '' for nothing.
         looks_at_package: whether the package around the submission's program is looked at as well.
+        budget: the one of the whole grading, which the simulator's process does not know.
     """
 
     limits: Limits
@@ -33,10 +35,12 @@ class Plan:
     interfaces: str = ""
     setting: str = ""
     looks_at_package: bool = False
+    budget: Budget = field(default_factory=Budget, compare=False)
 
     def to_json(self) -> str:
         """As an argument of the simulator's process."""
-        return json.dumps(asdict(self))
+        words = {key: value for key, value in vars(self).items() if key != "budget"}
+        return json.dumps(words, default=asdict)
 
     @classmethod
     def from_json(cls, text: str) -> Self:

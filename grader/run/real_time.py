@@ -53,7 +53,7 @@ def run(
     started = time.monotonic()
     scene = load_scene(plan.scene)
     with (
-        stage.open_stage() as place,
+        stage.open_stage(plan.budget) as place,
         evidence.open_evidence() as told,
         seats(audience, plan, "real") as seat,
         start_simulator(MODULE, place, plan, None, str(first_node_s), seat=seat) as simulator,

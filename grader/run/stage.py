@@ -13,6 +13,7 @@ from pathlib import Path
 
 from grader import scratch, system
 from grader.run import zygotes
+from grader.run.budget import Budget
 from grader.run.environment import environment, student_environment, virtual_environment
 from grader.run.processes import isolation, levels
 from grader.run.processes.family import start_student
@@ -71,6 +72,7 @@ class Stage:
         entry: stands before the command of each.
         namespaces: what a process that is forked enters instead: kind -> descriptor.
         level: how the submission's process is confined.
+        budget: what the submission's process and all that it starts spend of.
     """
 
     folder: Path
@@ -81,6 +83,7 @@ class Stage:
     entry: tuple[str, ...]
     namespaces: Mapping[str, int]
     level: levels.Level
+    budget: Budget
 
     def own(self, submission: Submission) -> Submission:
         """The submission as this run has it for itself; at `namespaces`, its process copies it."""
@@ -118,24 +121,30 @@ class Stage:
         own = submission.copy.folder if submission.copy else root
         place = levels.prepare(self.level, root, own, self.folder, is_apart=is_apart)
         env = {**self.env, **env, **place.env}
-        return start_student(command, env, root, pass_fds, self.entry, warm, place.order)
+        return start_student(
+            *(command, env, root, pass_fds, self.entry, warm, place.order), budget=self.budget
+        )
 
 
 @contextmanager
-def open_stage() -> Iterator[Stage]:
+def open_stage(budget: Budget | None = None) -> Iterator[Stage]:
     """Set one up; nothing of it is left afterwards.
+
+    Args:
+        budget: of the grading; None for one without an end.
 
     Raises:
         GraderFailure: it cannot be isolated from other runs, or confined as was required.
     """
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
         level = levels.best(isolated)
+        isolation_name = ", ".join(filter(None, [level.name(), isolated.name]))
         env = environment(folder, isolated.env)
         recording, path = _make_recording(folder)
         try:
             yield Stage(
-                *(folder, recording, path, ", ".join(filter(None, [level.name(), isolated.name]))),
-                *(env, isolated.entry, isolated.namespaces, level),
+                *(folder, recording, path, isolation_name, env),
+                *(isolated.entry, isolated.namespaces, level, budget or Budget()),
             )
         finally:
             os.close(recording)

@@ -24,6 +24,7 @@ from grader.errors import GraderFailure
 from grader.language.phrase import say
 from grader.recording.recording import Outcome, Recording
 from grader.run import stage
+from grader.run.budget import Budget
 from grader.run.environment import virtual_environment
 from grader.run.finish import Ending, limits_struck, record
 from grader.run.plan import Plan
@@ -57,7 +58,7 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
         GraderFailure: the process could not be started.
     """
     started = time.monotonic()
-    looked = _look(submission, load_scene(plan.scene))
+    looked = _look(submission, load_scene(plan.scene), plan.budget)
     ending = Ending(
         time="virtual",
         outcome=_outcome(looked.exit_code, looked.lost),
@@ -70,7 +71,7 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
     return record(plan, looked.trace, (), ending)
 
 
-def look_beside(submission: Submission) -> tuple[Trace, tuple[str, ...]]:
+def look_beside(submission: Submission, budget: Budget) -> tuple[Trace, tuple[str, ...]]:
     """Look at the package in which a submission's program is, and at those beside it.
 
     Returns:
@@ -85,7 +86,7 @@ def look_beside(submission: Submission) -> tuple[Trace, tuple[str, ...]]:
         assert own.copy is not None
         for each in own.added:
             (own.root / each).unlink()  # ros2 does not add it
-        looked = _look(replace(own, root=own.copy.folder, start=Whole()), load_scene(SCENE))
+        looked = _look(replace(own, root=own.copy.folder, start=Whole()), load_scene(SCENE), budget)
     unlike: list[str] = []
     if isinstance(submission.start, EntryPoint):
         started = (submission.start.module, submission.start.function)
@@ -110,8 +111,8 @@ class _Looked:
     flags: tuple[str, ...]
 
 
-def _look(submission: Submission, scene: Scene) -> _Looked:
-    with stage.open_stage() as place:
+def _look(submission: Submission, scene: Scene, budget: Budget) -> _Looked:
+    with stage.open_stage(budget) as place:
         submission = place.own(submission)
         student = place.student(
             command(submission, scene, place.recording),

@@ -16,6 +16,7 @@ from grader.language.phrase import say
 from grader.recording.recording import Outcome, Recording
 from grader.run import evidence, handover, real_time, stage, zygotes
 from grader.run.audience import Audience, seats
+from grader.run.budget import Budget
 from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lockstep import contract
 from grader.run.lost import SimulatorLost
@@ -84,7 +85,7 @@ def _try(
     scene = load_scene(plan.scene)
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with (
-        stage.open_stage() as place,
+        stage.open_stage(plan.budget) as place,
         cores.reserve_core(ours.fileno()) as core_id,
         evidence.open_evidence() as told,
         seats(audience, plan, "virtual") as seat,
@@ -122,7 +123,7 @@ def _try(
                     theirs.close()
                     seat.taken()
                     try:
-                        message = _watch(simulator, student.pid)
+                        message = _watch(simulator, student.pid, plan.budget)
                     finally:
                         is_driven = simulator.is_driven
                     if message["say"] == "done" and student.ends_for_excess():
@@ -162,12 +163,15 @@ def command(
     return [*zygotes.command(zygotes.STUDENT), *words]
 
 
-def _watch(simulator: Simulator, student_pid: int) -> Message:
+def _watch(simulator: Simulator, student_pid: int, budget: Budget) -> Message:
     """Wait for the end of the run, for as long as one of its processes does something."""
-    used_s, since = -1.0, 0.0
+    used_s, since, spent_s = -1.0, 0.0, usage.look(simulator.pid).cpu_s
     while (message := simulator.next(0.2)) is None or message["say"] == "met":
         simulator.is_driven = simulator.is_driven or message is not None
-        now_used_s = sum(usage.look(pid).cpu_s for pid in (simulator.pid, student_pid))
+        simulator_s = usage.look(simulator.pid).cpu_s
+        budget.spend(max(0.0, simulator_s - spent_s))
+        spent_s = max(spent_s, simulator_s)
+        now_used_s = simulator_s + usage.look(student_pid).cpu_s
         if now_used_s != used_s:
             used_s, since = now_used_s, time.monotonic()
         if time.monotonic() > since + SIMULATOR_PATIENCE_S:

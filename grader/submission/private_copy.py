@@ -43,7 +43,7 @@ _CHUNK_BYTES: Final = 1 << 20
 #: Folders in which nothing to start is looked for: they come last, if there is room for them.
 _LAST: Final = {"venv", "env", "test", "tests", "build", "install", "log"}
 #: What is wrong with one file, and not with the machine.
-_UNREADABLE: Final = (
+UNREADABLE: Final = (
     *(errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENXIO),
     *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
 )
@@ -310,7 +310,7 @@ class _Copying:
         try:
             yield
         except OSError as error:
-            if error.errno not in _UNREADABLE:
+            if error.errno not in UNREADABLE:
                 raise
             self.failed.append(self._called(source))
 

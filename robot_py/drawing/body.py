@@ -21,6 +21,9 @@ FARTHEST = 1e6
 #: More shapes than this are drawn with fewer edges, many more not at all.
 _EDGES = ((60, 32), (250, 16), (1500, 8))
 _MOST_TRIANGLES = 100_000
+#: The squares around all triangles may cover that around the robot so many times: each pixel of
+#: them is looked at.
+_MOST_COVERED = 600
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +82,8 @@ def body(
     around = next((edges for most, edges in _EDGES if len(visuals) <= most), 0)
     left_out: dict[str, None] = {}
     parts: list[tuple[Triangles, Colour, int]] = []
-    count = 0
+    count, covered = 0, 0.0
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for number, visual in visuals:
         surface = _surface(visual, meshes or {}, around)
         place = placed.get(names[number])
@@ -87,9 +91,15 @@ def body(
         colour = WHITE if place is None else colour_of(visual)
         if not len(there) or count + len(there) > _MOST_TRIANGLES:
             left_out[_told(visual, names[number])] = None
+            continue
+        lowest, highest = there.corners.min(axis=1), there.corners.max(axis=1)
+        covers = covered + float(np.square((highest - lowest).max(axis=1)).sum())
+        below, above = np.minimum(low, lowest.min(axis=0)), np.maximum(high, highest.max(axis=0))
+        if covers > _MOST_COVERED * float((above - below).max()) ** 2:
+            left_out[_told(visual, names[number])] = None
         elif colour[3] > 0:
             parts.append((there, colour, number))
-            count += len(there)
+            count, covered, low, high = count + len(there), covers, below, above
     sizes = [len(surface) for surface, _, _ in parts]
     return Body(
         np.concatenate([NOTHING.corners, *(surface.corners for surface, _, _ in parts)]),

@@ -110,6 +110,7 @@ ATTACKS = {
     "keeps_locks": Attack(LEFTOVERS),
     "leaves_files": Attack(LEFTOVERS, NAMESPACES),
     "leaves_links": Attack(LEFTOVERS, outcome="exited"),
+    "takes_folders_away": Attack(LEFTOVERS, most=100, outcome="finished"),
     "passes_on_a_message": Attack(LEFTOVERS, exercise=TWICE, outcome="exited"),
     "daemons": Attack(LEFTOVERS),
     "daemons_of_libc": Attack(LEFTOVERS),
@@ -159,7 +160,7 @@ ATTACKS = {
 }
 
 #: With limits only: what may get what it is after, but leaves the grader and the next one alone.
-SURVIVED_AT_LIMITS = {"daemons", "daemons_of_libc"}
+SURVIVED_AT_LIMITS = {"daemons", "daemons_of_libc", "takes_folders_away"}
 #: ... and what is tried there at all: the rest is open, or the same at every level.
 AT_LIMITS = {
     *SURVIVED_AT_LIMITS,

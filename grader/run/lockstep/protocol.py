@@ -53,8 +53,9 @@ class ProtocolError(Exception):
 
 
 #: Messages, requests and responses that a submission may send in a run, whoever hears them: five a
-#: millisecond would be so many in 20 s. That it says so itself is believed: it has other limits.
-MOST_SENT = 100_000
+#: millisecond would be so many in 20 s; and their bytes. That it says so itself is believed: it has
+#: other limits.
+MOST_SENT, MOST_SENT_BYTES = 100_000, 2_000_000_000
 
 
 class State(IntEnum):
@@ -71,7 +72,7 @@ class Kind(IntEnum):
     WAITING = 2  # its threads wait for something that will not come, as a program may at its end
     UNSUPPORTED = 3  # it did what virtual time cannot follow: `text` says what
     FAILED = 4  # virtual time does not work here; `text` says why, as a clause
-    FLOODING = 5  # it has sent more than `MOST_SENT` messages
+    FLOODING = 5  # it has sent more than `MOST_SENT`, or `MOST_SENT_BYTES`
 
 
 class Parcel(NamedTuple):

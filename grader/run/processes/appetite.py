@@ -15,8 +15,10 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import NamedTuple
 
+from grader.run.budget import Budget
 from grader.run.processes.sandbox.limits import LIMITS, MIB, Limits, size
 
+TICKS_PER_S = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
 PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 #: How often it is looked [s].
 EVERY_S = 0.2
@@ -34,11 +36,13 @@ class Usage(NamedTuple):
         memory_bytes: the pages of each, with those of files and those that several share.
         tasks: its processes and threads.
         files: their open descriptors; 0 before Linux 6.2, which does not tell.
+        ticks: the processor time that they have taken, and those that they have waited for [ticks].
     """
 
     memory_bytes: int
     tasks: int
     files: int
+    ticks: int
 
 
 class Appetite:
@@ -48,10 +52,24 @@ class Appetite:
         remark: of which there was too much, for the result; '' if of nothing.
     """
 
-    def __init__(self, ancestor: int, end: Callable[[], None], limits: Limits = LIMITS) -> None:
-        """Begin; `end` is called, in a thread of ours, when they are to be ended."""
+    def __init__(
+        self,
+        ancestor: int,
+        end: Callable[[], None],
+        limits: Limits = LIMITS,
+        budget: Budget | None = None,
+        printed_bytes: Callable[[], int] = lambda: 0,
+    ) -> None:
+        """Begin; `end` is called, in a thread of ours, when they are to be ended.
+
+        Args:
+            printed_bytes: tells how much they have printed.
+            budget: of their grading, of which they spend.
+        """
         self.remark = ""
         self._family, self._limits, self._end = Family(ancestor), limits, end
+        self._printed_bytes = printed_bytes
+        self._budget, self._seen_ticks = budget or Budget(), 0
         self._has_ended = False
         self._next_close_look, self._available = 0.0, 0
         self._is_over = threading.Event()
@@ -85,12 +103,23 @@ class Appetite:
         """Whether it is too much."""
         limits = self._limits
         found = self._family.look()
+        self._budget.spend(max(0, found.ticks - self._seen_ticks) / TICKS_PER_S)
+        self._seen_ticks = max(self._seen_ticks, found.ticks)
+        if self._budget.is_spent:
+            self.remark = self._budget.remark
+            return True
         if found.tasks > limits.tasks - NEAR:
             self.remark = (
                 "the node and what it started came to the limit of"
                 f" {limits.tasks} processes and threads: a run may have no more at once"
             )
         if found.tasks > limits.tasks + NEAR:
+            return True
+        if self._printed_bytes() > limits.output_bytes:
+            self.remark = (
+                f"the node and what it started printed more than {size(limits.output_bytes)}, and"
+                " were ended: a run may print no more"
+            )
             return True
         if found.files > limits.family_files:
             self.remark = (
@@ -133,7 +162,8 @@ class Family:
         members = self._members()
         memory = sum(member.memory_bytes for member in members.values())
         tasks = sum(member.tasks for member in members.values())
-        return Usage(memory, tasks, sum(map(_open_files, members)))
+        ticks = sum(member.ticks for member in members.values())
+        return Usage(memory, tasks, sum(map(_open_files, members)), ticks)
 
     def own_memory_bytes(self) -> int:
         """Their memory that is no file's; pages that several share count once [bytes]."""
@@ -164,13 +194,15 @@ class _Process(NamedTuple):
     parent: int
     tasks: int
     memory_bytes: int
+    ticks: int
 
 
 def _see(pid: int) -> _Process | None:
     """What /proc/PID/stat tells; see proc_pid_stat(5)."""
     try:
         fields = _read(pid, "stat").rpartition(b")")[2].split()
-        return _Process(int(fields[1]), int(fields[17]), int(fields[21]) * PAGE_BYTES)
+        ticks = sum(map(int, fields[11:15]))
+        return _Process(int(fields[1]), int(fields[17]), int(fields[21]) * PAGE_BYTES, ticks)
     except (OSError, IndexError):
         return None
 

@@ -19,6 +19,7 @@ import psutil
 from grader import system
 from grader.errors import GraderFailure, NotNow
 from grader.language.phrase import say
+from grader.run.budget import Budget
 from grader.run.processes import supervisor
 from grader.run.processes.appetite import Appetite
 from grader.run.processes.refusal import Refusal
@@ -51,14 +52,16 @@ def start_student(
     entry: Sequence[str] = (),
     warm: Warm | None = None,
     confinement: Mapping[str, Any] | None = None,
+    budget: Budget | None = None,
 ) -> Watched:
     """Start a submission's process, held as well as this system can; see `Watched`.
 
     Args:
+        budget: what it and its descendants spend of, and that ends them; None for none.
         confinement: how it is confined, where it can be; see `.sandbox.confinement`.
     """
     if system.has_supervision():
-        return Student(command, env, cwd, pass_fds, entry, warm, confinement)
+        return Student(command, env, cwd, pass_fds, entry, warm, confinement, budget)
     return Unsupervised(command, env, cwd, pass_fds, entry)
 
 
@@ -97,6 +100,7 @@ class Student(Watched):
         entry: Sequence[str] = (),
         warm: Warm | None = None,
         confinement: Mapping[str, Any] | None = None,
+        budget: Budget | None = None,
     ) -> None:
         """`entry` stands before the supervisor's own command; see `.isolation`."""
         self._report, theirs = os.pipe()
@@ -118,7 +122,9 @@ class Student(Watched):
                 raise
             finally:
                 os.close(theirs)
-        self._appetite = Appetite(self._process.pid, self.kill)
+        self._appetite = Appetite(
+            *(self._process.pid, self.kill), budget=budget, printed_bytes=lambda: self.printed_bytes
+        )
 
     def ends_for_excess(self) -> bool:
         """A last look: whether it is ended for taking too much, now or before."""

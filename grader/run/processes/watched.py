@@ -189,6 +189,11 @@ class Watched:
         """Of what it took too much, for the result; '' if of nothing, or if nobody has looked."""
         return ""
 
+    @property
+    def printed_bytes(self) -> int:
+        """How much it has printed."""
+        return len(self._head) + self._dropped + len(self._tail)
+
     def output(self) -> str:
         """What it has printed: all of it, or its start and end with a note between."""
         self._reader.join(1.0)  # ends with the process, unless a grandchild keeps the pipe

@@ -15,6 +15,7 @@ from typing import Literal
 from grader.run.lockstep.link import PacketReader, pieces
 from grader.run.lockstep.protocol import (
     MOST_SENT,
+    MOST_SENT_BYTES,
     PROGRESS,
     Advance,
     Interests,
@@ -50,7 +51,10 @@ LIMIT_BYTES = 8_000_000
 WANTS_PROCESSOR = "R"
 ELSEWHERE = "the submission waits for something outside of Python's and ROS's own waiting"
 NONSENSE = "its process sent what ours never sends"
-TOO_MANY = f"the node sent more than {MOST_SENT} messages"
+TOO_MANY = (
+    f"the node sent more than {MOST_SENT} messages, or more than {MOST_SENT_BYTES // 10**9} GB in "
+    "them"
+)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from grader.run.lockstep import real
 from grader.run.lockstep.protocol import (
     FOREVER,
     MOST_SENT,
+    MOST_SENT_BYTES,
     TICK_NS,
     Advance,
     Interests,
@@ -64,7 +65,7 @@ class SimulatorLink(EndpointRegistry):
         self._scheduler = scheduler
         self._channel = SimulatorChannel(refuse)
         self._is_connected = False
-        self._sent = 0
+        self._sent = self._sent_bytes = 0
         #: since the simulator was told last
         self._has_mailed = False
         #: the readers for responses, by the numbers that requests carry
@@ -160,7 +161,7 @@ class SimulatorLink(EndpointRegistry):
         super().publish(writer, data)
         for remote in writer.remote:
             self._mail(Parcel(remote.id, 0, writer.sent, self.tick, data))
-        self._has_sent(writer.local)
+        self._has_sent(data, writer.local)
 
     def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
         """The same with a request."""
@@ -168,17 +169,18 @@ class SimulatorLink(EndpointRegistry):
         for remote in writer.remote:
             client.awaited += 1
             self._mail(Parcel(remote.id, self._number(client), number, self.tick, data))
-        self._has_sent(writer.local)
+        self._has_sent(data, writer.local)
         return number
 
     def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
         """The same with a response; the simulator never asks."""
         super().respond(writer, to, data)
-        self._has_sent([to.client])
+        self._has_sent(data, [to.client])
 
-    def _has_sent(self, local: list[Any]) -> None:
+    def _has_sent(self, data: bytes, local: list[Any]) -> None:
         self._sent += 1
-        if self._sent > MOST_SENT:
+        self._sent_bytes += len(data)
+        if self._sent > MOST_SENT or self._sent_bytes > MOST_SENT_BYTES:
             self.note(Kind.FLOODING)
             self.on_over()
             real.leave(0)

@@ -325,6 +325,11 @@ CAUSES = {
         "publishes_without_waiting",
         "You published 190000 messages on /turtle1/cmd_vel in 10 s (drive.py, line 39): nothing",
     ),
+    "a loop that publishes until the grader ends it": (
+        run_of(said(replace(VELOCITY, used=99_998, place=LINE)), "killed"),
+        "publishes_without_waiting",
+        "You published 99998 messages on /turtle1/cmd_vel in 10 s (drive.py, line 39): nothing",
+    ),
     "a callback that does not return": (
         run_of(said(VELOCITY, replace(POSES, used=1, place=LINE))),
         "hears_once",

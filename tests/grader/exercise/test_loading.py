@@ -116,6 +116,8 @@ def said_of(tmp_path, text):
         ("limits:\n  rest_s: 1\n  rest_s: 2", "line 4: the key 'rest_s' stands here twice"),
         ("title: a\ntitle: b", "line 3: the key 'title' stands here twice"),
         ("limits: {total_s: 0}", "line 2: limits: total_s: expected a number above 0"),
+        ("cpu_s: 0", "line 2: cpu_s: expected a number above 0, found 0"),
+        ("cpu_s: 1 min", "line 2: cpu_s: expected a number above 0, found '1 min'"),
         ("limits: {first_motion_s: 0}", "line 2: limits: first_motion_s: expected a number above"),
         ("varied_runs:\n  nearest_m: 4", "line 3: varied_runs: nearest_m: expected at most"),
         ("varied_runs: {farthest_m: 5.5}", "line 2: varied_runs: farthest_m: expected at most"),

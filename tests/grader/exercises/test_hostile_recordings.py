@@ -93,6 +93,7 @@ def recordings(draw: st.DrawFn) -> Recording:
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.timeout(4 * CASES)
 @settings(max_examples=CASES)
 @given(nominal=recordings(), varied=recordings())
 def test_whatever_was_recorded_is_judged(name, nominal, varied):
@@ -117,6 +118,7 @@ messages = st.one_of(
 )
 
 
+@pytest.mark.timeout(4 * CASES)
 @settings(max_examples=CASES)
 @given(said=st.lists(st.tuples(st.integers(1, TICKS), messages), max_size=30))
 def test_whatever_a_robot_has_said_is_judged(said):

@@ -110,10 +110,11 @@ def test_who_keeps_the_simulator_busy_is_told_so() -> None:
     assert virtual_time.FLOODING.format(0.2) in recording.run.flags
 
 
-@pytest.mark.more("a hundred thousand messages take five seconds")
-def test_who_sends_without_measure_is_ended() -> None:
+@pytest.mark.more("a hundred thousand messages take five seconds, and so do two gigabytes")
+@pytest.mark.parametrize("name", ["sends_without_measure", "sends_gigabytes"])
+def test_who_sends_without_measure_is_ended(name: str) -> None:
     limits = Limits(first_motion_s=30, rest_s=2, total_s=30)
-    recording = run("sends_without_measure", limits=limits)
+    recording = run(name, limits=limits)
     assert recording.run.outcome == "killed"
     assert link.TOO_MANY in recording.run.flags
 
@@ -142,7 +143,7 @@ def kill_when(monkeypatch: pytest.MonkeyPatch, has_met: bool, times: int) -> Non
     """Kill so many simulators: when they have met the submission's process, or at once."""
     watch, left = virtual_time._watch, [times]
 
-    def watch_and_kill(started: Any, pid: int) -> Any:
+    def watch_and_kill(started: Any, pid: int, budget: Any) -> Any:
         said = started.next
 
         def kill_then_hear(patience_s: float) -> Any:
@@ -153,7 +154,7 @@ def kill_when(monkeypatch: pytest.MonkeyPatch, has_met: bool, times: int) -> Non
             return message if has_met else said(patience_s)
 
         monkeypatch.setattr(started, "next", kill_then_hear)
-        return watch(started, pid)
+        return watch(started, pid, budget)
 
     monkeypatch.setattr(virtual_time, "_watch", watch_and_kill)
 

@@ -22,6 +22,13 @@ def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> No
     assert any(said in flag for flag in run.flags)
 
 
+@LINUX
+def test_an_output_without_end_ends_the_run(recorded: Run) -> None:
+    run = recorded("limits/logs_a_flood").run
+    assert run.outcome == "killed"
+    assert any(f"printed more than {size(LIMITS.output_bytes)}" in flag for flag in run.flags)
+
+
 REFUSED = {
     "asks_for_memory": f"MemoryError: one process may ask for {size(LIMITS.data_bytes)}",
     "opens_files": f"[Errno 24]: a process may have {LIMITS.open_files} open files",

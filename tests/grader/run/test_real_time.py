@@ -13,7 +13,7 @@ from tests import runs
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen
 
-PLAN = Plan(Limits(first_motion_s=2, rest_s=0.2, total_s=60))
+PLAN = Plan(Limits(first_motion_s=5, rest_s=0.2, total_s=60))
 HEAD = """
 import time
 import rclpy
@@ -37,7 +37,7 @@ node = rclpy.create_node("driver")
 pen = node.create_client(SetPen, "turtle1/set_pen")
 rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request(r=1, g=2, b=3, width=4)))
 """,
-    "starts_late": "import time\ntime.sleep(2.1)\n"
+    "starts_late": "import time\ntime.sleep(5.1)\n"
     + HEAD
     + """
 rclpy.init()

@@ -189,6 +189,19 @@ def test_very_many_shapes_are_drawn_coarsely_and_end_at_a_limit():
     assert body(gone, {"base": np.eye(4)}).left_out == ("a shape of base",)
 
 
+def test_triangles_that_cover_the_picture_too_often_are_left_out_and_told():
+    mesh = '<mesh filename="package://a/b.stl"/>'
+    made = model(link("base", BALL, RED), link("b", mesh, RED), joint("a", "b", "0 0 0"))
+    one = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 0, 1]]])
+    few, many = (
+        body(made, forward(made, {}), {"package://a/b.stl": np.repeat(one, count, axis=0)})
+        for count in (500, 2000)
+    )
+    assert few.left_out == ()
+    assert many.left_out == ("package://a/b.stl",)
+    assert len(many.corners) + 500 == len(few.corners)
+
+
 @pytest.mark.parametrize(
     ("shape", "area"),
     [

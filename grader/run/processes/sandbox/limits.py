@@ -29,6 +29,7 @@ class Limits(NamedTuple):
         family_bytes: memory that all its processes really use at once [bytes].
         family_files: descriptors of all its processes together. What lies in a socket, some hundred
             KiB at most, counts as nobody's memory.
+        output_bytes: what all its processes print together [bytes].
         data_bytes: private memory that one process may ask for, used or not [bytes].
         address_bytes: all addresses of one process [bytes]: what it shares counts here, and the
             tables of pages that it only reads, which nothing else limits. malloc reserves 64 MiB
@@ -48,6 +49,7 @@ class Limits(NamedTuple):
     cpu_s: int = 600
     family_bytes: int = 1 * GIB
     family_files: int = 4096
+    output_bytes: int = 32 * MIB
     data_bytes: int = 2 * GIB
     address_bytes: int = 16 * GIB
     tasks: int = 256

@@ -179,7 +179,7 @@ def import_path() -> list[str]:
     found += packages
     if system.is_ros_sourced():
         found += _listed("PYTHONPATH")
-    for folder in packages:
+    for folder in filter(os.path.isdir, packages):  # of a user, and of Debian, they may be missing
         found += _added(folder)
     return [path for path in dict.fromkeys(found) if os.path.isdir(path) and not _is_wide(path)]
 

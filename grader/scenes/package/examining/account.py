@@ -22,9 +22,14 @@ _SPENT: Final = (
 
 
 class Account:
-    """The account of one look; what was taken before it was opened does not count."""
+    """The account of one look; what was taken before it was opened does not count.
 
-    def __init__(self) -> None:
+    Args:
+        cpu_s: so much processor time may be taken [s].
+    """
+
+    def __init__(self, cpu_s: float = CPU_S) -> None:
+        self._cpu_s = cpu_s
         self._before_s = _children_cpu_s()
         self.idle_s = 0.0
 
@@ -32,8 +37,8 @@ class Account:
     def why_closed(self) -> str:
         """Why there is to be no further step; '' where there may be one."""
         used_s = _children_cpu_s() - self._before_s
-        is_spent = used_s > CPU_S or self.idle_s > IDLE_S
-        return _SPENT.format(CPU_S, IDLE_S) if is_spent else ""
+        is_spent = used_s > self._cpu_s or self.idle_s > IDLE_S
+        return _SPENT.format(self._cpu_s, IDLE_S) if is_spent else ""
 
 
 class Watch:

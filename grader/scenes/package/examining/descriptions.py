@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 from xml.etree import ElementTree
 
+from grader.scenes.package.examining import paths
 from grader.scenes.package.examining.launches import prepare, watch_files
 from grader.scenes.package.examining.packages import is_description
 from grader.scenes.package.examining.place import Place
@@ -30,10 +31,7 @@ _ARGUMENT: Final = re.compile(_GIVEN.replace("{}", "arg", 1).replace("{}", "defa
 
 
 def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
-    """The files that a description names; None where it is no XML.
-
-    Where one that is a mesh is found, `real` is its path.
-    """
+    """The files that a description names; None where it is no XML."""
     try:
         if "<!DOCTYPE" in text:
             return None
@@ -47,9 +45,8 @@ def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
             if key not in found and len(found) < _MOST_FILES:
                 state, path = _resolved(uri.strip(), place)
                 told = {"uri": place.told(uri)[:1000], "state": state}
-                real = path if state == "found" and key[1] else ""
                 told["path"] = place.told(path)[:1000]
-                found[key] = {**told, "is_mesh": key[1], "real": real}
+                found[key] = {**told, "is_mesh": key[1], "surface": -1}
     return list(found.values())
 
 
@@ -58,21 +55,23 @@ def _resolved(uri: str, place: Place) -> tuple[str, str]:
         package, _, inside = uri.removeprefix("package://").partition("/")
         one = next((each for each in place.all if each.name == package), None)
         if one is None:
-            is_there = place.knows(package)
-            return ("foreign" if is_there and package else "package"), package
-        return _looked_for(place.prefix / "share" / package / inside, place)
-    if uri.startswith("file://"):
-        path = Path(uri.removeprefix("file://"))
-        if not path.is_absolute() or str(path).startswith(f"{place.stubs}/"):
-            return ("foreign" if path.is_absolute() else "scheme"), str(path)
-        if not path.is_relative_to(place.prefix):
-            return "missing", str(path)
+            return ("foreign" if place.knows(package) else "package"), package
+        return _looked_for(
+            Path(os.path.normpath(f"{place.prefix}/share/{package}/{inside}")), place
+        )
+    if uri.startswith("file:///"):
+        path = Path(os.path.normpath(uri.removeprefix("file://")))
+        if path.is_relative_to(place.stubs):
+            return "foreign", str(path)
         return _looked_for(path, place)
-    return "scheme", uri
+    return "scheme", uri.removeprefix("file://")
 
 
 def _looked_for(path: Path, place: Place) -> tuple[str, str]:
-    if path.is_file():
+    """What there is of a file of ours, by a path without `..`."""
+    if not path.is_relative_to(place.prefix):
+        return "missing", str(path)
+    if paths.is_file(path):
         return "found", str(path)
     meant = place.own(place.meant(str(path)))
     if meant and str(path).endswith(f"/{meant}"):

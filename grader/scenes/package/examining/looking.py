@@ -14,7 +14,13 @@ from grader.scenes.package import strict, trace
 from grader.scenes.package.examining import descriptions, launches, paths, surfaces
 from grader.scenes.package.examining.layout import Installed
 from grader.scenes.package.examining.place import Place
-from grader.scenes.package.examining.steps import Ended, attempt, problem_of, step
+from grader.scenes.package.examining.steps import (
+    Ended,
+    attempt,
+    open_account,
+    problem_of,
+    step,
+)
 from grader.scenes.package.trace import (
     Description,
     Launch,
@@ -54,6 +60,7 @@ class Looking:
             found += self._from_files(found)
         varied = self._varied()
         self._elsewhere(found)
+        self._read_meshes()
         return PackageTrace(
             setup=strict.from_json(trace.Setup, _cleaned(self._setup(), place)),
             others=tuple(each.name[:200] for each in place.all if each is not place.judged)[:100],
@@ -174,25 +181,28 @@ class Looking:
             is_launched=launched,
             source=next((each for each in map(self._own, sources) if each), ""),
             problem=Problem("error", refused) if refused else None,
-            meshes=tuple(strict.from_json(Mesh, each) for each in self._with_surfaces(named)),
+            meshes=tuple(strict.from_json(Mesh, each) for each in named or ()),
             is_xml=named is not None,
         )
         if sources and sources[0].startswith((f"{trace.PREFIX}/", "/source/")):
             self._commands[len(self._descriptions)] = [self._real(sources[0])]
         self._descriptions.append(made)
 
-    def _with_surfaces(self, named: list[dict[str, Any]] | None) -> list[dict[str, Any]]:
-        """The meshes of a description, each with the number of what it looks like."""
-        for each in named or ():
-            each["surface"] = self._surface(each.pop("real"))
-        return named or []
+    def _read_meshes(self) -> None:
+        """What the meshes look like; last and by an account of its own, since it earns nothing."""
+        open_account(surfaces.CPU_S)
+        for number, each in enumerate(self._descriptions):
+            meshes = tuple(replace(mesh, surface=self._surface(mesh)) for mesh in each.meshes)
+            self._descriptions[number] = replace(each, meshes=meshes)
 
-    def _surface(self, path: str) -> int:
+    def _surface(self, mesh: Mesh) -> int:
         """The number of a mesh's triangles; -1 where nobody can read it."""
+        path = mesh.path if mesh.is_mesh and mesh.state == "found" else ""
         if path and path not in self._surfaces and len(self._surfaces) < surfaces.MOST_MESHES:
             self._surfaces[path] = -1
             with suppress(Ended):
-                said = str(step(partial(surfaces.surface, path), self._place.own))
+                work = partial(surfaces.surface, self._real(path))
+                said = str(step(work, self._place.own))
                 if said and len(said) <= trace.LONGEST_SURFACE:
                     self._surfaces[path] = len(self._triangles)
                     self._triangles.append(said)
@@ -270,7 +280,7 @@ class Looking:
             before.prefix.rename(moved)
         except OSError:  # what was evaluated last has taken it away
             return
-        place = replace(before, prefix=moved)
+        self._place = place = replace(before, prefix=moved)
         for number, launch in enumerate(found):
             if launch.problem is not None:
                 continue

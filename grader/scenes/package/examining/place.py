@@ -66,7 +66,10 @@ class Place:
     def knows(self, package: str) -> bool:
         """Whether it is a package of ROS that may be asked for, or one that is declared."""
         share = self.stubs / "share"
-        return (share / package).is_dir() or (self.stubs / MARKS / package).is_file()
+        is_name = package.strip(".") != ""
+        return is_name and (
+            paths.is_folder(share / package) or paths.is_file(self.stubs / MARKS / package)
+        )
 
     def borrowed(self, wanted: str) -> tuple[str, str]:
         """A package that is not there, and the file of the submission that is asked for as its.

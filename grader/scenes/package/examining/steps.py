@@ -14,7 +14,7 @@ from typing import Any, Final, TypeVar
 from grader import limited
 from grader.scenes.package import strict
 from grader.scenes.package.examining import leftovers
-from grader.scenes.package.examining.account import Account, Watch
+from grader.scenes.package.examining.account import CPU_S, Account, Watch
 from grader.scenes.package.trace import Problem
 
 #: All processes of a run together may have 1 GiB: one alone comes to its own limit before.
@@ -51,10 +51,10 @@ class Ended(Exception):
 _account = Account()
 
 
-def open_account() -> None:
-    """Begin a look: what steps took before does not count."""
+def open_account(cpu_s: float = CPU_S) -> None:
+    """Begin a look: what steps took before does not count, and may be so much from here on [s]."""
     global _account
-    _account = Account()
+    _account = Account(cpu_s)
 
 
 def step(work: Callable[[], Any], own: Own) -> Any:

@@ -9,11 +9,16 @@ from __future__ import annotations
 import base64
 import os
 import re
+from itertools import islice
 from typing import Any, Final
 
-#: A file may have so many bytes and triangles; of all together there is so much time anyway.
+#: A file may have so many bytes and triangles.
 _MOST_BYTES: Final = 30_000_000
 _MOST_READ: Final = 400_000
+#: All that are read of a package may take so much processor time [s]: it is for a picture.
+CPU_S: Final = 30.0
+#: What is read by trimesh; it knows more, archives of what may be any size among them.
+_KINDS: Final = (".obj", ".ply", ".dae", ".gltf", ".glb", ".off")
 #: So many triangles of a mesh are left, and so many meshes are read.
 MOST_TRIANGLES: Final = 2000
 MOST_MESHES: Final = 30
@@ -49,13 +54,15 @@ def _read(path: str) -> Any:
     if path.lower().endswith(".stl"):
         with open(path, "rb") as file:
             return _stl(file.read(_MOST_BYTES + 1))
+    if not path.lower().endswith(_KINDS):
+        return None
     try:
         import trimesh
     except ImportError:
         return None
     import numpy as np
 
-    scene = trimesh.load(path, force="mesh", process=False)
+    scene = trimesh.load(path, force="mesh", process=False, skip_materials=True)
     return np.asarray(scene.triangles, dtype=np.float64).reshape(-1, 3, 3)
 
 
@@ -67,7 +74,8 @@ def _stl(data: bytes) -> Any:
     if len(data) == _HEADER + 50 * count:
         kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")])
         return np.frombuffer(data, kind, count, _HEADER)["corners"].astype(np.float64)
-    numbers = [float(each) for match in _VERTEX.findall(data) for each in match]
+    vertices = islice(_VERTEX.finditer(data), 3 * _MOST_READ + 3)
+    numbers = [float(each) for match in vertices for each in match.groups()]
     return np.array(numbers[: len(numbers) // 9 * 9]).reshape(-1, 3, 3)
 
 

@@ -81,7 +81,7 @@ def test_whose_parent_ends_during_a_look_is_found_by_the_next(
 
 
 def test_a_process_that_does_not_exist_has_no_family() -> None:
-    assert Family(1 << 30).look() == (0, 0, 0)
+    assert Family(1 << 30).look() == (0, 0, 0, 0)
 
 
 @pytest.mark.parametrize(

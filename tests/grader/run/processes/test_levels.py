@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import resource
+import site
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -222,3 +223,11 @@ def test_nothing_of_ours_is_shown_but_what_works_there(tmp_path: Path) -> None:
     found = {path.removeprefix(f"{ours}/") for path in shown if path.startswith(f"{ours}/grader")}
     assert found == set(view.HOST)
     assert not {"/", ours, str(Path.home()), str(tmp_path.parent)} & shown
+
+
+def test_who_has_no_packages_of_his_own_is_confined_as_all_are(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(site, "ENABLE_USER_SITE", True)
+    monkeypatch.setattr(site, "getusersitepackages", lambda: str(tmp_path / "missing"))
+    assert str(tmp_path / "missing") not in view.import_path()

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
 from tests import runs
+from tests.needs import needs
 
+TESTS = Path(__file__).parents[3]
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=2))
 WAYS = [
     *("random.random()", "random.seed() or random.random()", "random.Random().random()"),
@@ -46,9 +52,42 @@ def test_two_runs_draw_the_same_and_end_where_they_wait_for_processor_time() -> 
     assert one.run.outcome == "time_limit"
 
 
-@pytest.mark.more("as two runs, and eight more")
-def test_ten_runs_draw_the_same() -> None:
-    hashes = {
-        runs.recorded("draws", PLAN, number=number).run.trace_sha256 for number in range(1, 11)
-    }
-    assert len(hashes) == 1
+#: What a system refuses -> the level that is left.
+LEVELS = {"": "namespaces", "namespaces": "landlock", "namespaces,landlock": "limits"}
+GRADES_TEN = """
+import sys
+import grader
+for n in range(10):
+    run = grader.grade(*sys.argv[1:]).run
+    print(run.isolation.split(" ")[0].rstrip(","), run.outcome, run.trace_sha256)
+"""
+
+
+@pytest.fixture
+def for_all() -> Iterator[Path]:
+    """A folder that every user may read; pytest's are its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o755)
+        yield Path(folder)
+
+
+@pytest.mark.more("sixty runs, a second each")
+@pytest.mark.parametrize("user", [pytest.param("root", marks=needs("root")), "ordinary"])
+def test_ten_gradings_at_each_level_draw_what_the_first_at_the_best_drew(user, for_all):
+    exercise = for_all / "short.yaml"
+    limits = "{first_motion_s: 3, rest_s: 1, total_s: 2}"
+    exercise.write_text(
+        f"exercise: turtlesim_challenge\nlimits: {limits}\n"
+        "varied_runs: {count: 0}\npoints: {moves: 5}\n"
+    )
+    (submission,) = TESTS.rglob("submissions/draws.py")
+    expected = runs.recorded("draws", PLAN, number=1).run.trace_sha256
+    for refused, level in LEVELS.items():
+        words = [sys.executable, "-c", GRADES_TEN, submission, exercise]
+        if refused:
+            words = [sys.executable, TESTS / "refusing.py", refused, *words]
+        if os.geteuid() == 0:
+            more = ["--root"] if user == "root" else []
+            words = [sys.executable, TESTS / "as_user.py", *more, *words]
+        done = subprocess.run(words, cwd=TESTS.parent, capture_output=True, text=True)
+        assert done.stdout.splitlines() == [f"{level} time_limit {expected}"] * 10, done.stderr

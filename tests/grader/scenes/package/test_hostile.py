@@ -7,12 +7,13 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
-from grader.scenes.package.examining import account, main, paths, steps
+from grader.scenes.package.examining import account, main, paths, steps, surfaces
 from grader.scenes.package.examining.setup_call import is_told
 from grader.scenes.package.examining.steps import (
     NONSENSE,
@@ -122,6 +123,49 @@ def test_a_description_that_is_longer_than_any_is_told_so(tmp_path):
     )
     problem = found(tmp_path, {DISPLAY: code}).launches[0].problem
     assert "a text of 3,000,000 characters; 2,000,000 at most" in problem.text
+
+
+ROOT = "/".join([".."] * 40)
+#: A name that a description gives a mesh -> what becomes of it.
+MESHES = {
+    "package://walker_description/meshes/camera.stl": "found",
+    "package://walker_description/../walker_description/meshes/camera.stl": "found",
+    f"package://walker_description/{ROOT}/etc/passwd": "missing",
+    "package://walker_description//etc/passwd": "missing",
+    f"file:///opt/ros/jazzy/{ROOT}/etc/passwd": "missing",
+    "file:///dev/zero": "missing",
+    "file:///opt/ros/jazzy/share/none/a.stl": "foreign",
+    "package://../a.stl": "package",
+    "package://./a.stl": "package",
+    f"package://walker_description/{'a' * 300}.stl": "missing",
+    f"package://{'a' * 300}/a.stl": "package",
+    "file://meshes/camera.stl": "scheme",
+    "http://127.0.0.1:1/a.stl": "scheme",
+}
+
+
+def with_meshes(names: Iterable[str]) -> dict[str, str]:
+    """The description of a robot that has these meshes."""
+    shapes = "".join(
+        f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in names
+    )
+    return {"urdf/walker.urdf.xacro": f'<robot name="a"><link name="base">{shapes}</link></robot>'}
+
+
+def test_a_mesh_counts_as_found_where_the_package_installs_it(tmp_path):
+    trace = found(tmp_path, with_meshes(MESHES))
+    assert [each.problem for each in trace.launches] == [None, None]
+    (description,) = trace.descriptions
+    assert {uri: mesh.state for uri, mesh in zip(MESHES, description.meshes, strict=True)} == MESHES
+
+
+def test_meshes_are_read_last_and_by_an_account_of_their_own(tmp_path, monkeypatch):
+    monkeypatch.setattr(surfaces, "CPU_S", -1.0)
+    monkeypatch.setattr(steps, "_account", None)  # as before, afterwards
+    trace = main.look(REFERENCE, "", tmp_path)
+    assert [each.problem for each in trace.launches] == [None, None]
+    assert [each.state for each in trace.descriptions[0].meshes] == ["found"]
+    assert trace.surfaces == ()
 
 
 def open_descriptors() -> set[int]:

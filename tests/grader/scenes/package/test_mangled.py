@@ -32,6 +32,7 @@ def test_a_link_out_of_a_mangled_package_is_not_written_through(kind: str, tmp_p
     assert (tmp_path / OUTSIDE).read_text(encoding="ascii") == SAYS
 
 
+@pytest.mark.timeout(4 * CASES)
 @settings(max_examples=CASES)
 @given(package=packages())
 def test_a_mangled_package_is_looked_at_and_judged(package: Mangled) -> None:
@@ -48,6 +49,7 @@ def test_a_mangled_package_is_looked_at_and_judged(package: Mangled) -> None:
         assert not any("fault of the exercise" in verdict.rationale for verdict in found)
 
 
+@pytest.mark.timeout(4 * CASES)
 @settings(max_examples=CASES // 10)
 @given(package=packages())
 def test_a_mangled_package_that_is_handed_in_is_no_failure_of_the_grader(package: Mangled) -> None:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import base64
+import io
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
+from trimesh.resolvers import FilePathResolver
 
 from grader.scenes.package.examining import surfaces
 
@@ -83,3 +86,24 @@ def test_a_fine_mesh_becomes_coarse_and_keeps_its_shape(tmp_path):
 def test_another_kind_is_read_where_trimesh_is(tmp_path):
     obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
     assert read(tmp_path, obj, "a.obj").tolist() == ONE.tolist()
+
+
+def test_an_obj_is_read_without_the_files_that_it_names(tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setattr(FilePathResolver, "get", lambda _, name: asked.append(name))
+    obj = b"mtllib /dev/zero\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    assert read(tmp_path, obj, "a.obj").tolist() == ONE.tolist()
+    assert asked == []
+
+
+def test_an_archive_is_no_mesh(tmp_path):
+    packed = io.BytesIO()
+    with ZipFile(packed, "w") as archive:
+        archive.writestr("a.stl", binary(ONE))
+    assert len(read(tmp_path, packed.getvalue(), "a.zip")) == 0
+
+
+def test_of_a_mesh_in_words_no_more_is_read_than_may_be(tmp_path, monkeypatch):
+    monkeypatch.setattr(surfaces, "_MOST_READ", 2)
+    assert len(read(tmp_path, in_words(ONE.repeat(2, axis=0)))) == 2
+    assert len(read(tmp_path, in_words(ONE.repeat(3, axis=0)))) == 0

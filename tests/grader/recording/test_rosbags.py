@@ -1,0 +1,67 @@
+"""What our bags are written and read with from inside of rosbags, which promises none of it.
+
+A release that fails here needs another `grader.recording.rosbag2_writer` or `rosbag2_reader`;
+pyproject.toml lets no other series in before.
+"""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+
+import pytest
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer, storage_mcap
+
+from grader.recording.rosbag2_writer import Rosbag2Writer
+
+#: function or method -> its parameters
+CALLED = {
+    storage_mcap.write_channel: ["bio", "channel", "schemas"],
+    storage_mcap.write_string: ["bio", "string"],
+    storage_mcap.read_exact: ["bio", "size"],
+    storage_mcap.decompress: ["data", "compression", "size", "crc"],
+    storage_mcap.McapWriter.add_connection: ["self", "connection", "offered_qos_profiles"],
+    storage_mcap.McapWriter.close_chunk: ["self"],
+    storage_mcap.McapWriter.close: ["self", "version", "metadata"],
+    storage_mcap.McapReader.open: ["self"],
+}
+#: of whom -> what is read or changed
+USED = {
+    "the writer": {"storage", "counts", "min_timestamp", "max_timestamp", "metapath"},
+    "its storage": {
+        *("chunk", "channels", "schemas", "channel_stats"),
+        *("message_start_time", "message_end_time"),
+    },
+    "its chunk": {"bio", "msgs", "message_start_time"},
+    "the reader": {"bio", "chunks", "connections"},
+    "a chunk told of": {"chunk_start_offset", "uncompressed_size", "message_index_offsets"},
+    "a channel": {"metadata"},
+}
+
+
+@pytest.mark.parametrize("function", CALLED, ids=lambda function: function.__qualname__)
+def test_a_function_takes_what_it_is_given(function):
+    assert list(inspect.signature(function).parameters) == CALLED[function]
+
+
+def test_what_is_read_and_changed_is_there(tmp_path: Path) -> None:
+    writer = Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP)
+    writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    with writer:
+        found = {
+            "the writer": writer,
+            "its storage": writer.storage,
+            "its chunk": writer.storage.chunk,
+        }
+        lacking = [
+            (who, name) for who in found for name in USED[who] if not hasattr(found[who], name)
+        ]
+    reader = storage_mcap.McapReader(tmp_path / "bag" / "bag.mcap")
+    kinds = {"a chunk told of": storage_mcap.ChunkInfo, "a channel": storage_mcap.Channel}
+    lacking += [("the reader", name) for name in USED["the reader"] if not hasattr(reader, name)]
+    lacking += [(who, n) for who in kinds for n in USED[who] if n not in kinds[who]._fields]
+    assert lacking == []
+
+
+def test_its_storage_is_replaced_where_it_looks_for_it():
+    assert Writer.STORAGE_PLUGINS.keys() >= Rosbag2Writer.STORAGE_PLUGINS.keys()
