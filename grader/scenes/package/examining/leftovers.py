@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from contextlib import suppress
 from ctypes import CDLL
+from itertools import count
 from pathlib import Path
 from typing import Final, NamedTuple
 
 _PR_SET_CHILD_SUBREAPER: Final = 36
 _PROC: Final = Path("/proc")
-#: So often they are looked for: each time those are stopped that were born meanwhile.
-_MOST_ROUNDS: Final = 200
+#: After so many looks, each of which stops those who were born meanwhile, all are ended at once.
+_MOST_LOOKS: Final = 200
 _adopts = False
 
 
@@ -27,20 +29,25 @@ def adopt() -> None:
 
 
 def end() -> None:
-    """End all that is below this process, if it has adopted it."""
+    """End all that is below this process, if it has adopted it.
+
+    Only the kernel knows when nothing is left: a look at /proc misses who was born during it while
+    its parent ended.
+    """
     if not _adopts:
         return
     stopped: set[int] = set()
-    for _ in range(_MOST_ROUNDS):  # who is stopped has no more children
-        found = _below(os.getpid(), _stats())
-        if found <= stopped:
-            break
-        _tell(found - stopped, signal.SIGSTOP)
-        stopped |= found
-    _tell(stopped, signal.SIGKILL)
-    with suppress(ChildProcessError):
-        while stopped:
-            os.waitpid(-1, 0)
+    with suppress(ChildProcessError):  # nothing is left
+        for look in count():
+            found = _below(os.getpid(), _stats())
+            if found <= stopped or look > _MOST_LOOKS:
+                _tell(found, signal.SIGKILL)
+                while os.waitpid(-1, os.WNOHANG)[0]:
+                    pass
+                time.sleep(0.001)
+            else:  # who is stopped has no more children
+                _tell(found - stopped, signal.SIGSTOP)
+                stopped |= found
 
 
 def _tell(processes: set[int], what: signal.Signals) -> None:
@@ -76,7 +83,10 @@ def _stats() -> dict[int, _Stat]:
 
 
 def _below(ancestor: int, stats: dict[int, _Stat]) -> set[int]:
-    """All descendants of a process that are not over yet."""
+    """All descendants of a process.
+
+    Whom /proc calls a zombie is one of them: threads of it may go on.
+    """
     children: dict[int, list[int]] = {}
     for number, stat in stats.items():
         children.setdefault(stat.parent, []).append(number)
@@ -86,4 +96,4 @@ def _below(ancestor: int, stats: dict[int, _Stat]) -> set[int]:
         below = [each for each in children.get(pending.pop(), []) if each not in found]
         found.update(below)
         pending += below
-    return {each for each in found if stats[each].state not in "ZX"}
+    return found

@@ -5,8 +5,10 @@ from __future__ import annotations
 import subprocess
 import sys
 
-PROGRAM = """
-import os, signal, sys, time
+import pytest
+
+BEGIN = """
+import ctypes, os, signal, sys, threading, time
 from grader.scenes.package.examining import leftovers
 
 def born():
@@ -33,7 +35,8 @@ def is_there(process):
     except ProcessLookupError:
         return False
     return True
-
+"""
+ONLY_ITS_OWN = """
 before = born()
 leftovers.end()  # nobody was adopted: these are somebody else's
 assert all(map(is_there, before)), "ended what was not its own"
@@ -44,10 +47,45 @@ assert not any(map(is_there, ours)), "something is left"
 leftovers.end()
 for each in before:
     os.kill(each, signal.SIGKILL)
-print("good")
+"""
+# /proc was listed before the last one was born, and its parent read when that was over
+BORN_WHILE_LOOKED = """
+leftovers.adopt()
+ours = born()
+look, seen = leftovers._stats, []
+def too_early():
+    found = look()
+    if len(seen) < 2:
+        del found[ours[-1]]
+    seen.append(found)
+    return found
+leftovers._stats = too_early
+leftovers.end()
+assert not any(map(is_there, ours)), "something is left"
+"""
+# /proc tells of it what it tells of those that are over
+WITHOUT_ITS_FIRST_THREAD = """
+leftovers.adopt()
+ours = born()
+child = os.fork()
+if child == 0:
+    threading.Thread(target=time.sleep, args=(1000,)).start()
+    ctypes.CDLL(None).pthread_exit(None)
+while open(f"/proc/{child}/stat").read().rpartition(")")[2].split()[0] != "Z":
+    time.sleep(0.001)
+leftovers.end()
+assert not any(map(is_there, [*ours, child])), "something is left"
 """
 
 
-def test_what_was_started_before_goes_on_and_what_is_left_below_is_ended():
-    ended = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True)
+@pytest.mark.timeout(30)
+@pytest.mark.parametrize(
+    "program",
+    [ONLY_ITS_OWN, BORN_WHILE_LOOKED, WITHOUT_ITS_FIRST_THREAD],
+    ids=["only_its_own", "born_while_looked", "without_its_first_thread"],
+)
+def test_what_was_started_before_goes_on_and_what_is_left_below_is_ended(program):
+    ended = subprocess.run(
+        [sys.executable, "-c", f"{BEGIN}{program}print('good')"], capture_output=True, text=True
+    )
     assert (ended.stdout, ended.stderr) == ("good\n", "")
