@@ -199,13 +199,11 @@ def _see_only_own_processes() -> None:
 
 
 def _descendants(ancestor: int) -> list[int]:
-    """All living processes below one, in a /proc that shows us."""
+    """All processes below one, in a /proc that shows us; a zombie's threads may go on."""
     parents: dict[int, int] = {}
     for name in filter(str.isdigit, os.listdir("/proc")):
         with suppress(OSError, ValueError), open(f"/proc/{name}/stat", "rb") as file:
-            state, parent = file.read().rpartition(b")")[2].split()[:2]
-            if state not in (b"Z", b"X"):
-                parents[int(name)] = int(parent)
+            parents[int(name)] = int(file.read().rpartition(b")")[2].split()[1])
     found = {ancestor}
     while more := {pid for pid, parent in parents.items() if parent in found} - found:
         found |= more

@@ -4,8 +4,11 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from ctypes import CDLL
 from pathlib import Path
 
 import psutil
@@ -197,6 +200,25 @@ def _walkers_are_ended() -> None:
 @pytest.mark.skipif(not system.has_supervision(), reason="nobody can adopt orphans here")
 def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
     in_child(_walkers_are_ended)
+
+
+def _one_without_its_first_thread_is_ended() -> None:
+    linux.signal_at_parents_death(signal.SIGKILL)
+    child = os.fork()
+    if not child:
+        threading.Thread(target=time.sleep, args=(1000,)).start()
+        CDLL(None).pthread_exit(None)
+    while psutil.Process(child).status() != psutil.STATUS_ZOMBIE:
+        time.sleep(0.001)
+    Supervisor(os.getppid(), -1, None)._end_all()
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+
+
+@pytest.mark.timeout(30)
+@pytest.mark.skipif(not system.has_supervision(), reason="nobody can adopt orphans here")
+def test_who_looks_like_one_that_is_over_is_ended_as_well() -> None:
+    in_child(_one_without_its_first_thread_is_ended)
 
 
 def test_a_process_whose_end_nobody_has_asked_for_has_ended() -> None:
