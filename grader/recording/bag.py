@@ -11,10 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from rosbags.interfaces import Connection
-from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
 from grader.recording import rosbag2_reader
@@ -43,8 +41,7 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
 
     def records() -> Iterator[Record]:
         tick_ns = scene.tick_ns
-        for tick, topic, msgtype, message in scene.to_messages(trace):
-            data = message if type(message) is bytes else cdr(types, message, msgtype)
+        for tick, topic, msgtype, data in scene.to_messages(trace):
             yield connections.get(topic) or connection(topic, msgtype), tick * tick_ns, data
 
     with writer:
@@ -73,18 +70,6 @@ def read(mcap: Path, scene: Scene, ticks: int) -> Trace:
         raise
     except Exception as error:  # and where a message is, too
         raise RecordingError(f"the bag in {folder} holds no recording: {_brief(error)}") from error
-
-
-def prepare(scene: Scene) -> None:
-    """Make what reading any bag of a scene needs, once: a copy of this process has it then."""
-    types = types_of(scene.message_definitions())
-    for msgtype in scene.message_definitions():
-        types.get_msgdef(msgtype)
-
-
-def cdr(types: Typestore, message: Any, msgtype: str) -> bytes:
-    """A message of rosbags, serialized."""
-    return bytes(types.serialize_cdr(message, msgtype, little_endian=True))
 
 
 def _brief(error: Exception) -> str:

@@ -36,8 +36,6 @@ WINDOW_PICTURE = "window.png"
 PICTURES = ("path.png", "plan.png", WINDOW_PICTURE)
 #: The scene of a recording that names none.
 FIRST_SCENE = "turtlesim"
-#: The one whose traces tell of packages.
-PACKAGE_SCENE = "package"
 #: In the order in which they come into the folder.
 FILES = (
     *(BAG, RUN, OUTPUT, CONDUCT, PACKAGE, CIRCUMSTANCES_FILE, SCENARIO),

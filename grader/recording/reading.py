@@ -25,7 +25,6 @@ from grader.recording.folder import (
     METADATA,
     OUTPUT,
     PACKAGE,
-    PACKAGE_SCENE,
     PHRASES,
     PROVENANCE,
     RUN,
@@ -36,7 +35,8 @@ from grader.recording.folder import (
 )
 from grader.recording.provenance import Provenance
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
-from grader.scenes import load_scene
+from grader.scenes import load_scene, transfer
+from grader.scenes.package.trace import decode
 from grader.scenes.scene import Scene, Start, Trace
 
 if TYPE_CHECKING:
@@ -236,14 +236,12 @@ def _loaded(found: Sequence[_Told]) -> list[Recording]:
     One copy of this process reads them all, each within the limits.
     """
     bags = bag()
-    for scene in {told.scene.name: told.scene for told in found}.values():
-        bags.prepare(scene)
 
     def answer(number: int) -> bytes:
         told = found[number]
         try:
             trace = bags.read(told.folder / BAG, told.scene, told.run.ticks)
-            return told.scene.encode(trace)
+            return transfer.pack(trace, told.scene)
         except RecordingError as error:
             return _ERROR + error.message.encode("utf-8", "backslashreplace")
 
@@ -264,7 +262,7 @@ def _trace(told: _Told, copy: limited.Copy, number: int) -> Trace:
         ) from None
     if answer.startswith(_ERROR):
         raise RecordingError(answer.removeprefix(_ERROR).decode())
-    return told.scene.decode(answer)
+    return transfer.unpack(answer, told.scene)
 
 
 def _recording(told: _Told, trace: Trace) -> Recording:
@@ -287,7 +285,7 @@ def _package(path: Path) -> Trace | None:
     if not path.exists():
         return None
     try:
-        return load_scene(PACKAGE_SCENE).decode(path.read_bytes())
+        return decode(path.read_bytes())
     except OSError as error:
         raise RecordingError(say("cannot read the recording: {error}", error=str(error))) from None
     except ValueError as error:

@@ -23,7 +23,6 @@ from grader.recording.folder import (
     NAME,
     OUTPUT,
     PACKAGE,
-    PACKAGE_SCENE,
     PHRASES,
     PROVENANCE,
     RUN,
@@ -35,6 +34,7 @@ from grader.recording.folder import (
 )
 from grader.recording.recording import Recording, Recordings
 from grader.scenes import load_scene
+from grader.scenes.package.trace import PackageTrace, encode
 
 #: Where the files are written before they come into the folder.
 UNFINISHED = ".unfinished"
@@ -186,7 +186,7 @@ def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     if recording.conduct.is_told:
         _write_json(folder / CONDUCT, recording.conduct.to_json())
     if recording.package is not None:
-        told = load_scene(PACKAGE_SCENE).encode(recording.package)
+        told = encode(PackageTrace.of(recording.package))
         (folder / PACKAGE).write_bytes(told + b"\n")
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)

@@ -1,6 +1,6 @@
 """The file in which the simulator's process leaves what it has recorded.
 
-The topics as JSON, behind its length in eight bytes; then the trace as its scene encodes it.
+The topics as JSON, behind its length in eight bytes; then the trace (`grader.scenes.transfer`).
 Nothing is unpickled: whoever wrote the file could have the grader do as he likes.
 """
 
@@ -14,6 +14,7 @@ from struct import Struct
 from grader.errors import GraderFailure
 from grader.language.phrase import say
 from grader.recording.recording import PublishedTopic
+from grader.scenes import transfer
 from grader.scenes.scene import Scene, Trace
 
 _LENGTH = Struct("<Q")
@@ -24,7 +25,7 @@ MOST_BYTES = 256_000_000
 def leave(path: Path, scene: Scene, trace: Trace, topics: tuple[PublishedTopic, ...]) -> None:
     """In the simulator's process: write it."""
     facts = json.dumps([asdict(topic) for topic in topics]).encode()
-    path.write_bytes(_LENGTH.pack(len(facts)) + facts + scene.encode(trace))
+    path.write_bytes(_LENGTH.pack(len(facts)) + facts + transfer.pack(trace, scene))
 
 
 def _topic(words: dict[str, str]) -> PublishedTopic:
@@ -50,7 +51,7 @@ def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
         end = _LENGTH.size + length
         # of bytes, json.loads would guess the encoding
         topics = tuple(map(_topic, json.loads(data[_LENGTH.size : end].decode("utf-8"))))
-        return scene.decode(data[end:]), topics
+        return transfer.unpack(data[end:], scene), topics
     except Exception as error:
         raise GraderFailure(
             say("the simulator left no recording: {why}", why=str(error)[:200])

@@ -31,7 +31,7 @@ from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
 from grader.scenes import load_scene
 from grader.scenes.package.by_itself import unlike_launched
-from grader.scenes.package.trace import FAILED, PackageTrace
+from grader.scenes.package.trace import FAILED, PackageTrace, decode
 from grader.scenes.scene import Scene, Trace
 from grader.submission.opening import EntryPoint, Submission, Whole
 
@@ -184,7 +184,7 @@ def _fetch(file: int, scene: Scene) -> tuple[Trace, str]:
             data = opened.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
             raise ValueError(f"more than {MOST_BYTES} bytes")
-        return scene.decode(data), ""
+        return decode(data), ""
     except (OSError, ValueError, RecursionError) as error:
         return scene.untouched(None), f"{error!s:.200}"
 

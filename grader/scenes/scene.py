@@ -200,15 +200,12 @@ class Simulation(Protocol):
 
 
 class Message(NamedTuple):
-    """A message of a bag: its tick, topic, ROS type, and itself.
-
-    Itself in the types of rosbags; or, on the way into a bag, as the bytes of its CDR.
-    """
+    """A message of a bag: its tick, topic, ROS type, and its CDR."""
 
     tick: int
     topic: str
     msgtype: str
-    message: Any
+    data: bytes
 
 
 class Scene(Protocol):
@@ -311,16 +308,6 @@ class Scene(Protocol):
     def untouched(self, start: Start | None) -> Trace:
         """What a run leaves in which nothing could be recorded, not even the time."""
 
-    def encode(self, trace: Trace) -> bytes:
-        """A trace's bytes, for the way from the simulator's process to the grader's."""
-
-    def decode(self, data: bytes) -> Trace:
-        """The trace that bytes mean.
-
-        Raises:
-            ValueError: they mean none.
-        """
-
     # Recordings -------------------------------------------------------------------------------
 
     def message_definitions(self) -> Mapping[str, str]:
@@ -339,7 +326,7 @@ class Scene(Protocol):
             ticks: how many were recorded.
 
         Raises:
-            Exception: they are not from `to_messages`; also rosbags' own.
+            ValueError, KeyError, TypeError: they are not from `to_messages`.
         """
 
     def scenario(self, trace: Trace) -> dict[str, Any]:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
+from grader.scenes.cdr import string, string_of
 from grader.scenes.channel import Channel
-from grader.scenes.message_types import types_of
 from grader.scenes.package.trace import PackageTrace, decode, encode
 from grader.scenes.scene import Message
 
@@ -17,8 +17,7 @@ DEFINITIONS: Final = {TYPE: "string data\n"}
 
 def to_messages(trace: PackageTrace) -> list[Message]:
     """A trace as messages."""
-    text = encode(trace).decode("ascii")
-    return [Message(0, TOPIC, TYPE, types_of(DEFINITIONS).types[TYPE](data=text))]
+    return [Message(0, TOPIC, TYPE, string(encode(trace).decode("ascii")))]
 
 
 def from_channels(channels: Sequence[Channel]) -> PackageTrace:
@@ -26,10 +25,8 @@ def from_channels(channels: Sequence[Channel]) -> PackageTrace:
 
     Raises:
         ValueError: they are not from `to_messages`.
-        rosbags.serde.SerdeError: the message cannot be read.
     """
     found = [(each.topic, each.msgtype, each.ticks.tolist()) for each in channels]
     if found != [(TOPIC, TYPE, [0])]:
         raise ValueError(f"expected one message on {TOPIC}, found {found!r:.80}")
-    message: Any = types_of(DEFINITIONS).deserialize_cdr(next(channels[0].messages()), TYPE)
-    return decode(str(message.data).encode("ascii"))
+    return decode(string_of(next(channels[0].messages())).encode("ascii"))

@@ -10,7 +10,7 @@ import numpy as np
 from grader.language.phrase import say
 from grader.language.telling import tell
 from grader.scenes.channel import Channel
-from grader.scenes.package import described, messages, trace, view
+from grader.scenes.package import described, messages, view
 from grader.scenes.package.trace import PackageTrace
 from grader.scenes.scene import (
     Behaviour,
@@ -85,14 +85,6 @@ class Package:
     def untouched(self, start: Start | None) -> Trace:
         """What is left where nobody could look."""
         return PackageTrace()
-
-    def encode(self, made: Trace) -> bytes:
-        """A trace as JSON."""
-        return trace.encode(PackageTrace.of(made))
-
-    def decode(self, data: bytes) -> Trace:
-        """The trace that bytes mean; ValueError: they mean none."""
-        return trace.decode(data)
 
     def message_definitions(self) -> Mapping[str, str]:
         """That of the one message that holds the trace."""

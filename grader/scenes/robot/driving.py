@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from types import SimpleNamespace
 from typing import Any
 
-from grader.scenes.robot import cdr
+from grader.scenes import cdr
+from grader.scenes.robot import decoding
 from grader.scenes.robot.recorder import Recorder
 from grader.scenes.robot.trace import DESCRIPTION, JOINT_STATES, TF, TF_STATIC, TICK_NS, RobotTrace
 from robot_py import robot_state
@@ -30,7 +31,7 @@ def drive(controller: Controller, ticks: int, description: str) -> RobotTrace:
         recorder.publishes(topic, data)
         recorder.hears(topic, data)
 
-    send(DESCRIPTION, cdr.string(SimpleNamespace(data=description)))
+    send(DESCRIPTION, cdr.string(description))
     send(TF_STATIC, tf(*state.robot.fixed("", EPOCH_NS))[1])
     for tick in range(1, ticks + 1):
         now_ns = EPOCH_NS + tick * TICK_NS
@@ -48,7 +49,7 @@ def joint_state(stamp_ns: int, names: Sequence[str], positions: Sequence[float])
     message = SimpleNamespace(
         header=_header(stamp_ns, ""), name=names, position=positions, velocity=(), effort=()
     )
-    return JOINT_STATES, cdr.joint_state(message)
+    return JOINT_STATES, decoding.joint_state_bytes(message)
 
 
 def tf(*placed: Placed, topic: str = TF) -> Said:
@@ -63,12 +64,10 @@ def tf(*placed: Placed, topic: str = TF) -> Said:
         )
         for one in placed
     ]
-    return topic, cdr.tf_message(SimpleNamespace(transforms=each))
+    return topic, decoding.tf_bytes(SimpleNamespace(transforms=each))
 
 
 def _state(data: bytes) -> robot_state.JointState:
-    from grader.scenes.robot import decoding
-
     said = decoding.joint_states(0, data)
     return robot_state.JointState(said.stamp_ns, said.names, said.positions)
 

@@ -14,9 +14,9 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+from grader.scenes.cdr import string, string_of
 from grader.scenes.channel import Channel
-from grader.scenes.message_types import types_of
-from grader.scenes.robot.decoding import DEFINITIONS, STRING, text
+from grader.scenes.robot.decoding import STRING
 from grader.scenes.robot.trace import TOPICS, Heard, Publisher, RobotTrace, check, json_facts
 from grader.scenes.scene import Message
 
@@ -29,9 +29,8 @@ def to_messages(trace: RobotTrace) -> list[Message]:
     found: list[Message] = [
         Message(tick, topic, TOPICS[topic], data) for tick, topic, _, data in trace.messages
     ]
-    said = types_of(DEFINITIONS).types[STRING](json_facts(trace))
     last = max([trace.ticks, *(message.tick for message in found[-1:])])
-    return [*found, Message(last, PUBLISHERS, STRING, said)]
+    return [*found, Message(last, PUBLISHERS, STRING, string(json_facts(trace)))]
 
 
 def from_channels(channels: Sequence[Channel], ticks: int) -> RobotTrace:
@@ -39,7 +38,6 @@ def from_channels(channels: Sequence[Channel], ticks: int) -> RobotTrace:
 
     Raises:
         ValueError, KeyError, TypeError: they are not what `to_messages` makes.
-        rosbags.serde.SerdeError: a message cannot be read.
     """
     by_topic = {channel.topic: channel for channel in channels}
     said = _publishers(by_topic.pop(PUBLISHERS))
@@ -61,7 +59,7 @@ def _publishers(channel: Channel) -> dict[str, str]:
     if channel.msgtype != STRING or len(channel) != 1:
         found = f"{len(channel)} of {channel.msgtype}"
         raise ValueError(f"{PUBLISHERS}: expected one {STRING}, found {found}")
-    said: Any = json.loads(text(next(channel.messages())))
+    said: Any = json.loads(string_of(next(channel.messages())))
     if not isinstance(said, dict) or not all(isinstance(each, str) for each in said.values()):
         raise ValueError(f"{PUBLISHERS}: expected topics with letters, found {said!r:.80}")
     return said

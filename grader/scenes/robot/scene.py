@@ -97,14 +97,6 @@ class RobotScene:
         """Nothing."""
         return RobotTrace(0)
 
-    def encode(self, made: Trace) -> bytes:
-        """A trace's bytes."""
-        return trace.encode(RobotTrace.of(made))
-
-    def decode(self, data: bytes) -> Trace:
-        """The trace that bytes mean; ValueError: they mean none."""
-        return trace.decode(data)
-
     def message_definitions(self) -> Mapping[str, str]:
         """Those of joint states, transforms and texts."""
         return decoding.DEFINITIONS

@@ -13,7 +13,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
-from grader.scenes.robot import cdr
+from grader.scenes import cdr
+from grader.scenes.robot import decoding
 from grader.scenes.robot.recorder import Recorder
 from grader.scenes.robot.trace import DESCRIPTION, JOINT_STATES, TF, TF_STATIC
 from robot_py import robot_state
@@ -30,10 +31,10 @@ AS_STATIC_LISTENER = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIE
 
 #: Topic -> the bytes in which its messages are recorded.
 BYTES: dict[str, Callable[[Any], bytes]] = {
-    JOINT_STATES: cdr.joint_state,
-    TF: cdr.tf_message,
-    TF_STATIC: cdr.tf_message,
-    DESCRIPTION: cdr.string,
+    JOINT_STATES: decoding.joint_state_bytes,
+    TF: decoding.tf_bytes,
+    TF_STATIC: decoding.tf_bytes,
+    DESCRIPTION: lambda message: cdr.string(message.data),
 }
 
 

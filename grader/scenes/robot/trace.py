@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, Self
+from typing import Literal, NamedTuple, Self
 
-import numpy as np
-import numpy.typing as npt
-
+from grader.scenes.cdr import string_of
 from grader.scenes.robot import decoding
 from grader.scenes.robot.decoding import JointStates, Transform
 from grader.scenes.scene import Trace
@@ -31,7 +27,6 @@ TOPICS = {
     TF_STATIC: "tf2_msgs/msg/TFMessage",
     DESCRIPTION: "std_msgs/msg/String",
 }
-_NAMES = tuple(TOPICS)
 
 Publisher = Literal["scene", "submission"]
 
@@ -87,7 +82,7 @@ class RobotTrace:
     def description(self) -> str:
         """The URDF that the scene published; '' where nothing was recorded."""
         found = self.on(DESCRIPTION, "scene")
-        return decoding.text(found[0].data) if found else ""
+        return string_of(found[0].data) if found else ""
 
     @cached_property
     def robot(self) -> Robot | None:
@@ -122,53 +117,6 @@ class RobotTrace:
         return digest.hexdigest()
 
 
-# From one process to another ------------------------------------------------------------------
-
-
-def encode(trace: RobotTrace) -> bytes:
-    """Bytes of a trace: arrays as numpy writes them; nothing is pickled."""
-    messages = trace.messages
-    data = io.BytesIO()
-    np.savez(
-        data,
-        allow_pickle=False,
-        ticks=np.array([trace.ticks, *(m.tick for m in messages)], dtype=np.int64),
-        topics=np.array([_NAMES.index(m.topic) for m in messages], dtype=np.uint8),
-        theirs=np.array([m.publisher == "submission" for m in messages], dtype=np.uint8),
-        ends=np.cumsum([len(m.data) for m in messages], dtype=np.int64),
-        data=np.frombuffer(b"".join(m.data for m in messages), dtype=np.uint8),
-    )
-    return data.getvalue()
-
-
-def decode(data: bytes) -> RobotTrace:
-    """The trace that bytes mean.
-
-    Raises:
-        ValueError: they mean none.
-    """
-    try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            _refuse_packed(arrays.zip)
-            ticks, ends = (_array(arrays[n], np.int64).tolist() for n in ("ticks", "ends"))
-            topics, theirs = (_array(arrays[n], np.uint8).tolist() for n in ("topics", "theirs"))
-            whole = _array(arrays["data"], np.uint8).tobytes()
-        (all_ticks, *each) = ticks
-        found = []
-        begin = 0
-        for tick, topic, is_theirs, end in zip(each, topics, theirs, ends, strict=True):
-            if not begin <= end <= len(whole):
-                raise ValueError(f"a message ends at {end} of {len(whole)} bytes")
-            publisher: Publisher = "submission" if is_theirs else "scene"
-            found.append(Heard(tick, _NAMES[topic], publisher, whole[begin:end]))
-            begin = end
-        trace = RobotTrace(all_ticks, tuple(found))
-        check(trace)
-    except Exception as error:  # numpy's reader may raise anything
-        raise ValueError(f"no trace of a robot: {type(error).__name__}: {error}") from error
-    return trace
-
-
 def check(trace: RobotTrace) -> None:
     """See whether a trace that comes from outside can be one.
 
@@ -181,7 +129,7 @@ def check(trace: RobotTrace) -> None:
         if not before <= tick <= trace.ticks + 1:
             raise ValueError(f"{topic}: a message at tick {tick} of {trace.ticks}")
         before = tick
-        decoding.look(TOPICS[topic], data)
+        decoding.check(TOPICS[topic], data)
 
 
 def json_facts(trace: RobotTrace) -> str:
@@ -193,15 +141,3 @@ def json_facts(trace: RobotTrace) -> str:
             for topic in TOPICS
         }
     )
-
-
-def _refuse_packed(archive: zipfile.ZipFile) -> None:
-    """What is not packed is no longer than the bytes in which it lies."""
-    if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
-        raise ValueError("something in it is packed")
-
-
-def _array(array: npt.NDArray[Any], kind: type[Any]) -> npt.NDArray[Any]:
-    if array.dtype != kind or array.ndim != 1:
-        raise ValueError(f"expected {kind.__name__}, found {array.dtype} of {array.shape}")
-    return array

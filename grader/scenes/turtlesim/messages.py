@@ -21,8 +21,8 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from grader.scenes.cdr import MARK, Reader, Writer, string, string_of
 from grader.scenes.channel import Channel
-from grader.scenes.message_types import types_of
 from grader.scenes.scene import Message
 from grader.scenes.turtlesim import bounds
 from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace
@@ -55,7 +55,7 @@ DEFINITIONS = {
     "uint8 is_bigendian\nuint32 step\nuint8[] data\n",
 }
 #: A pose, a colour and a command as CDR: the mark of little-endian plain CDR, then the fields.
-_CDR_MARK = (0, 1, 0, 0)
+_CDR_MARK = tuple(MARK)
 _POSE_CDR = np.dtype([("mark", "u1", 4), ("fields", "<f4", 5)])
 _COLOR_CDR = np.dtype([("mark", "u1", 4), ("fields", "u1", 3)])
 _TWIST_CDR = np.dtype([("mark", "u1", 4), ("fields", "<f8", 6)])
@@ -113,32 +113,40 @@ def _cdr(columns: npt.NDArray[np.float64], layout: np.dtype[np.void]) -> list[by
 def _input(event: Event) -> Message:
     """A velocity command as a Twist, all else as JSON."""
     if isinstance(event, CmdVel):
-        twist = _made(TWIST, _made(VECTOR, *event.linear), _made(VECTOR, *event.angular))
+        fields = np.array([[*event.linear, *event.angular]])
+        (twist,) = _cdr(fields, _TWIST_CDR)
         return Message(event.tick, f"/{event.turtle}/cmd_vel", TWIST, twist)
-    text = _made(STRING, json.dumps(to_json(event)))
-    return Message(event.tick, EVENTS, STRING, text)
+    return Message(event.tick, EVENTS, STRING, string(json.dumps(to_json(event))))
 
 
-def _log(tick: int, severity: str, name: str, text: str) -> Any:
-    # CDR is UTF-8, which cannot hold half a surrogate pair.
-    text = text.encode("utf-8", "replace").decode("utf-8")
-    return _made(LOG, _time(tick), LEVELS[severity], name, text, "", "", 0)
+def _log(tick: int, severity: str, name: str, text: str) -> bytes:
+    made = Writer()
+    _stamp(made, tick)
+    made.number("B", LEVELS[severity])
+    for each in (name, text, "", ""):  # no file, no function
+        made.text(each)
+    made.number("I", 0)  # no line
+    return made.message()
 
 
-def _image(pixels: Pixels, encoding: str, tick: int) -> Any:
+def _image(pixels: Pixels, encoding: str, tick: int) -> bytes:
     height, width, channels = pixels.shape
-    header = _made(HEADER, _time(tick), "")
-    step = width * channels
-    return _made(IMAGE, header, height, width, encoding, 0, step, pixels.reshape(-1))
+    made = Writer()
+    _stamp(made, tick)
+    made.text("")
+    made.number("I", height)
+    made.number("I", width)
+    made.text(encoding)
+    made.number("B", 0)
+    made.number("I", width * channels)
+    made.octets(pixels.tobytes())
+    return made.message()
 
 
-def _time(tick: int) -> Any:
-    return _made(TIME, *divmod(tick * TICK_NS, 1_000_000_000))
-
-
-def _made(msgtype: str, *fields: Any) -> Any:
-    """A message in the types of rosbags."""
-    return types_of(DEFINITIONS).types[msgtype](*fields)
+def _stamp(made: Writer, tick: int) -> None:
+    seconds, nanoseconds = divmod(tick * TICK_NS, 1_000_000_000)
+    made.number("i", seconds)
+    made.number("I", nanoseconds)
 
 
 # Channels to a trace --------------------------------------------------------------------------
@@ -149,7 +157,6 @@ def from_channels(channels: Sequence[Channel], ticks: int) -> TurtleTrace:
 
     Raises:
         ValueError, KeyError, TypeError: they are not what `to_messages` makes.
-        rosbags.serde.SerdeError: a message cannot be read.
     """
     by_topic = {channel.topic: channel for channel in channels}
     events: list[tuple[int, Event]] = []
@@ -200,13 +207,6 @@ def _rows(channel: Channel, msgtype: str, layout: np.dtype[np.void]) -> npt.NDAr
     return np.asarray(rows["fields"])
 
 
-def _made_of(channel: Channel) -> Iterator[tuple[int, Any]]:
-    """The messages of a channel in the types of rosbags, with their ticks."""
-    types = types_of(DEFINITIONS)
-    for tick, data in zip(channel.ticks.tolist(), channel.messages(), strict=True):
-        yield tick, types.deserialize_cdr(data, channel.msgtype)
-
-
 def _commands(channel: Channel) -> Iterator[CmdVel]:
     turtle = channel.topic.removeprefix("/").removesuffix("/cmd_vel")
     rows = _rows(channel, TWIST, _TWIST_CDR)
@@ -215,13 +215,18 @@ def _commands(channel: Channel) -> Iterator[CmdVel]:
 
 
 def _inputs(channel: Channel) -> Iterator[Event]:
-    for _, message in _made_of(channel):
-        yield from_json(_object(message.data))
+    for data in channel.messages():
+        yield from_json(_object(string_of(data)))
 
 
 def _logs(channel: Channel) -> Iterator[Log]:
-    for tick, message in _made_of(channel):
-        yield Log(tick, SEVERITIES[message.level], message.name, message.msg)
+    for tick, data in zip(channel.ticks.tolist(), channel.messages(), strict=True):
+        read = Reader(data)
+        read.stamp_ns()
+        severity, name, text = SEVERITIES[read.number("B")], read.text(), read.text()
+        read.text(), read.text(), read.number("I")
+        read.end()
+        yield Log(tick, severity, name, text)
 
 
 def _object(text: str) -> dict[str, Any]:
@@ -242,9 +247,13 @@ def _picture(channel: Channel) -> Pixels:
     if channel.msgtype != IMAGE or len(channel) != 1:
         found = f"{len(channel)} of {channel.msgtype}"
         raise ValueError(f"{channel.topic}: expected one {IMAGE}, found {found}")
-    ((_, image),) = _made_of(channel)
-    encoding = ENCODINGS[channel.topic]
-    if image.encoding != encoding:
-        raise ValueError(f"a picture has the encoding {image.encoding!r}, expected {encoding!r}")
-    pixels: Pixels = image.data.reshape(image.height, image.width, len(encoding) - 1)
-    return pixels
+    read = Reader(next(channel.messages()))
+    read.stamp_ns(), read.text()
+    height, width, encoding = read.number("I"), read.number("I"), read.text()
+    read.number("B"), read.number("I")
+    data = read.octets()
+    read.end()
+    expected = ENCODINGS[channel.topic]
+    if encoding != expected:
+        raise ValueError(f"a picture has the encoding {encoding!r:.40}, expected {expected!r}")
+    return np.frombuffer(data, np.uint8).reshape(height, width, len(expected) - 1)

@@ -25,7 +25,6 @@ from grader.scenes.turtlesim import (
     interfaces,
     remarks,
     starts,
-    trace,
     trying,
     view,
 )
@@ -102,14 +101,6 @@ class Turtlesim:
         from grader.scenes.turtlesim.driving import drive
 
         return drive(lambda *_: None, 0, start)[0]
-
-    def encode(self, made: Trace) -> bytes:
-        """A trace's bytes."""
-        return trace.encode(TurtleTrace.of(made))
-
-    def decode(self, data: bytes) -> Trace:
-        """The trace that bytes mean; ValueError: they mean none."""
-        return trace.decode(data)
 
     def message_definitions(self) -> Mapping[str, str]:
         """Turtlesim's messages, and ROS's own in its bags."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self, TypeVar
+from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -90,81 +88,3 @@ class TurtleTrace:
             digest.update(self.trajectories[name].rows().tobytes())
         digest.update(json.dumps([inputs.to_json(event) for event in self.events]).encode())
         return digest.hexdigest()
-
-
-# From one process to another ------------------------------------------------------------------
-
-
-def encode(trace: TurtleTrace) -> bytes:
-    """Bytes of a trace: arrays as numpy writes them, all else as JSON; nothing is pickled."""
-    facts = {
-        "ticks": trace.ticks,
-        "events": [inputs.to_json(event) for event in trace.events],
-        "turtles": list(trace.trajectories),
-        "logs": trace.logs,
-    }
-    rows = {f"rows_{n}": t.rows() for n, t in enumerate(trace.trajectories.values())}
-    facts_utf8 = json.dumps(facts).encode()
-    data = io.BytesIO()
-    np.savez(
-        data,
-        allow_pickle=False,
-        facts=np.frombuffer(facts_utf8, dtype=np.uint8),
-        canvas=trace.canvas,
-        window=trace.window,
-        **rows,
-    )
-    return data.getvalue()
-
-
-def decode(data: bytes) -> TurtleTrace:
-    """The trace that bytes mean.
-
-    Raises:
-        ValueError: they mean none.
-    """
-    try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            _refuse_packed(arrays.zip)
-            facts = json.loads(arrays["facts"].tobytes())
-            return TurtleTrace(
-                ticks=_of_type(int, facts["ticks"]),
-                events=tuple(map(inputs.from_json, facts["events"])),
-                trajectories={
-                    _of_type(str, name): Trajectory.of_rows(_rows(arrays[f"rows_{n}"]))
-                    for n, name in enumerate(facts["turtles"])
-                },
-                logs=tuple(_log(*line) for line in facts["logs"]),
-                canvas=_pixels(arrays["canvas"], 4),
-                window=_pixels(arrays["window"], 3),
-            )
-    except Exception as error:  # numpy's reader may raise anything
-        raise ValueError(f"no trace of turtlesim: {type(error).__name__}: {error}") from error
-
-
-def _refuse_packed(archive: zipfile.ZipFile) -> None:
-    """What is not packed is no longer than the bytes in which it lies."""
-    if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
-        raise ValueError("something in it is packed")
-
-
-def _of_type(kind: type[Value], value: Any) -> Value:
-    if type(value) is not kind:
-        raise TypeError(f"expected {kind.__name__}, found {value!r:.80}")
-    return value
-
-
-def _log(tick: Any, severity: Any, name: Any, text: Any) -> Log:
-    return Log(_of_type(int, tick), *(_of_type(str, word) for word in (severity, name, text)))
-
-
-def _rows(array: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    if array.dtype != np.float64:
-        raise ValueError(f"rows are {array.dtype}")
-    return array
-
-
-def _pixels(array: npt.NDArray[Any], channels: int) -> Pixels:
-    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] != channels:
-        raise ValueError(f"a picture is {array.dtype} of the shape {array.shape}")
-    return array

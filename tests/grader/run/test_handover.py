@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from grader.errors import GraderFailure
 from grader.recording.recording import PublishedTopic
 from grader.run.handover import fetch, leave
-from grader.scenes import load_scene
+from grader.scenes import load_scene, transfer
 from grader.scenes.scene import Scene
 from grader.scenes.turtlesim.trace import TurtleTrace
 from tests.grader.driving import Spiral, drive
@@ -124,7 +124,7 @@ def test_a_file_that_is_cut_off_is_a_failure(file, left, scene, part):
     ],
 )
 def test_topics_that_are_none_are_a_failure(file, left, scene, trace, topics):
-    put(file, pack("<Q", len(topics)) + topics + scene.encode(trace))
+    put(file, pack("<Q", len(topics)) + topics + transfer.pack(trace, scene))
     failure(file, scene)
 
 
