@@ -21,7 +21,7 @@ from measuring import Sample, group, machine, spread
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from grader import grading  # noqa: E402
+from grader import grading, judging  # noqa: E402
 from grader.batch.page.thumb import thumb  # noqa: E402
 from grader.batch.similar import signature, sources  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
@@ -69,13 +69,13 @@ def steps(submissions: list[Path], folder: Path) -> dict[str, list[float]]:
             signature.signature(place / sources.SOURCE, recordings.nominal)
             thumb(recordings)
             took("for the pages of the class")
-        grading.save_recordings(recordings, place / "recording")
+        judging.save_recordings(recordings, place / "recording")
         took("write recordings")
-        result = grading.judge(recordings, exercise, submission="x")
+        result = judging.judge(recordings, exercise, submission="x")
         took("judge")
         render("html", [Report.of(result, place, recordings, "whole")])
         took("report page")
-        grading.judge(grading.load_recordings(place / "recording"), exercise)
+        judging.judge(judging.load_recordings(place / "recording"), exercise)
         took("(a regrade: read and judge)")
     return found
 

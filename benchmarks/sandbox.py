@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT))  # this checkout, whatever is installed
 
 from grader import scratch
 from grader.run.processes import isolation, levels
-from grader.run.processes.family import start_student
+from grader.run.processes.family import Student
 from grader.run.processes.zygote import Warm, Zygote
 
 #: A program that ends at once, started or forked; what a zygote is told comes after its code.
@@ -63,7 +63,7 @@ def measure(
             place = levels.prepare(
                 level, submission, submission, folder, is_apart=bool(isolated.namespaces)
             )
-            student = start_student(
+            student = Student(
                 *(COMMAND, {**env, **place.env}, submission, (), isolated.entry),
                 None if warm is None else Warm(warm, isolated.namespaces),
                 place.order,

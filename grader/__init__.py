@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from grader.exercise.exercise import Exercise
     from grader.exercise.loading import load_exercise
     from grader.exercise.verdict import Evidence, Expected, Finding, Verdict
-    from grader.grading import grade, judge, load_recordings, record, save_recordings
+    from grader.grading import grade, record
+    from grader.judging import judge, load_recordings, save_recordings
     from grader.recording.recording import Recording, Recordings
     from grader.result.result import Result
     from grader.result.visible import student_view
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
 
 #: module -> its public names
 _PUBLIC = {
-    "grader.grading": ("grade", "judge", "load_recordings", "record", "save_recordings"),
+    "grader.grading": ("grade", "record"),
+    "grader.judging": ("judge", "load_recordings", "save_recordings"),
     "grader.submission.opening": ("open_submission",),
     "grader.exercise.exercise": ("Exercise",),
     "grader.exercise.loading": ("load_exercise",),

@@ -1,14 +1,13 @@
 """Grade a submission: run it, judge what was recorded, put the result together.
 
-`grade` does all of it, `record` and `judge` one half each. They change nothing of the process that
-calls them (no signal handler, no current folder, no environment variable), and may be called from
-any thread, several at once.
+`grade` does all of it, `record` one half, `grader.judging.judge` the other. They change nothing of
+the process that calls them (no signal handler, no current folder, no environment variable), and may
+be called from any thread, several at once.
 """
 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -18,15 +17,13 @@ from pathlib import Path
 from typing import Protocol
 
 from grader import content, versions
-from grader.diagnosis.diagnose import diagnose
 from grader.errors import GraderFailure, UsageError
-from grader.exercise import DEFAULT, check, early
+from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
-from grader.exercise.loading import load_exercise
-from grader.recording import reading, saving
+from grader.judging import AnyPath, judge, loaded
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Clock, Recording, Recordings
-from grader.result.result import Result, build
+from grader.result.result import Result
 from grader.run import real_time, static, virtual_time
 from grader.run.audience import Audience
 from grader.run.budget import Budget
@@ -40,7 +37,6 @@ from grader.submission.opening import Submission, open_submission
 from grader.submission.private_copy import not_handed_in
 
 Progress = Callable[[float], None]
-AnyPath = str | os.PathLike[str]
 REPEATED = "repeated, because the first try failed in the grader"
 #: So many runs go at once even on less than two cores: each waits now and then.
 LEAST_AT_ONCE = 2
@@ -115,7 +111,7 @@ def grade(
         ExerciseError: there is no such exercise, or it cannot be used.
         GraderFailure: the grader itself failed, twice; never the submission's fault.
     """
-    asked = _loaded(exercise)
+    asked = loaded(exercise)
     with _opened(submission, executable, asked) as opened:
         recordings = _record(opened, asked, time, seed, progress)
         return judge(recordings, asked, submission=opened.name)
@@ -131,43 +127,9 @@ def record(
     progress: Progress | None = None,
 ) -> Recordings:
     """Run a submission, and do not judge it; see `grade`."""
-    asked = _loaded(exercise)
+    asked = loaded(exercise)
     with _opened(submission, executable, asked) as opened:
         return _record(opened, asked, time, seed, progress)
-
-
-def judge(
-    recordings: Recordings, exercise: AnyPath | Exercise = DEFAULT, *, submission: str = ""
-) -> Result:
-    """Judge what was recorded, as often as one likes.
-
-    Args:
-        submission: its name, for the result.
-
-    Raises:
-        ExerciseError: there is no such exercise, or it cannot be used.
-    """
-    asked = _loaded(exercise)
-    verdicts = check.judge(recordings, asked.checks, asked.points, asked.tolerances)
-    return build(submission, asked, recordings, verdicts, {}, diagnose(recordings, verdicts))
-
-
-def load_recordings(folder: AnyPath) -> Recordings:
-    """The recordings in the folder `recording` of a graded run.
-
-    Raises:
-        RecordingError: there are none that can be judged.
-    """
-    return reading.load_all(Path(folder))
-
-
-def save_recordings(recordings: Recordings, folder: AnyPath) -> None:
-    """Write recordings into a folder, as `grader run` does.
-
-    Raises:
-        OSError: it cannot be written.
-    """
-    saving.save_all(recordings, Path(folder))
 
 
 def run_all(
@@ -317,13 +279,6 @@ def gather(runs: Iterable[Finished]) -> Recordings:
     return Recordings(nominal, tuple(varied))
 
 
-def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "") -> Result:
-    """What the nominal run alone decides, as a result that lacks all other verdicts."""
-    verdicts = early.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
-    alone = Recordings(nominal)
-    return build(submission, exercise, alone, verdicts, {}, diagnose(alone, verdicts))
-
-
 def _record(
     submission: Submission,
     exercise: Exercise,
@@ -336,10 +291,6 @@ def _record(
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):
         raise UsageError(f"seed: expected a whole number, found {seed!r}")
     return run_all(submission, exercise, runner(exercise, time), seed=seed, progress=progress)
-
-
-def _loaded(exercise: AnyPath | Exercise) -> Exercise:
-    return exercise if isinstance(exercise, Exercise) else load_exercise(exercise)
 
 
 @contextmanager

@@ -122,7 +122,7 @@ class Copy:
         Raises:
             LimitHit: there is none; the next question is put to a new copy.
         """
-        if not system.has_limited_copies():
+        if not system.runs_submissions():
             return _within_python(self._answer, number)
         try:
             return self._ask(number)

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from grader import scratch
 from grader.run.processes import isolation, levels
-from grader.run.processes.family import start_student
+from grader.run.processes.family import Student
 
 
 def main(wanted: str, folder: str, *words: str) -> None:
@@ -32,7 +32,7 @@ def main(wanted: str, folder: str, *words: str) -> None:
             level, Path(folder), Path(folder), stage, is_apart=bool(isolated.namespaces)
         )
         command = [sys.executable, "-I", "-S", *words]
-        student = start_student(
+        student = Student(
             *(command, {**env, **place.env}, Path(folder), (), isolated.entry, None, place.order)
         )
         student.wait(60.0)

@@ -127,17 +127,18 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader.diagnosis", "diagnosis", "costliest"),
     "grader.reports": GROUND
     | below("grader", "recording", "scenes", "exercise.verdict", "result", "diagnosis.diagnosis"),
-    "grader.grading": GROUND | STATIONS - below("grader", "reports"),
-    "grader.__init__": GROUND | STATIONS | {"grader.grading"},
-    "grader.batch": GROUND | STATIONS | {"grader.grading", "grader.testing.solutions"},
+    "grader.judging": GROUND | STATIONS - below("grader", "reports", "run", "submission"),
+    "grader.grading": GROUND | STATIONS - below("grader", "reports") | {"grader.judging"},
+    "grader.__init__": GROUND | STATIONS | below("grader", "grading", "judging"),
+    "grader.batch": GROUND | STATIONS | below("grader", "grading", "judging", "testing.solutions"),
     "grader.testing": GROUND
     | STATIONS
-    | {"grader.__init__", "grader.grading", "turtlesim_py", "robot_py"},
+    | {*below("grader", "__init__", "grading", "judging"), "turtlesim_py", "robot_py"},
     # a page is shown as the simulator's is
     "grader.cli.live": GROUND | STATIONS | {"turtlesim_py.browser"},
     "grader.cli": GROUND
     | STATIONS
-    | below("grader", "__init__", "grading", "testing", "batch", "cli.live"),
+    | below("grader", "__init__", "grading", "judging", "testing", "batch", "cli.live"),
     # ... and so is the page that plays
     "grader.cli.view": GROUND
     | STATIONS

@@ -13,7 +13,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from grader import files, grading, scratch
+from grader import files, grading, judging, scratch
 from grader.batch.entry import Entry
 from grader.batch.find.joining import NOTHING, UNCLEAR
 from grader.batch.hand_in import HandIn
@@ -97,7 +97,7 @@ def _run(task: Task, exercise: Exercise) -> Recordings | str:
         told = ErrorResult.of(error, exercise.max_score)
         files.put(place / ERROR, json_file.text(told.to_json()).encode())
         return told.message
-    grading.save_recordings(recordings, place / RECORDING)
+    judging.save_recordings(recordings, place / RECORDING)
     return recordings
 
 
@@ -137,7 +137,7 @@ def _loaded(task: Task) -> Recordings | str | None:
         if os.path.lexists(error):
             data = json_file.read(error, is_ours=True)
             return json_file.made(ErrorResult.from_json, error, data).message
-        return grading.load_recordings(task.run / RECORDING)
+        return judging.load_recordings(task.run / RECORDING)
     except (RecordingError, UsageError):
         if task.path is None:
             raise
@@ -148,7 +148,7 @@ def _judge(
     recordings: Recordings, exercise: Exercise, hand_in: HandIn, task: Task, folder: Path
 ) -> None:
     """Everything about a student; the recording itself is linked when it comes to its place."""
-    result = grading.judge(recordings, exercise, submission=hand_in.name)
+    result = judging.judge(recordings, exercise, submission=hand_in.name)
     whose = HandedIn.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
     result = replace(result, artifacts=dict(ARTIFACTS), handed_in=whose)
     result.put(folder / RESULT)

@@ -21,6 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 try:  # somebody may think better of it at once
     import importlib
 
+    from grader import system
     from grader.cli import error_file, language
     from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
     from grader.language.phrase import say
@@ -48,6 +49,12 @@ VERBS = {
         "Try an exercise on its right solutions and mutants: who catches what, and what is to mend."
     ),
 }
+#: What runs submissions; all else works anywhere.
+NEED_LINUX = ("run", "batch", "check-exercise")
+ELSEWHERE = say(
+    "submissions are run on Linux with /proc, which this is not. Take WSL 2, a devcontainer or "
+    "Codespaces (docs/your-machine.md); grader check, view, report and new work here."
+)
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 #: A full disk, a closed folder: where they show is no place in our code.
 _OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
@@ -72,16 +79,20 @@ def load(verb: str) -> Any:
 
 def _main(words: Sequence[str]) -> int:
     language.choose(words)  # help and errors of the call are in it, too
+    if _asked(words) in NEED_LINUX and not system.runs_submissions():
+        _say(_who(_asked(words)), ELSEWHERE)
+        return UNUSABLE
     try:
         args = _parser(words).parse_args(words)
     except error_file.Misuse as error:
         said = tell("{prog}: error: {message}", prog=error.prog, message=error.message)
         print(f"{error.usage}{for_terminal(said)}", file=sys.stderr)
         return _misused(error, error_file.look_for(words))
-    from grader.run.processes import watched
+    if system.runs_submissions():
+        from grader.run.processes import watched
 
-    watched.adopt_orphans()
-    watched.end_on_signals()
+        watched.adopt_orphans()
+        watched.end_on_signals()
     try:
         error_file.prepare(args)
     except UsageError as error:
@@ -126,9 +137,14 @@ def _say(red: str, message: str = "") -> None:
     Console(stderr=True, soft_wrap=True, highlight=False).print(said)
 
 
+def _asked(words: Sequence[str]) -> str:
+    """The verb of a call; '' where there is none."""
+    return next((word for word in words if not word.startswith("-")), "")
+
+
 def _parser(words: Sequence[str]) -> error_file.Parser:
     """The parser of a call: of the verb that it asks for it knows the arguments."""
-    asked = next((word for word in words if not word.startswith("-")), None)
+    asked = _asked(words)
     parser = error_file.Parser(prog="grader", description=tell("Grade the turtlesim challenge."))
     known = _versions() if "--version" in words else ""
     shows = tell("show program's version number and exit")

@@ -8,7 +8,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from grader import files, grading
+from grader import files, judging
 from grader.cli import error_file
 from grader.cli.place import Place, find
 from grader.cli.run import points
@@ -65,7 +65,7 @@ def main(args: argparse.Namespace) -> int:
     exercise = _exercise(asked, place, recordings)
     origin = recordings.nominal.provenance
     name = (origin and origin.submission) or (place.older and place.older.submission) or place.name
-    result = grading.judge(recordings, exercise, submission=name)
+    result = judging.judge(recordings, exercise, submission=name)
     if place.older is not None and place.older.handed_in is not None:
         result = replace(result, handed_in=place.older.handed_in.by(exercise.late))
     _show(

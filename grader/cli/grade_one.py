@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.text import Text
 
-from grader import files, grading
+from grader import files, grading, judging
 from grader.cli import error_file, progress
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
@@ -98,7 +98,7 @@ def _run_and_judge(
             return
         from grader.reports import Report, terminal
 
-        known = grading.judge_nominal(nominal, exercise, submission=submission.name)
+        known = judging.judge_nominal(nominal, exercise, submission=submission.name)
         report = Report.of(known, out, Recordings(nominal))
         if args.watch:
             terminal.show_nominal(report, messages)
@@ -116,7 +116,7 @@ def _run_and_judge(
                 for module in LATER:
                     importlib.import_module(module)
             recordings = grading.gather(_kept(runs, len(plans), unsaved, tell))
-        result = grading.judge(recordings, exercise, submission=submission.name)
+        result = judging.judge(recordings, exercise, submission=submission.name)
         unsaved.put()
     return replace(result, artifacts=dict(ARTIFACTS)), recordings
 

@@ -81,7 +81,6 @@ KEYS = (
     marked("virtual time does not work here: {lack}"),
     marked("virtual time itself failed ({where})"),
     marked("virtual time does not fit rclpy {version}: {fault}"),
-    marked("virtual time needs {what}, which this system lacks"),
     marked("repeated, because the first try failed in the grader"),
     marked(
         "the simulator ended while the node was running, in both tries, and nothing was recorded: "

@@ -25,13 +25,7 @@ ROS = (
     *("ROS_DISTRO", "ROS_PYTHON_CHECK_FIELDS", "ROS_PYTHON_VERSION", "ROS_VERSION"),
     *("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH"),
 )
-#: What no program of Windows starts without, or finds its libraries.
-WINDOWS = (
-    *("SYSTEMROOT", "SYSTEMDRIVE", "WINDIR", "COMSPEC", "PATHEXT", "OS"),
-    *("PROGRAMDATA", "PROGRAMFILES", "PROGRAMFILES(X86)", "COMMONPROGRAMFILES"),
-    *("NUMBER_OF_PROCESSORS", "PROCESSOR_ARCHITECTURE"),
-)
-KEPT = frozenset((*PLACES, *MANNERS, *ROS, *(WINDOWS if os.name == "nt" else ())))
+KEPT = frozenset((*PLACES, *MANNERS, *ROS))
 
 
 def lasting_environment() -> dict[str, str]:
@@ -66,7 +60,6 @@ def environment(folder: Path, isolated: Mapping[str, str]) -> dict[str, str]:
         **lasting_environment(),
         **isolated,
         "HOME": str(folder / "home"),
-        **({"USERPROFILE": str(folder / "home")} if os.name == "nt" else {}),
         "ROS_LOG_DIR": str(folder / "log"),
         "TMPDIR": str(folder / "tmp"),
     }

@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from itertools import chain
 from typing import Any
 
-from grader import strict_json, system
+from grader import strict_json
 from grader.recording.conduct import Conduct
 from grader.run import dumps
 from grader.run.processes import usage
@@ -42,7 +42,7 @@ class Evidence:
     """
 
     def __init__(self) -> None:
-        self._reads, self.descriptor = os.pipe() if system.inherits_descriptors() else (-1, -1)
+        self._reads, self.descriptor = os.pipe()
         self._data = b""
         if self._reads >= 0:
             os.set_blocking(self._reads, False)

@@ -62,8 +62,7 @@ def run(
         simulator.expect("ready")
         submission = place.own(submission)
         words = command(submission, scene.introduction, told.descriptor)
-        fds = (told.descriptor,) if told.descriptor >= 0 else ()
-        student = place.student(words, submission, fds)
+        student = place.student(words, submission, (told.descriptor,))
         told.has_begun()
         began_s = time.monotonic()
 

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from grader import system
 from grader.errors import GraderFailure
 from grader.language.phrase import say
 from grader.run.audience import NOBODY, Seat
@@ -137,18 +136,8 @@ def start_simulator(
         command = [sys.executable, "-m", module, *words, seat.word]
         env = simulator_environment(stage.env)
         fds = (*line.fds, *links, stage.recording, *seat.fds)
-        fds = fds if system.inherits_descriptors() else ()
         process = Watched(command, env, stage.folder, fds, stage.entry, warm)
         try:
-            yield Simulator(process, _connect(line, process))
+            yield Simulator(process, line.connect())
         finally:
             process.end()
-
-
-def _connect(line: Line, process: Watched) -> socket.socket:
-    try:
-        return line.connect(lambda: process.poll() is None, SIMULATOR_PATIENCE_S)
-    except ConnectionError:
-        raise GraderFailure(
-            say("the simulator did not call: {output}", output=process.output()[-2000:])
-        ) from None

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
-import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader import scratch, system
+from grader import scratch
 from grader.run import zygotes
 from grader.run.budget import Budget
 from grader.run.environment import environment, student_environment, virtual_environment
 from grader.run.processes import isolation, levels
-from grader.run.processes.family import start_student
+from grader.run.processes.family import Student
 from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
@@ -63,8 +61,8 @@ class Stage:
 
     Attributes:
         folder: the current folder of the simulator.
-        recording: where the simulator leaves the recording: an open file, without a name where
-            that can be. The submission does not get it.
+        recording: where the simulator leaves the recording: an open file without a name. The
+            submission does not get it.
         recording_path: what opens it in the simulator's process.
         isolation: for the result: how the submission's process is confined, and what keeps the
             run apart from others.
@@ -121,7 +119,7 @@ class Stage:
         own = submission.copy.folder if submission.copy else root
         place = levels.prepare(self.level, root, own, self.folder, is_apart=is_apart)
         env = {**self.env, **env, **place.env}
-        return start_student(
+        return Student(
             *(command, env, root, pass_fds, self.entry, warm, place.order), budget=self.budget
         )
 
@@ -140,7 +138,7 @@ def open_stage(budget: Budget | None = None) -> Iterator[Stage]:
         level = levels.best(isolated)
         isolation_name = ", ".join(filter(None, [level.name(), isolated.name]))
         env = environment(folder, isolated.env)
-        recording, path = _make_recording(folder)
+        recording, path = _make_recording()
         try:
             yield Stage(
                 *(folder, recording, path, isolation_name, env),
@@ -150,15 +148,7 @@ def open_stage(budget: Budget | None = None) -> Iterator[Stage]:
             os.close(recording)
 
 
-def _make_recording(folder: Path) -> tuple[int, str]:
+def _make_recording() -> tuple[int, str]:
     """An open file for the recording, and what opens it in a process that we start."""
-    if not system.inherits_descriptors():
-        path = folder / f"recording-{uuid.uuid4().hex}"
-        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-        return os.open(path, flags), str(path)
-    if system.has_memfd():
-        descriptor = os.memfd_create("recording")
-    else:
-        with tempfile.TemporaryFile(dir=folder) as file:  # its name is gone at once
-            descriptor = os.dup(file.fileno())
-    return descriptor, system.descriptor_path(descriptor)
+    descriptor = os.memfd_create("recording")
+    return descriptor, f"/proc/self/fd/{descriptor}"

@@ -75,7 +75,7 @@ def command(side: str) -> list[str]:
 
 def zygote(side: str) -> Zygote | None:
     """That of a side; started if there is none that is as it would be now. None: there is none."""
-    if not system.has_pidfd() or not system.has_supervision():
+    if not system.has_pidfd():
         return None
     words = command(side)
     if side == STUDENT:
@@ -128,5 +128,4 @@ def _forget() -> None:
 
 
 atexit.register(close)
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget)
+os.register_at_fork(after_in_child=_forget)

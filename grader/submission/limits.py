@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import signal
 from typing import Final
 
@@ -16,11 +17,7 @@ WALL_S: Final = 120
 
 
 def take() -> None:
-    """Limit this process, for good. What cannot be limited on this system stays as it is."""
-    try:
-        import resource
-    except ImportError:  # Windows; there whoever has started us is the only one to limit us
-        return
+    """Limit this process, for good."""
     signal.alarm(WALL_S + 1)  # who has started us may be no more
     for kind, soft, hard in (
         (resource.RLIMIT_AS, MEMORY_BYTES, MEMORY_BYTES),
@@ -31,7 +28,4 @@ def take() -> None:
         _, ceiling = resource.getrlimit(kind)
         if ceiling != resource.RLIM_INFINITY:
             soft, hard = min(soft, ceiling), min(hard, ceiling)
-        try:
-            resource.setrlimit(kind, (soft, hard))
-        except (OSError, ValueError):  # macOS does not limit the address space
-            continue
+        resource.setrlimit(kind, (soft, hard))

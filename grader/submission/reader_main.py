@@ -30,12 +30,7 @@ def main() -> None:
     gc.freeze()  # to look through it all would copy it into each fork
     while line := sys.stdin.buffer.readline():
         request = json.loads(line)
-        if hasattr(os, "fork"):
-            _say(_forked(request))
-        else:  # Windows: this process answers itself, has no limits, and is there for one only
-            limits.take()
-            _say(answer.ended("", _answer(request), 0))
-            return
+        _say(_forked(request))
 
 
 def _forked(request: dict[str, Any]) -> bytes:

@@ -10,7 +10,8 @@ from pathlib import Path
 from grader.diagnosis.diagnose import diagnose
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.grading import AnyPath, run_all, runner
+from grader.grading import run_all, runner
+from grader.judging import AnyPath
 from grader.language.phrase import say
 from grader.recording.recording import Recordings
 from grader.scratch import make_folder

@@ -101,13 +101,11 @@ def like_windows() -> None:
         vars(signal).pop(name, None)
 
 
-def hide(system: str) -> None:
+def hide() -> None:
     """Take away from our own code what the one module that asks for it knows."""
     from grader import system as ours
 
     ours.PROC = Path("/nowhere")
-    if system == "windows":
-        ours.inherits_descriptors = lambda: False
 
 
 def main(system: str, python: str, *words: str) -> None:
@@ -117,7 +115,7 @@ def main(system: str, python: str, *words: str) -> None:
     kind, *rest = (word for word in words if word not in ("-I", "-S"))
     if not kind.endswith("main.py"):  # a submission's process, into which nothing of ours goes
         sys.path[0] = str(Path(__file__).parents[2])
-        hide(system)
+        hide()
     if kind == "-m":
         sys.argv = rest
         runpy.run_module(rest[0], run_name="__main__", alter_sys=True)

@@ -136,7 +136,7 @@ def test_what_it_prints_goes_to_standard_error(capfd):
 
 
 def test_where_there_is_no_fork_what_python_notices_is_a_limit_all_the_same(monkeypatch):
-    monkeypatch.setattr(system, "has_limited_copies", lambda: False)
+    monkeypatch.setattr(system, "runs_submissions", lambda: False)
 
     def deep():
         return deep()

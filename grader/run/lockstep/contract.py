@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from grader import system, versions
+from grader import versions
 
 #: Stands for rclpy's extension module, whatever it is called.
 CPP = "_rclpy"
@@ -52,12 +52,6 @@ def broken(*groups: Iterable[Assumption]) -> str:
             if fault:
                 return f"virtual time does not fit rclpy {versions.rclpy()}: {fault}"
     return ""
-
-
-def lacking() -> str:
-    """What of the system virtual time needs and does not have, in one line; '' where it has all."""
-    lacks = system.lacks_for_lockstep()
-    return f"virtual time needs {' and '.join(lacks)}, which this system lacks" if lacks else ""
 
 
 def _module(name: str) -> Any:

@@ -18,8 +18,8 @@ from typing import NamedTuple
 from grader.run.budget import Budget
 from grader.run.processes.sandbox.limits import LIMITS, MIB, Limits, size
 
-TICKS_PER_S = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
-PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
 #: How often it is looked [s].
 EVERY_S = 0.2
 #: Memory that has gone since the last close look, wherever to, and makes the next one due.

@@ -7,17 +7,13 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-# None where the system does not let a process choose: then nothing is pinned
-_getaffinity = getattr(os, "sched_getaffinity", None)
-_setaffinity = getattr(os, "sched_setaffinity", None)
-
 #: Where the kernel tells what control groups allow, and in which of them this process is.
 _CGROUPS, _OWN_GROUPS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
 
 
 def available() -> list[int]:
     """The cores that this process may use."""
-    return sorted(_getaffinity(0)) if _getaffinity else list(range(os.cpu_count() or 1))
+    return sorted(os.sched_getaffinity(0))
 
 
 def share() -> float:
@@ -72,9 +68,9 @@ def reserve_core(run: int) -> Iterator[int]:
 
 def pin(core: int, *pids: int) -> None:
     """Keep all threads of processes on a core; those to come follow. -1: on any."""
-    if core < 0 or _setaffinity is None:
+    if core < 0:
         return
     with suppress(OSError):  # not allowed, gone, or no /proc
         for thread in (each for pid in pids for each in Path(f"/proc/{pid}/task").iterdir()):
             with suppress(OSError):  # ended meanwhile
-                _setaffinity(int(thread.name), {core})
+                os.sched_setaffinity(int(thread.name), {core})

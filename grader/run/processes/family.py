@@ -14,9 +14,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import psutil
-
-from grader import system
 from grader.errors import GraderFailure, NotNow
 from grader.language.phrase import say
 from grader.run.budget import Budget
@@ -24,7 +21,7 @@ from grader.run.processes import supervisor
 from grader.run.processes.appetite import Appetite
 from grader.run.processes.refusal import Refusal
 from grader.run.processes.sandbox.confinement import OWN
-from grader.run.processes.watched import Watched, await_ends
+from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Warm
 
 #: How long a process may take to come up [s]; only a machine in distress takes so long.
@@ -44,48 +41,6 @@ class NotConfined(NotNow):
         self.refusal = refusal
 
 
-def start_student(
-    command: Sequence[str],
-    env: Mapping[str, str],
-    cwd: Path | None = None,
-    pass_fds: tuple[int, ...] = (),
-    entry: Sequence[str] = (),
-    warm: Warm | None = None,
-    confinement: Mapping[str, Any] | None = None,
-    budget: Budget | None = None,
-) -> Watched:
-    """Start a submission's process, held as well as this system can; see `Watched`.
-
-    Args:
-        budget: what it and its descendants spend of, and that ends them; None for none.
-        confinement: how it is confined, where it can be; see `.sandbox.confinement`.
-    """
-    if system.has_supervision():
-        return Student(command, env, cwd, pass_fds, entry, warm, confinement, budget)
-    return Unsupervised(command, env, cwd, pass_fds, entry)
-
-
-class Unsupervised(Watched):
-    """A submission's process where nobody can adopt its family: elsewhere than on Linux.
-
-    Its descendants are those that it still has at its end, its group, and whoever has its
-    environment. One that has got away from all three stays.
-    """
-
-    IS_OURS = False
-
-    def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
-        """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
-        family = []
-        with suppress(psutil.Error):
-            family = psutil.Process(self.pid).children(recursive=True)
-        super().end(patience_s, gently=gently)
-        for process in family:
-            with suppress(psutil.Error):
-                process.kill()  # not if another has its number by now
-        await_ends(family, patience_s)
-
-
 class Student(Watched):
     """A submission's process, below a supervisor that holds its whole family."""
 
@@ -102,7 +57,13 @@ class Student(Watched):
         confinement: Mapping[str, Any] | None = None,
         budget: Budget | None = None,
     ) -> None:
-        """`entry` stands before the supervisor's own command; see `.isolation`."""
+        """Start it; see `Watched`.
+
+        Args:
+            entry: stands before the supervisor's own command; see `.isolation`.
+            confinement: how it is confined; see `.sandbox.confinement`.
+            budget: what it and its descendants spend of, and that ends them; None for none.
+        """
         self._report, theirs = os.pipe()
         self._told = b""
         self._is_silent = False

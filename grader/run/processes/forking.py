@@ -15,9 +15,11 @@ from __future__ import annotations
 
 import array  # socket.recv_fds imports it where it is first needed, which is too late
 import ctypes
+import fcntl
 import gc
 import json
 import os
+import resource
 import select
 import signal
 import socket
@@ -30,10 +32,6 @@ from pathlib import Path
 from typing import Any, NoReturn, Self
 
 from grader.run.processes import linux, supervisor
-
-with suppress(ImportError):  # Windows, which has no zygotes
-    import fcntl
-    import resource
 
 __all__ = ["MARK", "Order", "array", "become", "limits", "serve"]
 

@@ -22,7 +22,6 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from grader import system
 from grader.errors import NotNow
 from grader.language.phrase import say
 from grader.run.processes import domain, linux, supervisor
@@ -57,7 +56,7 @@ class Isolation:
     """What keeps a run to itself.
 
     Attributes:
-        name: for the result: "private network", "ROS domain 87"; see `weakness`.
+        name: for the result: "private network", "ROS domain 87".
         env: environment variables of both processes.
         entry: stands before a command that is to run inside.
         namespaces: what a process that is forked has to enter instead: kind -> descriptor.
@@ -100,7 +99,7 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
     if namespaces := private_network():
         try:
             env = {**RANGE, "ROS_DOMAIN_ID": "0", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
-            name = f"private network{weakness()}"
+            name = "private network"
             yield Isolation(name, env, namespaces.entry(), namespaces.fds)
         finally:
             namespaces.close()
@@ -113,21 +112,7 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
             "ROS_DOMAIN_ID": str(number),
             "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
         }
-        yield Isolation(f"ROS domain {number}{weakness()}", env)
-
-
-def weakness() -> str:
-    """What keeps a submission less apart here than on Linux, as an addition to the name; or ''.
-
-    `process group`, `process tree`: nobody adopts what it starts, so that what leaves its group (or
-    tree) and forgets its environment may outlive the run. `recording within reach`: the file in
-    which the simulator leaves the recording has a name.
-    """
-    if system.has_supervision():
-        return ""
-    if system.inherits_descriptors():
-        return ", process group"
-    return ", process tree, recording within reach"
+        yield Isolation(f"ROS domain {number}", env)
 
 
 #: Ways that this system has refused for good.

@@ -32,8 +32,7 @@ _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
 _MOUNT_SETATTR = 442
 _CAPABILITY_VERSION = 0x20080522
 
-# Other systems than Linux may import this, but have no use for it: Windows has no libc.
-_libc: Any = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
+_libc: Any = ctypes.CDLL(None, use_errno=True)
 
 
 def call(function: str, *arguments: object) -> None:

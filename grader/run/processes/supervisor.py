@@ -40,9 +40,7 @@ from grader.run.processes.sandbox import confinement
 #: Stands before the reason why a command was not started.
 REFUSED = "refused"
 #: Signals that are meant for the command, and reach us only because we are in its group.
-NOT_OURS = [
-    getattr(signal, name) for name in ("SIGINT", "SIGHUP", "SIGQUIT") if hasattr(signal, name)
-]
+NOT_OURS = [signal.SIGINT, signal.SIGHUP, signal.SIGQUIT]
 
 
 def confine(order: dict[str, Any] | None, lacking: OSError | None) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import signal
 import threading
@@ -22,18 +21,12 @@ from grader.run.processes.forking import MARK
 from grader.run.processes.process import Process, Spawned
 from grader.run.processes.zygote import Warm, ZygoteLost
 
-
-def _if_there(name: str) -> list[signal.Signals]:
-    """A signal that Windows lacks."""
-    return [getattr(signal, name)] if hasattr(signal, name) else []
-
-
 #: How much of a process's output is kept: this many bytes of its start and as many of its end.
 KEEP_BYTES = 32_768
 #: What asks the grader to end: Ctrl-C, `timeout` or `docker stop`, a closed terminal.
-ENDING = (signal.SIGINT, signal.SIGTERM, *_if_there("SIGHUP"))
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 #: What a process is told to end with, ever less gently.
-INSISTING = (signal.SIGINT, signal.SIGTERM, *_if_there("SIGKILL"))
+INSISTING = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 
 
 def adopt_orphans() -> None:
@@ -41,8 +34,7 @@ def adopt_orphans() -> None:
 
     For a process that is the grader and nothing else; who calls us as a library is left as he is.
     """
-    if system.has_supervision():
-        ctypes.CDLL(None).prctl(linux.PR_SET_CHILD_SUBREAPER, 1)
+    linux.control(linux.PR_SET_CHILD_SUBREAPER, 1)
 
 
 _running: set[Watched] = set()
@@ -71,14 +63,12 @@ def end_on_signals() -> None:
 
 
 def _all_processes(*others: int) -> list[int]:
-    """The process ids of this user's processes, but for ourselves; without /proc, of all.
+    """The process ids of this user's processes, but for ourselves.
 
     Args:
         others: further users whose processes are ours.
     """
     me = os.getpid()
-    if not system.has_proc():
-        return [pid for pid in psutil.pids() if pid != me]
     users = (os.getuid(), *others)
     found = []
     for entry in system.PROC.iterdir():
@@ -223,13 +213,9 @@ class Watched:
         _running.discard(self)
 
     def _send(self, number: signal.Signals) -> None:
-        """A signal to it and its group; Windows, which has no such groups, ends it at once."""
-        if hasattr(os, "killpg"):
-            # macOS forbids what Linux cannot find: a group of which only the dead are left
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, number)
-        else:
-            self._process.kill()
+        """A signal to it and its group."""
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, number)
 
     def _sweep(self, patience_s: float) -> None:
         """End what it has started, wherever that has gone: its environment tells."""
@@ -246,8 +232,6 @@ class Watched:
         with suppress(OSError, psutil.Error):
             if self._users and Path(f"/proc/{pid}").stat().st_uid in self._users:
                 return True
-            if not system.has_proc():
-                return psutil.Process(pid).environ().get(MARK) == self._mark
             return f"{MARK}={self._mark}".encode() in Path(f"/proc/{pid}/environ").read_bytes()
         return False
 

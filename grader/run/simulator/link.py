@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import mmap
 import os
 import select
@@ -31,9 +32,6 @@ from grader.run.lockstep.protocol import (
 )
 from grader.run.processes import usage
 from grader.text import without_controls
-
-with suppress(ImportError):  # Windows, which has no virtual time
-    import fcntl
 
 #: How often it is looked at while it is silent [ms], and while it is not [s].
 LOOK_MS = 250

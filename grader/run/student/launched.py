@@ -24,8 +24,6 @@ def main() -> None:
     """Start the programs and wait for them."""
     _, awaited, _, root, programs = sys.argv
     student_main.die_with_parent()
-    if not hasattr(os, "fork"):
-        sys.exit("The grader starts several programs only where processes fork: not on Windows.")
     names = {}
     for name, target, arguments in json.loads(programs):
         pid = os.fork()

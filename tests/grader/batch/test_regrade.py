@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from grader import grading
 from grader.batch import grade, pool, worker
 from grader.batch import store as store_module
 from grader.batch.class_file import ClassFile
@@ -28,6 +27,7 @@ from grader.batch.task import Answer, Task
 from grader.cli import regrading
 from grader.errors import ExerciseError, UsageError
 from grader.exercise.loading import load_exercise
+from grader.judging import judge, save_recordings
 from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings
 from tests.grader.driving import RED, Spiral, drive
@@ -95,7 +95,7 @@ def expected(runs, original, changed) -> dict[str, tuple[float, float]]:
     """The scores before and after, by id, of those who are judged: as judging in memory finds."""
     rubrics = [load_exercise(path) for path in (original, changed)]
     return {
-        name: tuple(grading.judge(runs[kind], each).score for each in rubrics)
+        name: tuple(judge(runs[kind], each).score for each in rubrics)
         for kind, names in CLASS.values()
         for name in names
     }
@@ -122,7 +122,7 @@ def whole(runs, original, tmp_path_factory) -> Path:
         ClassFile.of(exercise, "virtual", None).put(out)
         for key, (kind, names) in CLASS.items():
             place = store.new_place()
-            grading.save_recordings(runs[kind], place / RUN / RECORDING)
+            save_recordings(runs[kind], place / RUN / RECORDING)
             people = tuple(map(hand_in, names))
             task = Task(key, people, Path(), "", original, "virtual", None, place / RUN, place)
             grade.make(task)

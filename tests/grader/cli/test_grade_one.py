@@ -17,6 +17,7 @@ from grader import files, grading
 from grader.cli import main
 from grader.cli.grade_one import grade, out_of
 from grader.errors import GraderFailure, UsageError
+from grader.exercise.loading import load_exercise
 from grader.recording import reading
 from grader.reports.page import html
 from tests.grader.driving import Spiral, drive
@@ -99,7 +100,7 @@ def test_recordings_are_complete_and_in_order_whichever_run_ends_first(call, in_
     loaded = reading.load_all(tmp_path / "out" / "recording")
     starts = [recording.start for recording in loaded]
     assert starts[0] is None
-    assert starts[1:] == list(grading.load_exercise("turtlesim_challenge").starts())
+    assert starts[1:] == list(load_exercise("turtlesim_challenge").starts())
 
 
 def test_a_run_that_cannot_be_made_leaves_an_older_recording_and_no_result(

@@ -19,6 +19,7 @@ from websockets.sync.client import connect
 
 from grader import grading
 from grader.cli import live, main, run
+from grader.exercise.loading import load_exercise
 from grader.scenes.turtlesim.live.page import TurtlesimPage
 from tests.grader.driving import Spiral, drive
 from tests.programs import DEADLINE_S
@@ -67,7 +68,7 @@ def test_runs_go_one_after_the_other_and_verdicts_are_told_as_they_are_known(
     out = tmp_path / "out"
     assert main(["run", str(QUICK), "--live", "--speed", "5", "--out", str(out)]) == 0
     starts = [each for each in in_no_time if not isinstance(each, live.Grading)]
-    exercise = grading.load_exercise("turtlesim_challenge")
+    exercise = load_exercise("turtlesim_challenge")
     assert starts == [None, *exercise.starts()]
     told = [each for each in in_no_time if isinstance(each, live.Grading)]
     headings = list(dict.fromkeys(each.run for each in told))

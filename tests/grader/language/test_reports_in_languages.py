@@ -9,7 +9,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from grader import grading
+from grader import judging
 from grader.errors import SubmissionError
 from grader.exercise.loading import load_exercise
 from grader.language.catalogue import speak
@@ -59,7 +59,7 @@ def made(tmp_path_factory):
         "crash": Recordings(crashed(near), (near, near)),
     }
     return {
-        name: (grading.judge(run, exercise, submission="drive.py"), run)
+        name: (judging.judge(run, exercise, submission="drive.py"), run)
         for name, run in runs.items()
     }
 

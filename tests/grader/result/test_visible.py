@@ -12,7 +12,7 @@ from grader.diagnosis.costliest import costliest
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Verdict
-from grader.grading import judge
+from grader.judging import judge
 from grader.recording.recording import Recordings
 from grader.result.result import NotShown, Result, RunSummary
 from grader.result.visible import as_seen, student_view

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from grader import system
 from grader.run.finish import limits_struck
 from grader.run.processes.sandbox.limits import LIMITS, size
 from tests.grader.run.conftest import Run
 
-LINUX = pytest.mark.applies(system.has_supervision(), reason="only Linux counts what is used")
 OUTPUT = 'Traceback (most recent call last):\n  File "node.py", line 7, in <module>\n'
 
 
-@LINUX
 @pytest.mark.parametrize("name", ["fills_memory", "fills_shared_memory"])
 def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> None:
     run = recorded(f"limits/{name}").run
@@ -22,7 +19,6 @@ def test_memory_that_is_really_used_ends_the_run(recorded: Run, name: str) -> No
     assert any(said in flag for flag in run.flags)
 
 
-@LINUX
 def test_an_output_without_end_ends_the_run(recorded: Run) -> None:
     run = recorded("limits/logs_a_flood").run
     assert run.outcome == "killed"
@@ -36,7 +32,6 @@ REFUSED = {
 }
 
 
-@LINUX
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> None:
     run = recorded(f"limits/{name}").run
@@ -44,7 +39,6 @@ def test_what_is_refused_is_told_with_the_limit(recorded: Run, name: str) -> Non
     assert any(REFUSED[name] in flag for flag in run.flags), run.flags
 
 
-@LINUX
 @pytest.mark.parametrize("name", ["starts_processes", "starts_threads"])
 def test_processes_and_threads_are_counted_together(recorded: Run, name: str) -> None:
     flags = recorded(f"limits/{name}").run.flags

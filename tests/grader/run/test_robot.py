@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from grader import grading
+from grader import grading, judging
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recordings
 from grader.scenes.robot import motion
@@ -50,17 +50,17 @@ def test_what_comes_30_times_a_second_goes_out_15_times(recorded):
 
 
 def test_a_recording_is_read_back_as_it_was(recorded, tmp_path):
-    grading.save_recordings(recorded, tmp_path / "recording")
-    read = grading.load_recordings(tmp_path / "recording")
+    judging.save_recordings(recorded, tmp_path / "recording")
+    read = judging.load_recordings(tmp_path / "recording")
     assert trace_of(read).messages == trace_of(recorded).messages
-    verdicts = [grading.judge(each, EXERCISE).verdicts for each in (recorded, read)]
+    verdicts = [judging.judge(each, EXERCISE).verdicts for each in (recorded, read)]
     assert verdicts[0] == verdicts[1]
 
 
 def test_what_is_found_of_its_package_is_read_back_too(tmp_path):
     recorded = grading.record(REFERENCE, SHORT)
-    grading.save_recordings(recorded, tmp_path / "recording")
-    read = grading.load_recordings(tmp_path / "recording")
+    judging.save_recordings(recorded, tmp_path / "recording")
+    read = judging.load_recordings(tmp_path / "recording")
     assert read.nominal.package == recorded.nominal.package
     assert [each.name for each in read.nominal.package.setup.scripts] == ["state_publisher"]
     assert recorded.nominal.run.flags == ()

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from grader import scratch, system
+from grader import scratch
 from grader.errors import NotNow
 from grader.run import environment, real_time, virtual_time
 from grader.run.lost import SimulatorLost
@@ -352,7 +352,6 @@ def test_locks_that_a_submission_has_taken_are_free_when_its_run_is_over(
             lock.close()
 
 
-@pytest.mark.skipif(not system.has_supervision(), reason="nothing is confined here")
 @pytest.mark.parametrize("run", [virtual_time.run, real_time.run], ids=["virtual", "real"])
 def test_what_could_not_be_confined_is_not_judged(
     run: Callable[[Submission, Plan], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -8,7 +8,7 @@ import zipfile
 import pytest
 
 import grader
-from grader import grading, scratch
+from grader import judging, scratch
 from grader.errors import ExerciseError, GraderFailure, SubmissionError
 from grader.exercise.loading import load_exercise
 from grader.run import static
@@ -116,7 +116,7 @@ for _ in range(8):
 
 def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
     path = written(tmp_path, {"launch/spawn.launch.py": NEVER_ENDS})
-    result = grading.judge(recorded(looked_at(path, cpu_s=1.0)), EXERCISE)
+    result = judging.judge(recorded(looked_at(path, cpu_s=1.0)), EXERCISE)
     assert shares(result)["launch"] == 0.5
     assert "did not come to an end" in result.diagnosis.cause
 

@@ -1,5 +1,6 @@
 """Runs that are forked from zygotes are those that start from nothing, only sooner."""
 
+import errno
 import os
 import re
 import signal
@@ -299,7 +300,10 @@ def test_there_is_none_where_the_import_path_depends_on_the_folder(
 
 
 def test_there_is_none_without_pidfd(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr(os, "pidfd_open")
+    def refused(pid: int) -> int:
+        raise PermissionError(errno.EPERM, "not permitted")
+
+    monkeypatch.setattr(os, "pidfd_open", refused)
     assert zygotes.zygote(zygotes.STUDENT) is None
     assert zygotes.for_simulator({}) is None
     assert zygotes.for_student(ROOT, {}) is None
@@ -366,6 +370,7 @@ def test_real_time_starts_none(tmp_path: Path) -> None:
 
 
 REACHES = f"""
+import errno
 import os
 for name in os.listdir("/proc"):
     if name.isdigit():

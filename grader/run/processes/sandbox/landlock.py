@@ -47,7 +47,7 @@ WRITE = READ | WRITE_FILE | REMOVE | MAKE | REFER | TRUNCATE
 #: Of what is no folder.
 OF_A_FILE = EXECUTE | WRITE_FILE | READ_FILE | TRUNCATE | IOCTL_DEV
 
-_libc: Any = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
+_libc: Any = ctypes.CDLL(None, use_errno=True)
 
 
 def abi() -> int:

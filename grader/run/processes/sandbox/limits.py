@@ -8,11 +8,8 @@ outside instead: `grader.run.processes.appetite`.
 from __future__ import annotations
 
 import os
-from contextlib import suppress
+import resource
 from typing import NamedTuple
-
-with suppress(ImportError):  # Windows, where nothing is limited
-    import resource
 
 KIB, MIB, GIB = 1 << 10, 1 << 20, 1 << 30
 

@@ -192,7 +192,7 @@ TSYNC, SPEC_ALLOW = 1, 4
 #: An instruction of BPF: code, how many to skip if true, if false, and a constant.
 Instruction = tuple[int, int, int, int]
 
-_libc: Any = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
+_libc: Any = ctypes.CDLL(None, use_errno=True)
 
 
 def is_there() -> bool:

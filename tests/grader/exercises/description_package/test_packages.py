@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading import judge
+from grader.judging import judge
 from grader.result.result import Result
 from tests.submissions.packages import (
     EXERCISE,

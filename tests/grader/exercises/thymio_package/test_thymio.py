@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.exercise.loading import load_exercise
-from grader.grading import judge
+from grader.judging import judge
 from grader.testing.odd_packages import odd_packages
 from grader.testing.sanity import examine
 from grader.testing.solutions import read_solutions

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from grader import cli, scratch, system
+from grader import cli, scratch
 from grader.cli import run
 from grader.errors import GraderFailure, NotNow, UsageError
 from grader.run import stage
@@ -84,16 +84,6 @@ def test_no_run_is_made_below_what_was_required(monkeypatch: pytest.MonkeyPatch)
         pass
 
 
-def test_where_nothing_can_be_confined_nothing_is_said_of_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(levels.system, "has_supervision", lambda: False)
-    monkeypatch.setattr(levels, "_found", {})
-    found = levels.best(isolation.Isolation("", {}))
-    assert (found.level, found.name()) == ("", "")
-    assert levels.prepare(found, *[Path("/")] * 3, is_apart=False) == levels.Place(None, {})
-
-
 def _without_descriptors(free: int) -> list[str]:
     """What is told where so few are free, and the level when there are enough again."""
     levels._found.clear()
@@ -113,7 +103,6 @@ def _without_descriptors(free: int) -> list[str]:
         return [*told, levels.best(isolated).level]
 
 
-@pytest.mark.skipif(not system.has_supervision(), reason="there is no level here")
 @pytest.mark.parametrize("free", [0, 3])
 def test_a_lack_of_descriptors_lowers_no_level_and_is_not_remembered(free: int) -> None:
     there = levels.here().level
@@ -125,7 +114,6 @@ def test_a_lack_of_descriptors_lowers_no_level_and_is_not_remembered(free: int) 
     assert later == there
 
 
-@pytest.mark.skipif(not system.has_supervision(), reason="there is no level here")
 def test_a_slow_trial_lowers_no_level_and_is_not_remembered(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

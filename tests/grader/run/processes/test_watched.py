@@ -14,7 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from grader import scratch, system
+from grader import scratch
 from grader.run.processes import family, linux
 from grader.run.processes.family import Student
 from grader.run.processes.supervisor import Supervisor
@@ -197,7 +197,6 @@ def _walkers_are_ended() -> None:
         os.waitpid(-1, os.WNOHANG)
 
 
-@pytest.mark.skipif(not system.has_supervision(), reason="nobody can adopt orphans here")
 def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
     in_child(_walkers_are_ended)
 
@@ -216,7 +215,6 @@ def _one_without_its_first_thread_is_ended() -> None:
 
 
 @pytest.mark.timeout(30)
-@pytest.mark.skipif(not system.has_supervision(), reason="nobody can adopt orphans here")
 def test_who_looks_like_one_that_is_over_is_ended_as_well() -> None:
     in_child(_one_without_its_first_thread_is_ended)
 
@@ -228,7 +226,6 @@ def test_a_process_whose_end_nobody_has_asked_for_has_ended() -> None:
         assert not await_ends([psutil.Process(child.pid)], 1000.0)
 
 
-@pytest.mark.skipif(not system.has_proc(), reason="descriptors are not told")
 def test_what_it_held_is_given_back_at_its_end() -> None:
     looks = """
 import gc, os, sys, threading

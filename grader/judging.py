@@ -1,0 +1,62 @@
+"""Judge what was recorded, on any system: nothing is run for it."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from grader.diagnosis.diagnose import diagnose
+from grader.exercise import DEFAULT, check, early
+from grader.exercise.exercise import Exercise
+from grader.exercise.loading import load_exercise
+from grader.recording import reading, saving
+from grader.recording.recording import Recording, Recordings
+from grader.result.result import Result, build
+
+AnyPath = str | os.PathLike[str]
+
+
+def judge(
+    recordings: Recordings, exercise: AnyPath | Exercise = DEFAULT, *, submission: str = ""
+) -> Result:
+    """Judge what was recorded, as often as one likes.
+
+    Args:
+        submission: its name, for the result.
+
+    Raises:
+        ExerciseError: there is no such exercise, or it cannot be used.
+    """
+    asked = loaded(exercise)
+    verdicts = check.judge(recordings, asked.checks, asked.points, asked.tolerances)
+    return build(submission, asked, recordings, verdicts, {}, diagnose(recordings, verdicts))
+
+
+def load_recordings(folder: AnyPath) -> Recordings:
+    """The recordings in the folder `recording` of a graded run.
+
+    Raises:
+        RecordingError: there are none that can be judged.
+    """
+    return reading.load_all(Path(folder))
+
+
+def save_recordings(recordings: Recordings, folder: AnyPath) -> None:
+    """Write recordings into a folder, as `grader run` does.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    saving.save_all(recordings, Path(folder))
+
+
+def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "") -> Result:
+    """What the nominal run alone decides, as a result that lacks all other verdicts."""
+    verdicts = early.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
+    alone = Recordings(nominal)
+    return build(submission, exercise, alone, verdicts, {}, diagnose(alone, verdicts))
+
+
+def loaded(exercise: AnyPath | Exercise) -> Exercise:
+    """An exercise, loaded if it is not yet."""
+    return exercise if isinstance(exercise, Exercise) else load_exercise(exercise)
