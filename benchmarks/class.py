@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT))
 
 from grader import grading, judging  # noqa: E402
 from grader.batch.page.thumb import thumb  # noqa: E402
-from grader.batch.similar import signature, sources  # noqa: E402
+from grader.batch.similar import behaviour, sources  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
 from grader.reports import Report, render  # noqa: E402
 from grader.run.processes import cores  # noqa: E402
@@ -66,7 +66,7 @@ def steps(submissions: list[Path], folder: Path) -> dict[str, list[float]]:
             took("three runs")
             if submission.copy is not None:
                 sources.keep(submission.copy.folder, place / sources.SOURCE)
-            signature.signature(place / sources.SOURCE, recordings.nominal)
+            behaviour.behaved(place / sources.SOURCE, recordings.nominal)
             thumb(recordings)
             took("for the pages of the class")
         judging.save_recordings(recordings, place / "recording")

@@ -18,7 +18,7 @@ from grader.batch.entry import Entry
 from grader.batch.find.joining import NOTHING, UNCLEAR
 from grader.batch.hand_in import HandIn
 from grader.batch.page.thumb import THUMB, thumb
-from grader.batch.similar import signature, sources
+from grader.batch.similar import behaviour, sources
 from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
 from grader.batch.task import Task
 from grader.errors import RecordingError, SubmissionError, UsageError
@@ -107,9 +107,7 @@ def _look_at(submission: Submission, recordings: Recordings, place: Path) -> Non
     left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE)
     nominal = recordings.nominal
     files.put(place / THUMB, thumb(recordings))
-    files.put(
-        place / signature.NAME, signature.signature(place / sources.SOURCE, nominal, left_out)
-    )
+    files.put(place / behaviour.NAME, behaviour.behaved(place / sources.SOURCE, nominal, left_out))
 
 
 def _without_place(submission: Submission) -> Submission:

@@ -13,7 +13,7 @@ from grader.batch.entry import Entry
 from grader.batch.gradebook.write import CSV, Options
 from grader.batch.gradebook.write import write as write_gradebook
 from grader.batch.page import html
-from grader.batch.similar import look
+from grader.batch.similar import export, look
 from grader.exercise.exercise import Exercise
 from grader.language.telling import tell
 from grader.result.visible import View
@@ -43,4 +43,6 @@ def write(
     look.write(entries, exercise, out)
     links = {tell("Look at these together"): look.PAGE, tell("Gradebook"): CSV}
     files.put(out / PAGE, html.render(entries, exercise, links).encode("utf-8"))
-    return write_gradebook(out, entries, Options(exercise.title, view, assignment))
+    notes = write_gradebook(out, entries, Options(exercise.title, view, assignment))
+    export.write(entries, exercise, out)
+    return notes

@@ -23,7 +23,7 @@ from grader import files
 from grader.batch.class_file import CLASS
 from grader.batch.entry import ENTRY, SUBMISSIONS
 from grader.batch.page.thumb import THUMB
-from grader.batch.similar.signature import NAME as SIGNATURE
+from grader.batch.similar.behaviour import NAME as BEHAVIOUR
 from grader.batch.similar.sources import SOURCE
 from grader.errors import UsageError
 from grader.language.phrase import Phrase, say
@@ -34,7 +34,7 @@ STORE, UNFINISHED, ASIDE, BEFORE = "store", ".unfinished", "aside", "before"
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
 #: What of a run lies in the folder of everybody who has handed it in, too.
-SHARED = (RECORDING, SOURCE, SIGNATURE, THUMB)
+SHARED = (RECORDING, SOURCE, BEHAVIOUR, THUMB)
 #: Before the name of what is being replaced, beside what replaces it.
 _OLDER = "older-"
 

@@ -1,4 +1,4 @@
-"""The sources of a class as JPlag and Dolos read them, for a second opinion.
+"""The sources of a class as JPlag and Dolos read them, which compare sources.
 
     export/jplag/students/ID/...py    a folder for each hand-in
     export/jplag/base/...py           what everybody was given
@@ -19,7 +19,7 @@ import csv
 import io
 import shutil
 import zipfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -37,20 +37,15 @@ _GIVEN: Final = "starter.py"
 _EARLIEST: Final = (1980, 1, 1, 0, 0, 0)  # that a zip knows; so the same class gives the same bytes
 
 
-def write(
-    entries: Sequence[Entry], exercise: Exercise, out: Path, more: Iterable[Path] = ()
-) -> None:
+def write(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
     """Make both exports anew in the folder of a class. No names are in them, but ids.
-
-    Args:
-        more: what else everybody was given.
 
     Raises:
         UsageError: they cannot be written, or sources not read.
         ExerciseError: the exercise's solutions cannot be used.
     """
     try:
-        given = known.files(exercise, more)
+        given = known.files(exercise)
         sources = [(entry, kept(entry.folder / SOURCE)) for entry in entries]
         present = [(entry, files) for entry, files in sources if files]
         _write_jplag(present, given, out / FOLDER / JPLAG)
@@ -102,7 +97,9 @@ def _joined(files: Sequence[File]) -> bytes:
 def _write_jplag(
     present: Sequence[tuple[Entry, list[File]]], given: Sequence[File], folder: Path
 ) -> None:
-    if folder.exists():
+    if folder.is_symlink():
+        folder.unlink()  # none of ours
+    elif folder.exists():
         shutil.rmtree(folder)
     below = [(f"students/{entry.id}", file) for entry, files in present for file in files]
     for place, file in (*below, *(("base", file) for file in given)):

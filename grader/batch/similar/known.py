@@ -8,27 +8,21 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
-from grader.batch.similar import fingerprints
 from grader.batch.similar.sources import File
-from grader.batch.similar.syntax import units
 from grader.errors import ExerciseError
 from grader.exercise.exercise import Exercise
 from grader.language.phrase import say
-from grader.submission.python_source import parse
 from grader.testing.solutions import FILE_NAME, read_solutions
 
 _FENCED = re.compile(r"^```[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _INDENTED = re.compile(r"(?:^ {4,}[^\n]*\n(?:[ \t]*\n)*)+", re.MULTILINE)
 
 
-def files(exercise: Exercise, more: Iterable[Path] = ()) -> list[File]:
+def files(exercise: Exercise) -> list[File]:
     """The files that are known, by where they are from.
-
-    Args:
-        more: what else was given: Python files, and folders with some.
 
     Raises:
         ExerciseError: its mutants.yaml cannot be used.
@@ -39,20 +33,7 @@ def files(exercise: Exercise, more: Iterable[Path] = ()) -> list[File]:
         found += _below(exercise.starter, "starter")
     for path in _right_solutions(exercise):
         found += _below(path, "reference")
-    for path in more:
-        found += _below(path, "known")
     return sorted(set(found))
-
-
-def hashes(known: Iterable[File]) -> frozenset[int]:
-    """Every fingerprint of known files, whatever surrounds it."""
-    found: set[int] = set()
-    for file in known:
-        try:
-            found |= fingerprints.all_of(units(parse(file.data, file.name)))
-        except SyntaxError:
-            continue  # a passage of a sheet that is no program by itself
-    return frozenset(found)
 
 
 def _right_solutions(exercise: Exercise) -> Iterator[Path]:

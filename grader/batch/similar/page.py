@@ -9,8 +9,8 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
-from grader.batch.similar import compare, fingerprints
-from grader.batch.similar.shown import Class, percent, person, shown
+from grader.batch.similar import compare, export
+from grader.batch.similar.shown import Class, person, shown
 from grader.language.catalogue import spoken
 from grader.language.telling import tell, tell_many, told
 from grader.reports.page.compiled import BesideTheTemplates
@@ -34,9 +34,8 @@ def render(found: Class, exercise: str) -> str:
             size=len(found.entries),
             pairs=list(shown(found)),
             groups=[[person(found, number) for number in members] for members in look.groups],
-            only_given=[person(found, number) for number in look.only_given],
-            not_compared=[person(found, number) for number in look.not_compared],
-            is_cut=not bool(look.source_index.followed.all()),
+            only_given=[person(found, number) for number in found.only_given],
+            export=f"{export.FOLDER}/",
         )
     )
 
@@ -58,11 +57,7 @@ def _environment() -> jinja2.Environment:
         spoken=spoken,
         tell=tell,
         tell_many=tell_many,
-        percent=percent,
         style=Markup(style),
-        length=fingerprints.LENGTH,
-        window=fingerprints.WINDOW,
-        least_share=compare.LEAST_SHARE,
         large_class=compare.LARGE_CLASS,
         one_in=compare.ONE_IN,
     )

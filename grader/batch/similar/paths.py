@@ -1,6 +1,6 @@
 """How far apart the ways of two hand-ins are, and how many others went as near.
 
-A way is `signature.POINTS` points at equal steps along it, from where it began; the distance of two
+A way is `behaviour.POINTS` points at equal steps along it, from where it began; the distance of two
 is the root of the mean square of that of their points. What the exercise forces on all of them is
 in both of a pair and cancels out; that many are near each other all the same is in the numbers.
 """

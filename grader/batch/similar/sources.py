@@ -1,6 +1,6 @@
 """The Python files of a hand-in, kept with its result: DIR/submissions/ID/source/.
 
-They are what two hand-ins are shown side by side by, and what other programs compare. A name that
+They are what JPlag and Dolos compare (`export`). A name that
 not every system takes is made one that it does; what is too much is left out, and that is told.
 """
 

@@ -15,7 +15,7 @@ from grader.batch import pool
 from grader.batch.class_file import CLASS, ClassFile
 from grader.batch.entry import ENTRY, Entry, entries
 from grader.batch.page.thumb import THUMB, Thumb
-from grader.batch.similar import signature, sources
+from grader.batch.similar import behaviour, sources
 from grader.batch.store import RECORDING, STUDENTS, Store
 from grader.batch.task import Answer
 from grader.cli import main
@@ -142,10 +142,10 @@ def test_what_pages_show_of_a_run_is_left_out_where_it_is_no_file_of_ours(
     out: Path, how: str
 ) -> None:
     folder = Store(out).student("right")
-    for name in (THUMB, signature.NAME):
+    for name in (THUMB, behaviour.NAME):
         replaced(folder / name, NO_FILE[how])
     assert Thumb.read(folder) is None
-    assert signature.read(folder) is None
+    assert behaviour.read(folder) is None
 
 
 def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(out: Path) -> None:

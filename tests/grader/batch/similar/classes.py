@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grader.batch.entry import SUBMISSIONS, Entry, entries
 from grader.batch.hand_in import HandIn, Person
-from grader.batch.similar import signature, sources
+from grader.batch.similar import behaviour, sources
 from grader.batch.similar.look import look_together
 from grader.batch.similar.shown import Class
 from grader.exercise.loading import load_exercise
@@ -56,8 +56,8 @@ def hand_in(
         (copy / file).parent.mkdir(parents=True, exist_ok=True)
         (copy / file).write_bytes(data)
     left_out = sources.keep(copy, folder / sources.SOURCE)
-    made = signature.signature(folder / sources.SOURCE, nominal, left_out)
-    (folder / signature.NAME).write_bytes(made)
+    made = behaviour.behaved(folder / sources.SOURCE, nominal, left_out)
+    (folder / behaviour.NAME).write_bytes(made)
     entry = Entry(HandIn(who, (Person(who, name),)), "failed", 100.0, folder=folder)
     entry.put()
     return entry
@@ -66,13 +66,6 @@ def hand_in(
 def looked_at(out: Path) -> Class:
     """The class in a folder, looked at together."""
     return look_together(entries(out), CHALLENGE)
-
-
-def listed(out: Path) -> set[tuple[str, str]]:
-    """The ids of the pairs that are listed."""
-    found = looked_at(out)
-    ids = [entry.id for entry in found.entries]
-    return {(ids[pair.first], ids[pair.second]) for pair in found.look.pairs}
 
 
 def _files(path: Path) -> dict[str, bytes]:

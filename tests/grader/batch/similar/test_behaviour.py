@@ -2,16 +2,16 @@
 
 import pytest
 
+from grader.batch.similar.behaviour import POINTS, Asked, Behaved
 from grader.batch.similar.commands import equal
 from grader.batch.similar.compare import LARGE_CLASS, HandedIn, compare
-from grader.batch.similar.signature import POINTS, Asked, Signature
 
 
 def behaves(number, end_mm=4000, step=31):
     """Somebody with commands and a way of his own kind, and nothing else."""
     commands = tuple(Asked(step * n, 100 * number + n) for n in range(20))
     path = tuple(value for n in range(POINTS) for value in (n * end_mm // POINTS, number * n))
-    return HandedIn("", Signature((), (), commands, path))
+    return HandedIn("", Behaved((), commands, path))
 
 
 def listed(handed_in):
@@ -37,19 +37,32 @@ def test_in_a_small_class_it_lists_nobody():
 
 def test_ways_that_are_nearly_the_same_are_found_though_no_command_is():
     near = behaves(50)
-    other = HandedIn("", Signature((), (), behaves(51).signature.commands, near.signature.path))
+    other = HandedIn("", Behaved((), behaves(51).behaved.commands, near.behaved.path))
     (pair,) = compare([*usual(60), near, other]).pairs
     assert (pair.first, pair.second, pair.path_mm, pair.equal_commands) == (60, 61, 0, 0.0)
 
 
 def test_who_did_nothing_is_like_nobody():
-    nothing = HandedIn("", Signature())
+    nothing = HandedIn("", Behaved())
     assert listed([*usual(60), nothing, nothing, HandedIn("", None)]) == []
+
+
+def test_commands_of_which_nearly_all_are_the_same_are_alike():
+    one = behaves(50).behaved.commands
+    other = (*one[:19], Asked(31 * 19, 7))
+    other_way = behaves(51, 8000).behaved.path
+    changed = HandedIn("", Behaved((), other, other_way))
+    (pair,) = compare([*usual(60), behaves(50), changed]).pairs
+    assert (pair.first, pair.second, pair.commands_hands) == (60, 61, 2)
+
+
+def test_what_three_in_a_class_of_sixty_do_lists_nobody():
+    assert listed([*usual(60), behaves(50), behaves(50), behaves(50)]) == []
 
 
 def test_how_many_others_behave_so_is_told():
     found = compare([*usual(60), behaves(50), behaves(50)]).pairs[0]
-    assert (found.commands.hands, found.path_hands) == (2, 2)
+    assert (found.commands_hands, found.path_hands) == (2, 2)
 
 
 @pytest.mark.parametrize(
