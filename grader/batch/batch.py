@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -31,7 +30,6 @@ class Order:
         time: the clock that submissions live by.
         seed: chooses where the varied runs start; None takes the exercise's own.
         again: what is done anew although it is there: "", "failed", "all" or the id of a hand-in.
-        shard: (I, N): only the I-th of N parts, counted from 1.
         isolation: the level at which all are run; '' where it is to be found out.
     """
 
@@ -40,7 +38,6 @@ class Order:
     time: Clock = "virtual"
     seed: int | None = None
     again: str = ""
-    shard: tuple[int, int] = (1, 1)
     isolation: str = ""
 
     def seed_of(self, hand_in: HandIn) -> int | None:
@@ -50,9 +47,7 @@ class Order:
     @property
     def class_file(self) -> ClassFile:
         """What the folder is for."""
-        part, parts = self.shard
-        name = f"{part}/{parts}" if parts > 1 else ""
-        found = ClassFile.of(self.exercise, self.time, self.seed, name)
+        found = ClassFile.of(self.exercise, self.time, self.seed)
         return replace(found, isolation=self.isolation)
 
 
@@ -188,32 +183,20 @@ def _unusable(task: Task, order: Order) -> str:
     return ""
 
 
-def is_in(name: str, shard: tuple[int, int]) -> bool:
-    """Whether something is in a part of a class: the same on every machine."""
-    part, parts = shard
-    return zlib.crc32(name.encode()) % parts == part - 1
-
-
 def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandIn, str]]:
-    """Each of our part with the key of its run; '' where there is nothing to run.
-
-    What has the same content is in the same part, whatever versions a machine has.
-    """
+    """Each with the key of its run; '' where there is nothing to run."""
     for hand_in in hand_ins:
         if hand_in.path is None:
-            if is_in(hand_in.id, order.shard):
-                yield hand_in, ""
+            yield hand_in, ""
             continue
         try:
             content = key.of_hand_in(hand_in.path, hand_in.filename)
         except OSError as error:
-            if is_in(hand_in.id, order.shard):
-                why = say("It cannot be read: {why}", why=error.strerror or str(error))
-                yield replace(hand_in, problem=why, path=None), ""
+            why = say("It cannot be read: {why}", why=error.strerror or str(error))
+            yield replace(hand_in, problem=why, path=None), ""
             continue
-        if is_in(content, order.shard):
-            seed = order.seed_of(hand_in)
-            yield hand_in, key.of_run(content, order.exercise, order.time, seed)
+        seed = order.seed_of(hand_in)
+        yield hand_in, key.of_run(content, order.exercise, order.time, seed)
 
 
 def _there(folder: Path) -> Entry | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -17,12 +16,10 @@ from grader.result import json_file
 from grader.run.processes.levels import LEVELS
 
 FAMILY = "turtlesim-grader/class/"
-SCHEMA = f"{FAMILY}v1"
+SCHEMA = f"{FAMILY}v2"
 CLASS = "class.json"
 #: Characters of a value in a message: enough of a hash to tell two apart.
 MOST_SHOWN = 24
-#: What `shard` may be.
-_SHARD = r"([1-9]\d{0,5}/[1-9]\d{0,5})?"
 #: What may be another when everything is graded anew.
 MACHINE = {"grader", "ros", "python", "isolation"}
 _NAMED = {
@@ -33,7 +30,6 @@ _NAMED = {
     "grader": say("the grader's version"),
     "ros": say("the version of rclpy and the ROS release"),
     "python": say("the version of Python"),
-    "shard": say("the shard (--shard)"),
     "isolation": say("the isolation"),
 }
 
@@ -48,7 +44,6 @@ class ClassFile:
         time: the clock that submissions lived by.
         seed: chose where the varied runs start; None: the exercise's own.
         grader, ros, python: versions.
-        shard: "I/N" where the folder holds one of several parts of a class; '' for all of it.
         hand_ins: how many there will be when it is finished; 0 where nobody has said it yet.
         isolation: the level at which all are run; '' where none has been yet, or there is none.
     """
@@ -60,16 +55,15 @@ class ClassFile:
     grader: str = ""
     ros: str = ""
     python: str = ""
-    shard: str = ""
     hand_ins: int = 0
     isolation: str = ""
 
     @classmethod
-    def of(cls, exercise: Exercise, time: Clock, seed: int | None, shard: str = "") -> Self:
+    def of(cls, exercise: Exercise, time: Clock, seed: int | None) -> Self:
         """Of a call."""
         ros = f"rclpy {versions.rclpy()} {versions.ros_distro()}".strip()
         ours, python = versions.grader(), versions.python()
-        return cls(exercise.name, exercise.sha256, time, seed, ours, ros, python, shard)
+        return cls(exercise.name, exercise.sha256, time, seed, ours, ros, python)
 
     def put(self, out: Path) -> None:
         """Write it.
@@ -136,9 +130,9 @@ class ClassFile:
         except TypeError as error:
             raise ValueError(say("is damaged: {why}", why=str(error))) from None
         json_file.typed(found)
-        if not re.fullmatch(_SHARD, found.shard) or found.isolation not in ("", *LEVELS):
-            told = f"{found.shard!r}, {found.isolation!r}"
-            raise ValueError(say("is damaged: its shard and isolation are {told}", told=told))
+        if found.isolation not in ("", *LEVELS):
+            told = f"{found.isolation!r}"
+            raise ValueError(say("is damaged: its isolation is {told}", told=told))
         return found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
     from grader.batch.find import Found
     from grader.batch.store import Store
-    from grader.exercise.exercise import Exercise
     from grader.result.visible import View
 
 JUDGED, GRADER_FAILED = 0, 3
@@ -78,17 +77,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="",
         metavar="failed|all|ID",
         help=tell("grade anew: where the grader failed, everything, or one"),
-    )
-    parser.add_argument(
-        "--shard", type=_shard, default=(1, 1), metavar="I/N", help=tell("only the I-th of N parts")
-    )
-    parser.add_argument(
-        "--merge",
-        type=Path,
-        nargs="+",
-        default=[],
-        metavar="DIR",
-        help=tell("put parts together that --shard has made, instead of grading"),
     )
     parser.add_argument(
         "--regrade",
@@ -144,17 +132,12 @@ def main(args: argparse.Namespace) -> int:
 
     exercise = load_exercise(args.exercise)
     path = args.exercise if args.exercise == exercise.name else str(Path(args.exercise).absolute())
-    order = Order(exercise, path, args.time, args.seed, args.again, args.shard)
+    order = Order(exercise, path, args.time, args.seed, args.again)
     messages = Console(stderr=True, highlight=False)
-    with ExitStack() as held:
-        found = None if args.merge else held.enter_context(_found(args, messages))
-        store = held.enter_context(Store.opened(args.out))
-        if found is None:
-            _merge(args, exercise, store, messages)
-        else:
-            order = replace(order, isolation=begun_at(store, args.again, args.isolation or ""))
-            check_same_class(store, order.class_file, order.again)
-            _grade(args, order, found, store, messages)
+    with _found(args, messages) as found, Store.opened(args.out) as store:
+        order = replace(order, isolation=begun_at(store, args.again, args.isolation or ""))
+        check_same_class(store, order.class_file, order.again)
+        _grade(args, order, found, store, messages)
         graded = entries(args.out)
         _tell(messages, outputs.write(args.out, graded, exercise, view, args.assignment))
     class_progress.summarise(messages, graded, args.out)
@@ -218,11 +201,8 @@ def _grade(
 
 def _check_words(args: argparse.Namespace) -> None:
     """Refuse a call that asks for two things, or for none."""
-    asked = [bool(args.submissions), bool(args.merge), bool(args.regrade)]
-    if sum(asked) != 1:
-        raise UsageError(
-            say("name one: the submissions, parts to --merge, or a class to --regrade")
-        )
+    if bool(args.submissions) == bool(args.regrade):
+        raise UsageError(say("name one: the submissions, or a class to --regrade"))
     if args.apply and not args.regrade:
         raise UsageError(say("--apply belongs to --regrade DIR"))
     if args.out is None and not args.regrade:
@@ -252,12 +232,6 @@ def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages
     return lambda tasks: cluster.work(tasks, args.scheduler, tell, isolation)
 
 
-def _merge(args: argparse.Namespace, exercise: Exercise, store: Store, messages: Console) -> None:
-    from grader.batch.merge import merge
-
-    _tell(messages, merge(args.merge, exercise, store))
-
-
 def _tell(console: Console, notes: Sequence[str]) -> None:
     for note in notes:
         console.print(Text(for_terminal(told(note))), soft_wrap=True)
@@ -270,12 +244,3 @@ def processes(text: str) -> int:
             tell("expected a number of processes, found {text}", text=text)
         )
     return int(text)
-
-
-def _shard(text: str) -> tuple[int, int]:
-    match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
-    if match is None or not 1 <= int(match[1]) <= int(match[2]):
-        raise argparse.ArgumentTypeError(
-            tell("expected I/N with I from 1 to N, found {text}", text=text)
-        )
-    return int(match[1]), int(match[2])

@@ -1,4 +1,4 @@
-"""examples/batch: a class on many machines, with what starts things on them imitated."""
+"""examples/batch: a class on many machines, held against what their documents say."""
 
 from __future__ import annotations
 
@@ -9,91 +9,15 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 BATCH = ROOT / "examples" / "batch"
 PYPROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-PARTS = 16
-#: `sbatch`: an array is run at once, one task after the other.
-SBATCH = """
-while [ "${1#-}" != "$1" ]; do
-    case $1 in --array=*) export SLURM_ARRAY_TASK_COUNT=${1#--array=1-} ;; esac
-    shift
-done
-for n in $(seq "${SLURM_ARRAY_TASK_COUNT:-1}"); do SLURM_ARRAY_TASK_ID=$n bash "$@" || code=$?; done
-echo "7;cluster"
-"""
-#: `parallel`: the command stands after --quote, the inputs after :::
-PARALLEL = r"""
-while [ "$1" != --quote ]; do shift; done
-shift
-command=()
-while [ "$1" != ::: ]; do command+=("$1"); shift; done
-shift
-for n; do "${command[@]//\{\}/$n}"; done
-"""
-
-
-class Machine:
-    """A machine with a `grader` that only writes down its words, a line for each call."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.calls = folder / "calls.txt"
-        grader = f"printf '%s\\t' \"$@\" >>'{self.calls}'; echo >>'{self.calls}'\n"
-        for name, text in (("grader", grader), ("sbatch", SBATCH), ("parallel", PARALLEL)):
-            path = folder / "bin" / name
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(f"#!/bin/bash\n{text}")
-            path.chmod(0o755)
-
-    def run(self, script: str, *words: str) -> list[list[str]]:
-        """Run an example; the words of each call of the grader."""
-        env = {
-            **os.environ,
-            "PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}",
-            "GRADER": str(self.folder / "bin" / "grader"),
-        }
-        call = subprocess.run(
-            ["bash", str(BATCH / script), *words],
-            cwd=self.folder,
-            env=env,
-            capture_output=True,
-            text=True,
-        )
-        assert call.returncode == 0, call.stderr
-        return [line.split("\t")[:-1] for line in self.calls.read_text().splitlines()]
-
-
-@pytest.fixture
-def machine(tmp_path: Path) -> Machine:
-    folder = tmp_path / "a machine"
-    (folder / "handed in").mkdir(parents=True)
-    return Machine(folder)
 
 
 def loaded(file: str) -> Any:
     return yaml.safe_load((BATCH / file).read_text(encoding="utf-8"))
-
-
-@pytest.mark.parametrize("script", ["parallel.sh", "slurm/array.sh"])
-def test_each_part_is_graded_once_and_then_all_are_put_together(
-    machine: Machine, script: str
-) -> None:
-    *parts, merge = machine.run(script, "handed in", "the class", "--exercise", "square")
-    top = machine.folder
-    words = [word for call in parts for word in call]
-    assert [word for word in words if re.fullmatch(r"\d+/\d+", word)] == [
-        f"{n}/{PARTS}" for n in range(1, PARTS + 1)
-    ]
-    for number, call in enumerate(parts, 1):
-        assert call[:2] == ["batch", str(top / "handed in")]
-        assert call[call.index("--out") + 1] == str(top / f"the class.parts/{number}")
-        assert call[-2:] == ["--exercise", "square"]
-    assert merge[:2] == ["batch", "--merge"]
-    assert merge[-4:] == ["--out", str(top / "the class"), "--exercise", "square"]
 
 
 def test_the_workflow_follows_the_schema_and_has_its_actions_pinned() -> None:
@@ -105,25 +29,6 @@ def test_the_workflow_follows_the_schema_and_has_its_actions_pinned() -> None:
     known = (ROOT / "examples" / "ci" / "github" / "grade.yml").read_text()
     assert used
     assert [action for action in used if f"uses: {action} " not in known] == []
-
-
-def test_the_workflow_has_a_job_for_each_part() -> None:
-    grade = loaded("github/grade-class.yml")["jobs"]["grade"]
-    parts = grade["strategy"]["matrix"]["part"]
-    assert parts == list(range(1, len(parts) + 1))
-    (shard,) = [step["env"]["SHARD"] for step in grade["steps"] if "env" in step]
-    assert shard == "${{ matrix.part }}/${{ strategy.job-total }}"
-
-
-def test_the_indexed_job_has_an_index_for_each_part() -> None:
-    job = loaded("kubernetes/indexed-job.yaml")["spec"]
-    (container,) = job["template"]["spec"]["containers"]
-    assert job["completionMode"] == "Indexed"
-    assert container["env"] == [{"name": "PARTS", "value": str(job["completions"])}]
-    *_, command = container["command"]
-    subprocess.run(["bash", "-n", "-c", command], check=True)
-    assert "part=$((JOB_COMPLETION_INDEX + 1));" in command  # indices begin with 0
-    assert job["template"]["spec"]["automountServiceAccountToken"] is False
 
 
 def test_scheduler_and_workers_of_the_dask_cluster_are_of_one_image() -> None:

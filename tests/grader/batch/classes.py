@@ -34,10 +34,9 @@ class Class:
         )
 
     def command(self, out: Path, *words: str) -> list[str]:
-        """The words of the call; it merges if it is told what."""
-        what = [] if "--merge" in words else [str(self.handed_in)]
-        common = ["--out", str(out), "--exercise", str(self.exercise)]
-        return [sys.executable, "-P", "-m", "grader", "batch", *what, *common, *words]
+        """The words of the call."""
+        common = [str(self.handed_in), "--out", str(out), "--exercise", str(self.exercise)]
+        return [sys.executable, "-P", "-m", "grader", "batch", *common, *words]
 
 
 ENV = {

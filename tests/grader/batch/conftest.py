@@ -57,16 +57,3 @@ def _grade(small_class: Class, folder: Path, *words: str) -> None:
 def graded(small_class: Class) -> Path:
     """The same class, graded in one go on this machine; nobody changes it."""
     return once.folder(partial(_grade, small_class), "graded", HANDED_IN, QUICK) / "class"
-
-
-@pytest.fixture(scope="session")
-def parts(small_class: Class) -> list[Path]:
-    """The class in two parts, each graded by a call of its own; nobody changes them."""
-
-    def make(folder: Path) -> None:
-        for number in "12":
-            (folder / number).mkdir()
-            _grade(small_class, folder / number, "--shard", f"{number}/2")
-
-    folder = once.folder(make, "two parts", HANDED_IN, QUICK)
-    return [folder / number / "class" for number in "12"]

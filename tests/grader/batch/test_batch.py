@@ -50,10 +50,9 @@ def start(*words: str | Path) -> subprocess.Popen[str]:
 def batch(*words: str | Path) -> tuple[int, str]:
     """The verb in this process, its worker in its own; the exit code, and what it said."""
     said = io.StringIO()
-    # a start of a worker takes longer than what most of these calls leave it to do
-    jobs = () if "--merge" in words else ("--jobs", "1")
     with redirect_stdout(said), redirect_stderr(said):
-        code = main(["batch", *map(str, words), *jobs])
+        # a start of a worker takes longer than what most of these calls leave it to do
+        code = main(["batch", *map(str, words), "--jobs", "1"])
     return code, said.getvalue()
 
 
@@ -305,13 +304,3 @@ def test_the_folder_of_a_class_is_no_submissions(graded: Path) -> None:
 def test_a_refused_call_leaves_no_class_behind(tmp_path: Path) -> None:
     code, messages = batch(tmp_path / "nowhere", "--out", tmp_path / "class")
     assert (code, (tmp_path / "class").exists()) == (2, False), messages
-
-
-def test_parts_of_different_cuts_are_no_class(tmp_path: Path) -> None:
-    none = {f"{name}/notes.txt": "I could not do it." for name in ("dora", "emil", "fay", "gil")}
-    handed_in = lay(tmp_path / "handed_in", none)
-    for part in ("1/2", "3/3"):
-        assert batch(handed_in, "--out", tmp_path / part[0], "--shard", part)[0] == 0
-    code, messages = batch("--merge", tmp_path / "1", tmp_path / "3", "--out", tmp_path / "whole")
-    assert (code, "not parts of one class" in messages) == (2, True), messages
-    assert not (tmp_path / "whole").exists()

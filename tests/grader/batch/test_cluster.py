@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -17,7 +19,7 @@ from grader.batch.entry import entries
 from grader.batch.level import OfCluster
 from grader.errors import UsageError
 from grader.run.processes import levels
-from tests.grader.batch.classes import DEADLINE_S, Class, told
+from tests.grader.batch.classes import DEADLINE_S, ENV, ROOT, Class, told
 from tests.grader.batch.clusters import Call, Cluster, kill
 
 pytestmark = pytest.mark.timeout(600)
@@ -55,6 +57,20 @@ def test_whatever_goes_a_worker_or_the_scheduler_each_is_graded_as_on_one_machin
         dask.start_scheduler()
         dask.start_worker()
         assert grading.wait() == 0, grading.text()
+    assert told(tmp_path / "out") == told(graded)
+
+
+@pytest.mark.more("a cluster of the tests' own proves the same")
+def test_the_example_of_one_machine_grades_as_without_a_cluster(
+    small_class: Class, graded: Path, tmp_path: Path
+) -> None:
+    script = ROOT / "examples" / "batch" / "one_machine.sh"
+    words = [small_class.handed_in, "--out", tmp_path / "out", "--exercise", small_class.exercise]
+    env = {**ENV, "PYTHON": sys.executable}
+    done = subprocess.run(
+        [script, *words], cwd=tmp_path, env=env, text=True, capture_output=True, timeout=DEADLINE_S
+    )
+    assert done.returncode == 0, done.stderr
     assert told(tmp_path / "out") == told(graded)
 
 
