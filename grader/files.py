@@ -28,6 +28,24 @@ _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,9})")
 _BEGINNING = 200
 
 
+def cannot_write(path: Path, why: str) -> UsageError:
+    """What a caller is told of a file or folder that cannot be written."""
+    return UsageError(say("cannot write {path}: {why}", path=str(path), why=why))
+
+
+@contextlib.contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Something is written at a path: what the system refuses is told of it.
+
+    Raises:
+        UsageError: the system refuses it.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise cannot_write(path, error.strerror or str(error)) from None
+
+
 def write(path: Path, content: str) -> None:
     """Write a text as UTF-8, whole or not at all; folders are made if need be.
 
@@ -39,7 +57,7 @@ def write(path: Path, content: str) -> None:
         UsageError: it cannot be written; what was there before is still there.
     """
     data = content.encode("utf-8")
-    try:
+    with writing(path):
         descriptor = _descriptor(path)
         if descriptor is not None:
             with os.fdopen(os.dup(descriptor), "wb") as file:
@@ -48,10 +66,6 @@ def write(path: Path, content: str) -> None:
             path.write_bytes(data)
         else:
             _write_beside(_target(path), data)
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-        ) from None
 
 
 def check_writable(path: Path) -> None:
@@ -63,9 +77,9 @@ def check_writable(path: Path) -> None:
     try:
         why_not = _why_not(path)
     except OSError as error:
-        why_not = error.strerror
+        why_not = error.strerror or str(error)
     if why_not:
-        raise UsageError(say("cannot write {path}: {why}", path=str(path), why=why_not))
+        raise cannot_write(path, why_not)
 
 
 def _why_not(path: Path) -> str | None:
@@ -99,20 +113,15 @@ def check_replaceable(path: Path, schema: str, inputs: Iterable[Path]) -> None:
     check_is_no_input(path, inputs)
     if _descriptor(path) is not None or not path.is_file():
         return
-    try:
-        with path.open("rb") as file:
-            begin = file.read(_BEGINNING)
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-        ) from None
+    with writing(path), path.open("rb") as file:
+        begin = file.read(_BEGINNING)
     if begin and not re.match(rb'\s*\{\s*"schema"\s*:\s*"' + re.escape(schema.encode()), begin):
-        raise UsageError(
+        raise cannot_write(
+            path,
             say(
-                "cannot write {path}: there is a file already that this grader has not "
-                "written; give another name, or remove it. Nothing was changed.",
-                path=str(path),
-            )
+                "there is a file already that this grader has not written; give another name, or "
+                "remove it. Nothing was changed."
+            ),
         )
 
 
@@ -125,12 +134,8 @@ def check_is_no_input(path: Path, inputs: Iterable[Path]) -> None:
     with contextlib.suppress(OSError):  # what cannot be looked at is told where it is read
         for one in inputs:
             if one.is_file() and path.exists() and path.samefile(one):
-                raise UsageError(
-                    say(
-                        "cannot write {path}: this call reads it; give another name. Nothing "
-                        "was changed.",
-                        path=str(path),
-                    )
+                raise cannot_write(
+                    path, say("this call reads it; give another name. Nothing was changed.")
                 )
 
 
@@ -140,16 +145,8 @@ def make_folder(folder: Path) -> None:
     Raises:
         UsageError: it cannot be made.
     """
-    try:
+    with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(
-            say(
-                "cannot make the folder {folder}: {why}",
-                folder=str(folder),
-                why=str(error.strerror),
-            )
-        ) from None
 
 
 @contextlib.contextmanager
@@ -179,13 +176,9 @@ def withdraw(path: Path) -> None:
     Raises:
         UsageError: it cannot be removed.
     """
-    try:
+    with writing(path):
         if _descriptor(path) is None and path.is_file():
             _target(path).unlink(missing_ok=True)
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-        ) from None
 
 
 def put(path: Path, content: bytes) -> None:
@@ -194,12 +187,8 @@ def put(path: Path, content: bytes) -> None:
     Raises:
         UsageError: it cannot be written.
     """
-    try:
+    with writing(path):
         _write_beside(path, content)
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-        ) from None
 
 
 @contextlib.contextmanager
@@ -209,13 +198,8 @@ def putting(path: Path) -> Iterator[BinaryIO]:
     Raises:
         UsageError: it cannot be written.
     """
-    try:
-        with _beside(path) as unfinished, unfinished.open("wb") as file:
-            yield file
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-        ) from None
+    with writing(path), _beside(path) as unfinished, unfinished.open("wb") as file:
+        yield file
 
 
 def read_own(path: Path, most_bytes: int) -> bytes:
@@ -251,9 +235,7 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     """
     mode = _mode(path)
     if mode is not None and stat.S_ISDIR(mode):
-        raise UsageError(
-            say("cannot write {path}: it is a folder; expected a file, or nothing", path=str(path))
-        )
+        raise cannot_write(path, say("it is a folder; expected a file, or nothing"))
     if mode is not None and stat.S_ISREG(mode) and schema is not None:
         check_replaceable(path, schema, inputs)
     check_writable(path.parent / uuid.uuid4().hex)
@@ -267,12 +249,7 @@ def check_can_fill(folder: Path) -> None:
     """
     mode = _mode(folder)
     if mode is not None and not (stat.S_ISDIR(mode) or stat.S_ISLNK(mode)):
-        raise UsageError(
-            say(
-                "cannot write into {folder}: it is a file; expected a folder, or nothing",
-                folder=str(folder),
-            )
-        )
+        raise cannot_write(folder, say("it is a file; expected a folder, or nothing"))
     check_writable((folder.parent if mode is None or stat.S_ISLNK(mode) else folder) / "new")
 
 
@@ -289,13 +266,13 @@ def check_leads_nowhere_else(folder: Path, foreign: Path) -> None:
     whole = Path(os.path.abspath(folder))  # noqa: PTH100  resolving would follow the link
     for at in (whole, *whole.parents):
         if at.is_symlink() and Path(os.path.realpath(at.parent)).is_relative_to(base):
-            raise UsageError(
+            raise cannot_write(
+                folder,
                 say(
-                    "cannot write into {folder}: {at} is a link that lies with the "
-                    "submission; name the folder itself, or another",
-                    folder=str(folder),
+                    "{at} is a link that lies with the submission; name the folder itself, or "
+                    "another",
                     at=str(at),
-                )
+                ),
             )
 
 
@@ -307,24 +284,15 @@ def clear(path: Path) -> None:
     """
     mode = _mode(path)
     if mode is not None and not stat.S_ISDIR(mode):
-        try:
+        with writing(path):
             path.unlink(missing_ok=True)
-        except OSError as error:
-            raise UsageError(
-                say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-            ) from None
 
 
 def _mode(path: Path) -> int | None:
     """What stands at a path, itself and not what it may lead to; None if nothing does."""
-    try:
+    with writing(path), contextlib.suppress(FileNotFoundError, NotADirectoryError):
         return path.lstat().st_mode
-    except (FileNotFoundError, NotADirectoryError):
-        return None
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-        ) from None
+    return None
 
 
 def _write_beside(path: Path, data: bytes) -> None:

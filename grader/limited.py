@@ -1,13 +1,13 @@
 """Work in a copy of this process, within limits of time and memory: what it breaks ends there.
 
-For code that should come to an end and may not: an author's check, a reader of a file from
+For code that should come to an end and may not: an author's checks, a reader of a file from
 anywhere. The copy is a fork, so it has everything that we have, and hands nothing back but bytes.
 Whatever happens to it, a loop without end, os._exit, an allocation without measure, a crash in C,
 is here a `LimitHit` with a line that says so.
 
 The kernel ends what goes on for too long (SIGPROF, SIGALRM, which nobody handles there), so no loop
-in C and no `except BaseException` helps against it. Where there is no fork that can be relied upon
-(macOS, Windows) the work is done in this process: then only what Python itself notices is a limit.
+in C and no `except BaseException` helps against it. Where submissions are not run (macOS, Windows)
+the work is done in this process: then only what Python itself notices is a limit.
 """
 
 from __future__ import annotations
@@ -22,20 +22,18 @@ import threading
 import time
 import traceback
 import warnings
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing, redirect_stdout, suppress
 from dataclasses import dataclass
 from struct import Struct
-from types import TracebackType
-from typing import NoReturn, Self
+from typing import NoReturn
 
 from grader import system
 from grader.language.phrase import say
 
-#: A number: of the question, and how long an answer is.
-_NUMBER = Struct("<q")
-#: What an answer begins with.
-_DONE, _HIT = b"=", b"!"
+#: Before each answer: whether it is one, why there is none, or that there are no more; its length.
+_HEAD = Struct("<cq")
+_ANSWER, _HIT, _END = b"=", b"!", b"."
 #: So long after its last second the kernel has surely ended a copy [s].
 _GRACE_S = 10.0
 #: So often it is asked whether it has stalled [s].
@@ -46,13 +44,13 @@ _ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIG
 
 @dataclass(frozen=True)
 class Limits:
-    """How much one answer may take.
+    """How much a copy may take.
 
     Attributes:
         cpu_s: processor time [s]: a busy machine shortens nothing.
         wall_s: time on the wall clock [s], for what sleeps.
         memory_bytes: more than this process has.
-        answer_bytes: the length of the answer.
+        answer_bytes: the length of one answer.
     """
 
     cpu_s: float = 20.0
@@ -62,8 +60,8 @@ class Limits:
 
 
 #: Made before: who has no memory left makes no sentence.
-_TOO_MUCH = say("needed more memory than it may have")
-_TOO_DEEP = say("called itself too deeply")
+TOO_MUCH = say("needed more memory than it may have")
+TOO_DEEP = say("called itself too deeply")
 
 
 class LimitHit(Exception):
@@ -78,101 +76,122 @@ class Stalled(NoEnd):
     """It waited, and nothing that it had started did anything either."""
 
 
-class _Slow(NoEnd):
+class Slow(NoEnd):
     """The time on the wall is over, though the processor's is not."""
 
 
-class Copy:
-    """A copy of this process, made when it is first asked, that answers by calling a function.
+Work = Callable[[], Iterator[bytes]]
 
-    What the function remembers from one answer to the next, it remembers in the copy.
+
+def stream(
+    work: Work, limits: Limits, is_stalled: Callable[[], bool] = lambda: False
+) -> Generator[bytes]:
+    """The answers that a generator yields in one copy of this process, each as it is made.
+
+    They have to be the same each time that it is called.
 
     Args:
-        answer: makes an answer of the number of a question; it raises nothing.
-        limits: of each answer.
+        limits: of all that it does.
         is_stalled: asked now and then whether to wait any longer.
+
+    Raises:
+        LimitHit: there are no more, while iterating.
     """
+    if not system.runs_submissions():
+        with redirect_stdout(sys.stderr):  # else it may be a result that a program reads
+            made = list(_within_python(work))
+        yield from made
+        return
+    given = 0
+    for is_last in (False, True):
+        try:
+            with closing(_Copy(work, limits)) as copy:
+                for number, answer in enumerate(copy.answers(is_stalled)):
+                    if number >= given:
+                        given += 1
+                        yield answer
+            return
+        except Slow:
+            # It may have waited for a lock that it can never get: a fork has those that other
+            # threads held. That is rare; the same again is not to be expected.
+            if is_last or threading.active_count() == 1:
+                raise
 
-    def __init__(
-        self,
-        answer: Callable[[int], bytes],
-        limits: Limits,
-        is_stalled: Callable[[], bool] = lambda: False,
-    ) -> None:
-        self._answer = answer
+
+def call(
+    work: Callable[[], bytes], limits: Limits, is_stalled: Callable[[], bool] = lambda: False
+) -> bytes:
+    """What one call of a function returns, within limits; see `stream`.
+
+    Raises:
+        LimitHit: it returned nothing.
+    """
+    with closing(stream(lambda: iter([work()]), limits, is_stalled)) as answers:
+        return next(answers)
+
+
+def _within_python(work: Work) -> Iterator[bytes]:
+    """Answers, and the limits that Python itself notices."""
+    try:
+        yield from work()
+    except MemoryError:
+        raise LimitHit(TOO_MUCH) from None
+    except RecursionError:
+        raise LimitHit(TOO_DEEP) from None
+
+
+class _Copy:
+    """A copy of this process that works until it is closed."""
+
+    def __init__(self, work: Work, limits: Limits) -> None:
         self._limits = limits
-        self._is_stalled = is_stalled
-        self._pid: int | None = None
-        self._questions = self._answers = -1
+        self._has_ended = False
+        self._answers, ours = os.pipe()
+        for output in (sys.stdout, sys.stderr):
+            with suppress(AttributeError, OSError, ValueError):  # there may be none
+                output.flush()
+        with warnings.catch_warnings():
+            # Of forking beside other threads; see `stream`.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            self._pid = os.fork()
+        if self._pid == 0:
+            _be_copy(work, limits, ours)
+        os.close(ours)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    def ask(self, number: int) -> bytes:
-        """The answer to a question.
+    def answers(self, is_stalled: Callable[[], bool]) -> Iterator[bytes]:
+        """All of them.
 
         Raises:
-            LimitHit: there is none; the next question is put to a new copy.
+            LimitHit: there are no more.
         """
-        if not system.runs_submissions():
-            return _within_python(self._answer, number)
-        try:
-            return self._ask(number)
-        except _Slow:
-            if threading.active_count() == 1:
-                raise
-            # A fork has the locks that other threads held, and nobody to give them back. That is
-            # rare; the same again is not to be expected.
-            return self._ask(number)
-
-    def close(self) -> int | None:
-        """End the copy, if there is one; how it ended, as `os.waitpid` tells it, if known."""
-        if self._pid is None:
-            return None
-        pid, self._pid = self._pid, None
-        os.close(self._questions)
-        os.close(self._answers)
-        with suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
-        try:
-            return os.waitpid(pid, 0)[1]
-        except ChildProcessError:  # somebody in this process waits for every child
-            return None
-
-    # In this process --------------------------------------------------------------------------
-
-    def _ask(self, number: int) -> bytes:
-        if self._pid is None:
-            self._fork()
         deadline = time.monotonic() + self._limits.wall_s + _GRACE_S
-        try:
-            os.write(self._questions, _NUMBER.pack(number))
-            head = self._read(1 + _NUMBER.size, deadline)
-            (length,) = _NUMBER.unpack(head[1:])
-            if not 0 <= length <= self._limits.answer_bytes:
-                raise LimitHit(
-                    say("answered with more than {size}", size=_mb(self._limits.answer_bytes))
-                )
-            body = self._read(length, deadline)
-        except (EOFError, BrokenPipeError):
-            raise self._why_it_ended() from None
-        except BaseException:
-            self.close()
-            raise
-        if head[:1] == _HIT:
-            raise LimitHit(body.decode())
-        return body
+        while True:
+            try:
+                mark, length = _HEAD.unpack(self._read(_HEAD.size, deadline, is_stalled))
+                if not 0 <= length <= self._limits.answer_bytes:
+                    raise LimitHit(
+                        say("answered with more than {size}", size=_mb(self._limits.answer_bytes))
+                    )
+                body = self._read(length, deadline, is_stalled)
+            except EOFError:
+                raise self._why_it_ended() from None
+            if mark == _HIT:
+                raise LimitHit(body.decode())
+            if mark == _END:
+                return
+            yield body
 
-    def _read(self, size: int, deadline: float) -> bytes:
-        """So many bytes of the answer."""
+    def close(self) -> None:
+        """End it."""
+        os.close(self._answers)
+        if not self._has_ended:  # else its number may be somebody else's
+            with suppress(ProcessLookupError):
+                os.kill(self._pid, signal.SIGKILL)
+            with suppress(ChildProcessError):  # somebody in this process waits for every child
+                os.waitpid(self._pid, 0)
+
+    def _read(self, size: int, deadline: float, is_stalled: Callable[[], bool]) -> bytes:
+        """So many bytes."""
         waiting = select.poll()
         waiting.register(self._answers, select.POLLIN)
         found = bytearray(size)
@@ -180,11 +199,11 @@ class Copy:
         while rest:
             left_s = deadline - time.monotonic()
             if left_s <= 0:
-                raise _Slow(
+                raise Slow(
                     say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
                 )
             if not waiting.poll(min(left_s, _LOOK_S) * 1000):
-                if self._is_stalled():
+                if is_stalled():
                     raise Stalled(say("waited for what did not come"))
                 continue
             count = os.readv(self._answers, [rest])
@@ -195,16 +214,12 @@ class Copy:
 
     def _why_it_ended(self) -> LimitHit:
         # It has hung up; with time it surely ends, by itself or by the kernel.
-        assert self._pid is not None
-        status = self._reaped(self._pid)
-        self.close()
+        status = self._reaped()
         if status is None:
             return LimitHit(say("ended the process that it ran in"))
         if os.WIFEXITED(status):
-            code = os.WEXITSTATUS(status)
-            return LimitHit(
-                say("ended the process that it ran in (exit code {code})", code=str(code))
-            )
+            code = str(os.WEXITSTATUS(status))
+            return LimitHit(say("ended the process that it ran in (exit code {code})", code=code))
         ended_by = os.WTERMSIG(status)
         if ended_by == signal.SIGPROF:
             return NoEnd(
@@ -214,89 +229,55 @@ class Copy:
                 )
             )
         if ended_by == signal.SIGALRM:
-            return _Slow(say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s))
+            return Slow(say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s))
         return LimitHit(
             say("ended the process that it ran in (signal {signal})", signal=str(ended_by))
         )
 
-    def _reaped(self, pid: int) -> int | None:
+    def _reaped(self) -> int | None:
         """How a copy that has hung up ended; None: it has not, or nobody knows."""
         deadline = time.monotonic() + _GRACE_S
         with suppress(ChildProcessError):
             while time.monotonic() < deadline:
-                found, status = os.waitpid(pid, os.WNOHANG)
+                found, status = os.waitpid(self._pid, os.WNOHANG)
                 if found:
+                    self._has_ended = True
                     return status
                 time.sleep(0.001)
         return None
 
-    def _fork(self) -> None:
-        theirs, self._questions = os.pipe()
-        self._answers, ours = os.pipe()
-        for stream in (sys.stdout, sys.stderr):
-            with suppress(AttributeError, OSError, ValueError):  # there may be none
-                stream.flush()
-        with warnings.catch_warnings():
-            # Of forking beside other threads; see `ask`.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            self._pid = os.fork()
-        if self._pid == 0:
-            self._be_copy(theirs, ours)
-        os.close(theirs)
-        os.close(ours)
 
-    # In the copy ------------------------------------------------------------------------------
+# In the copy ----------------------------------------------------------------------------------
 
-    def _be_copy(self, questions: int, answers: int) -> NoReturn:
-        code, copy = 1, os.getpid()
+
+def _be_copy(work: Work, limits: Limits, answers: int) -> NoReturn:
+    code, copy = 1, os.getpid()
+    try:
+        gc.freeze()  # to look through all that is inherited would copy it, and might end it
+        _confine(limits, answers)
+        _print_to_standard_error()
+        signal.setitimer(signal.ITIMER_PROF, limits.cpu_s)
+        signal.setitimer(signal.ITIMER_REAL, limits.wall_s)
         try:
-            gc.freeze()  # to look through all that is inherited would copy it, and might end it
-            _confine(self._limits, (questions, answers))
-            _print_to_standard_error()
-            while len(question := os.read(questions, _NUMBER.size)) == _NUMBER.size:
-                signal.setitimer(signal.ITIMER_PROF, self._limits.cpu_s)
-                signal.setitimer(signal.ITIMER_REAL, self._limits.wall_s)
-                try:
-                    mark, body = _DONE, _within_python(self._answer, _NUMBER.unpack(question)[0])
-                except LimitHit as hit:
-                    mark, body = _HIT, str(hit).encode()
+            for answer in _within_python(work):
                 if os.getpid() != copy:
                     os._exit(1)  # the work has forked, and this one is no copy that was asked
-                signal.setitimer(signal.ITIMER_PROF, 0)
-                signal.setitimer(signal.ITIMER_REAL, 0)
-                with suppress(AttributeError, OSError, ValueError):
-                    sys.stderr.flush()
-                _write(answers, mark + _NUMBER.pack(len(body)) + body)
-            code = 0
-        except BaseException:
-            traceback.print_exc()
-        finally:
-            os._exit(code)
+                _write(answers, _HEAD.pack(_ANSWER, len(answer)) + answer)
+            last, why = _END, b""
+        except LimitHit as hit:
+            last, why = _HIT, str(hit).encode()
+        with suppress(AttributeError, OSError, ValueError):
+            sys.stderr.flush()
+        if os.getpid() == copy:
+            _write(answers, _HEAD.pack(last, len(why)) + why)
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        os._exit(code)
 
 
-def call(
-    work: Callable[[], bytes], limits: Limits, is_stalled: Callable[[], bool] = lambda: False
-) -> bytes:
-    """What one call of a function returns, within limits; see `Copy`.
-
-    Raises:
-        LimitHit: it returned nothing.
-    """
-    with Copy(lambda _: work(), limits, is_stalled) as copy:
-        return copy.ask(0)
-
-
-def _within_python(answer: Callable[[int], bytes], number: int) -> bytes:
-    """An answer, or the limits that Python itself notices."""
-    try:
-        return answer(number)
-    except MemoryError:
-        raise LimitHit(_TOO_MUCH) from None
-    except RecursionError:
-        raise LimitHit(_TOO_DEEP) from None
-
-
-def _confine(limits: Limits, kept: Iterable[int]) -> None:
+def _confine(limits: Limits, kept: int) -> None:
     """Nothing of what this copy does reaches further than itself, or lasts."""
     import resource  # here: Windows has none
 
@@ -308,7 +289,7 @@ def _confine(limits: Limits, kept: Iterable[int]) -> None:
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     # Whoever waits for the other end of one of our sockets is not to wait for this copy.
     for path in list((system.PROC / "self" / "fd").iterdir()):
-        if int(path.name) > 2 and int(path.name) not in kept:
+        if int(path.name) > 2 and int(path.name) != kept:
             with suppress(OSError):
                 os.close(int(path.name))
     pages = int((system.PROC / "self" / "statm").read_text(encoding="ascii").split()[0])

@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader import scratch, strict_json, versions
+from grader import files, scratch, strict_json, versions
 from grader.batch import parcel, pool
 from grader.batch.parcel import Unfit
 from grader.batch.store import RUN, STUDENTS
@@ -183,9 +183,7 @@ def unpack(package: object, task: Task) -> Answer:
     except OSError as error:
         why = error.strerror or str(error)
         if error.errno not in _OF_NAMES:
-            raise UsageError(
-                say("cannot write into {folder}: {why}", folder=str(task.into), why=why)
-            ) from None
+            raise files.cannot_write(task.into, why) from None
     else:
         return _as_asked(answer, task)
     return Answer("failed", say("what a worker sent back cannot be used: {why}", why=why))

@@ -25,7 +25,6 @@ from grader.batch.entry import ENTRY, SUBMISSIONS
 from grader.batch.page.thumb import THUMB
 from grader.batch.similar.behaviour import NAME as BEHAVIOUR
 from grader.batch.similar.sources import SOURCE
-from grader.errors import UsageError
 from grader.language.phrase import Phrase, say
 from grader.removal import remove
 
@@ -95,7 +94,7 @@ class Store:
                 files.make_folder(self.out / ASIDE)
                 path.rename(self.out / ASIDE / path.name)
         except OSError as error:
-            raise _unwritable(self.out, error) from None
+            raise files.cannot_write(self.out, str(error)) from None
         return sorted(path.name for path in others)
 
     def new_place(self) -> Path:
@@ -124,7 +123,7 @@ class Store:
                     _link_all(self.run(key), made)
                 _replace(made, self.student(made.name), place)
         except OSError as error:
-            raise _unwritable(self.out, error) from None
+            raise files.cannot_write(self.out, str(error)) from None
         remove(place)
 
 
@@ -132,30 +131,20 @@ def _check_is_ours(out: Path) -> None:
     """Refuse a folder in which somebody else's files have our names, or links lead out of it."""
     for name in (STORE, SUBMISSIONS, ASIDE, BEFORE):
         if (out / name).is_symlink():
-            raise UsageError(
-                say(
-                    "cannot write into {folder}: it is a link; expected a folder, or nothing",
-                    folder=str(out / name),
-                )
-            )
+            raise files.cannot_write(out / name, say("it is a link; expected a folder, or nothing"))
     if (out / CLASS).is_file():
         return
     for name in (STORE, SUBMISSIONS):
         if (out / name).is_dir() and next((out / name).iterdir(), None) is not None:
-            raise UsageError(
+            raise files.cannot_write(
+                out,
                 say(
-                    "cannot write into {out}: it is no folder of a class ({file} is missing), and "
-                    "there is a folder {name} in it already. Give another --out. Nothing was "
-                    "changed.",
-                    out=str(out),
+                    "it is no folder of a class ({file} is missing), and there is a folder {name} "
+                    "in it already. Give another --out. Nothing was changed.",
                     file=CLASS,
                     name=Phrase(name),
-                )
+                ),
             )
-
-
-def _unwritable(out: Path, error: OSError) -> UsageError:
-    return UsageError(say("cannot write into {folder}: {why}", folder=str(out), why=str(error)))
 
 
 def _replace(made: Path, target: Path, place: Path) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from grader import files
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
@@ -77,9 +78,7 @@ def main(args: argparse.Namespace) -> int:
             say("cannot copy {source}: {why}; nothing was written", source=source, why=why)
         ) from None
     except OSError as error:
-        raise UsageError(
-            say("cannot write {folder}: {strerror}", folder=folder, strerror=error.strerror)
-        ) from None
+        raise files.cannot_write(folder, error.strerror or str(error)) from None
     has_starter = exercise.starter is not None
     if has_starter:
         print(tell("The starter package is in {folder}.", folder=folder))

@@ -122,13 +122,8 @@ def _print(content: str) -> None:
 
 
 def _append(path: Path, content: str) -> None:
-    try:
-        with path.open("a", encoding="utf-8") as file:
-            file.write(content)
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(path), why=str(error.strerror))
-        ) from None
+    with files.writing(path), path.open("a", encoding="utf-8") as file:
+        file.write(content)
 
 
 def _summary_file() -> Path:

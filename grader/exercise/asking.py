@@ -1,29 +1,29 @@
-"""Asks checks for their findings, each within limits: an author's loop without end is no grader's.
+"""Asks the checks of an exercise for their findings, in one copy of this process with one limit.
 
-The checks of one judging share one copy of this process (`grader.limited`); a finding comes back as
-strict JSON. Where a check ends its copy, the next one gets a new copy.
+Each finding comes as it is made, as strict JSON. Where a check ends the copy, or its time is over,
+that one and those after it have none.
 """
 
 from __future__ import annotations
 
 import json
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
-from grader import strict_json
-from grader.exercise.foreign import contained
+from grader import limited, strict_json
 from grader.exercise.verdict import Evidence, Expected, Finding, wrong_with
 from grader.language import stored
-from grader.limited import Copy, Limits
+from grader.limited import LimitHit, Limits
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 
 CheckFunction = Callable[[Recordings, Mapping[str, Any]], Finding]
-
-LIMITS = Limits()
+#: Makes a text of what a check raised.
+Told = Callable[[CheckFunction, BaseException], str]
+#: Of all checks of a judging together; an ordinary one takes 0.04 s.
+LIMITS = Limits(cpu_s=60.0, wall_s=180.0)
 
 
 class NoFinding(Exception):
@@ -34,48 +34,30 @@ class NoFinding(Exception):
         self.was_raised = was_raised
 
 
-class Asked:
-    """The findings of checks about recordings, one by one, as they are asked for.
+class NotReached(Exception):
+    """A check has no finding since one, `by`, took too much; the text goes on from its name."""
 
-    Args:
-        functions: the checks by their names.
-        told: makes a text of what a check raised.
-    """
+    def __init__(self, text: str, by: str) -> None:
+        super().__init__(text)
+        self.by = by
 
-    def __init__(
-        self,
-        functions: Mapping[str, CheckFunction],
-        recordings: Recordings,
-        tolerances: Mapping[str, Any],
-        told: Callable[[CheckFunction, BaseException], str] | None = None,
-    ) -> None:
-        self._functions = functions
-        self._names = list(functions)
-        self._recordings = recordings
-        self._tolerances = tolerances
-        self._told = told or where_it_failed
-        self._copy = Copy(self._answer, LIMITS)
 
-    def __enter__(self) -> Self:
-        return self
+class Answers:
+    """What checks have answered; asked for one by its name."""
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._copy.close()
+    def __init__(self) -> None:
+        self._answers: dict[str, dict[str, Any]] = {}
+        self._not_reached = NotReached("", "")
 
     def __call__(self, name: str) -> Finding:
-        """What a check finds.
+        """What a check has found.
 
         Raises:
             NoFinding: it raised something, or returned what is no finding.
-            LimitHit: it did not come to an end.
+            NotReached: it, or one before it, did not come to an end.
             NotOver: it asked for a run that is not over.
         """
-        words = strict_json.loads(self._copy.ask(self._names.index(name)).decode())
+        words = self._answers.get(name, {"say": "nothing"})
         match words["say"]:
             case "finding":
                 found = words["finding"]
@@ -85,32 +67,86 @@ class Asked:
                 return stored.restored(made, words["phrases"])
             case "not over":
                 raise NotOver
-            case "interrupted":
-                raise KeyboardInterrupt
-        raise NoFinding(words["text"], was_raised=words["say"] == "raised")
+            case "limit":
+                raise NotReached(words["text"], name)
+            case "raised" | "wrong":
+                raise NoFinding(words["text"], was_raised=words["say"] == "raised")
+        raise self._not_reached
 
-    def _answer(self, number: int) -> bytes:
-        return json.dumps(self._run(self._functions[self._names[number]])).encode()
+    def add(self, name: str, answer: dict[str, Any]) -> None:
+        """Take down what a check has answered."""
+        self._answers[name] = answer
 
-    def _run(self, function: CheckFunction) -> dict[str, Any]:
-        """In the copy: ask it."""
-        try:
-            with contained():
-                finding = function(self._recordings, self._tolerances)
-        except KeyboardInterrupt:
-            return {"say": "interrupted"}
-        except NotOver:
-            return {"say": "not over"}
-        except (MemoryError, RecursionError):  # limits, too
-            raise
-        except BaseException as error:  # SystemExit too: a check must not end us unjudged
-            return {"say": "raised", "text": self._told(function, error)}
-        is_alone = isinstance(self._recordings, NominalAlone)
-        wrong = wrong_with(finding, 1 if is_alone else len(list(self._recordings)))
-        if wrong:
-            return {"say": "wrong", "text": wrong}
-        said = {**asdict(finding), "share": float(finding.share)}
-        return {"say": "finding", "finding": said, "phrases": stored.phrases_in(finding)}
+    def end(self, hit: LimitHit, running: str) -> None:
+        """Take down that there are no more."""
+        self._not_reached = NotReached(hit.args[0], running)
+
+
+def ask(
+    functions: Mapping[str, CheckFunction],
+    after: Mapping[str, Sequence[str]],
+    recordings: Recordings,
+    tolerances: Mapping[str, Any],
+    told: Told | None = None,
+    rounds: int = 1,
+) -> list[Answers]:
+    """Ask checks in their order about recordings; one that waits for one that fails is not asked.
+
+    Args:
+        after: of each check those that have to pass before.
+        told: where it failed, for people, if not `where_it_failed`.
+        rounds: all of it so often, in the same process.
+
+    Returns:
+        A round each.
+    """
+
+    def work() -> Iterator[bytes]:
+        for number in range(rounds):
+            passed: dict[str, bool] = {}
+            for name, function in functions.items():
+                if all(passed.get(each, True) for each in after[name]):
+                    yield json.dumps([number, name, None]).encode()
+                    answer = _run(function, recordings, tolerances, told or where_it_failed)
+                    yield json.dumps([number, name, answer]).encode()
+                    found = answer.get("finding")
+                    passed[name] = bool(found and found["judged"] and found["share"] >= 1)
+                else:
+                    passed[name] = False
+
+    made = [Answers() for _ in range(rounds)]
+    running = ""
+    try:
+        for answer in limited.stream(work, LIMITS):
+            number, running, words = strict_json.loads(answer.decode())
+            if words is not None:
+                made[number].add(running, words)
+    except LimitHit as hit:
+        for each in made:
+            each.end(hit, running)
+    return made
+
+
+def _run(
+    function: CheckFunction, recordings: Recordings, tolerances: Mapping[str, Any], told: Told
+) -> dict[str, Any]:
+    """In the copy: ask one."""
+    try:
+        finding = function(recordings, tolerances)
+    except NotOver:
+        return {"say": "not over"}
+    except MemoryError:
+        return {"say": "limit", "text": limited.TOO_MUCH}
+    except RecursionError:
+        return {"say": "limit", "text": limited.TOO_DEEP}
+    except BaseException as error:  # SystemExit too: a check must not end the others unjudged
+        return {"say": "raised", "text": told(function, error)}
+    is_alone = isinstance(recordings, NominalAlone)
+    wrong = wrong_with(finding, 1 if is_alone else len(list(recordings)))
+    if wrong:
+        return {"say": "wrong", "text": wrong}
+    said = {**asdict(finding), "share": float(finding.share)}
+    return {"say": "finding", "finding": said, "phrases": stored.phrases_in(finding)}
 
 
 def where_it_failed(function: CheckFunction, error: BaseException) -> str:

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from grader.errors import CheckFailed
-from grader.exercise.asking import Asked, NoFinding
+from grader.exercise import asking
+from grader.exercise.asking import Answers, NoFinding, NotReached
 from grader.exercise.verdict import Finding, Verdict
 from grader.language.phrase import authored, chained, reason, say
-from grader.limited import LimitHit
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 
 Tolerances = Mapping[str, Any]
@@ -45,7 +45,7 @@ class Check:
     rubric: str = ""
 
 
-#: Asks a check, by its name, for its finding; see `grader.exercise.asking.Asked`.
+#: Asks a check, by its name, for its finding; see `grader.exercise.asking`.
 Ask = Callable[[str], Finding]
 
 
@@ -58,11 +58,6 @@ class Checks:
 
     def __iter__(self) -> Iterator[Check]:
         return iter(self._checks)
-
-    @property
-    def functions(self) -> Mapping[str, CheckFunction]:
-        """Their functions by their names."""
-        return {check.name: check.function for check in self}
 
     def said(self, titles: Words, rubrics: Words) -> Checks:
         """The same checks with titles and rubrics in other languages, each by its check's name."""
@@ -152,17 +147,42 @@ def judge(
     """
     lacking = next((each.run for each in recordings.varied if each.run.outcome == "not_run"), None)
     if lacking is None:
-        with Asked(checks.functions, recordings, tolerances) as asked:
-            return judge_by(asked, checks, points)
+        return judge_by(answers(recordings, checks, points, tolerances), checks, points)
+    answered = answers(NominalAlone(recordings.nominal), checks, points, tolerances)
 
     def ask(name: str) -> Finding:
         try:
-            return asked(name)
+            return answered(name)
         except NotOver:
             return Finding(0.0, say("Not judged: {why}.", why=lacking.flags[0]), judged=False)
 
-    with Asked(checks.functions, NominalAlone(recordings.nominal), tolerances) as asked:
-        return judge_by(ask, checks, points)
+    return judge_by(ask, checks, points)
+
+
+def answers(
+    recordings: Recordings,
+    checks: Checks,
+    points: Mapping[str, float],
+    tolerances: Tolerances,
+    told: asking.Told | None = None,
+) -> Answers:
+    """What the checks that the exercise gives points for say of recordings."""
+    return rounds(recordings, checks, points, tolerances, told)[0]
+
+
+def rounds(
+    recordings: Recordings,
+    checks: Checks,
+    points: Mapping[str, float],
+    tolerances: Tolerances,
+    told: asking.Told | None = None,
+    many: int = 1,
+) -> list[Answers]:
+    """The same, so many times in one process."""
+    asked = [check for check in checks if check.name in points]
+    functions = {check.name: check.function for check in asked}
+    after = {check.name: check.depends_on for check in asked}
+    return asking.ask(functions, after, recordings, tolerances, told, many)
 
 
 def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:
@@ -211,11 +231,12 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
         )
     try:
         finding = ask(check.name)
-    except LimitHit as hit:
+    except NotReached as hit:
         return not_judged(
             say(
-                "Not judged: the check {what}. That is a fault of the exercise, not of the "
+                "Not judged: the check {name} {what}. That is a fault of the exercise, not of the "
                 "submission.",
+                name=repr(hit.by),
                 what=hit.args[0],
             ),
             say(

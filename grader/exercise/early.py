@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from grader.errors import CheckFailed
-from grader.exercise.asking import Asked
-from grader.exercise.check import Checks, Tolerances, judge_one
+from grader.exercise.check import Checks, Tolerances, answers, judge_one
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import NominalAlone, NotOver, Recording
 
@@ -20,11 +19,7 @@ def judge_nominal(
     on; all others are left out. One that fails itself is left out as well: who judges all runs is
     told of it.
     """
-    with Asked(checks.functions, NominalAlone(nominal), tolerances) as asked:
-        return _judge_as_far(asked, checks, points)
-
-
-def _judge_as_far(asked: Asked, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:
+    answered = answers(NominalAlone(nominal), checks, points, tolerances)
     verdicts: dict[str, Verdict] = {}
     waiting: set[str] = set()
     for check in checks:
@@ -34,7 +29,7 @@ def _judge_as_far(asked: Asked, checks: Checks, points: Mapping[str, float]) -> 
             waiting.add(check.name)
             continue
         try:
-            verdicts[check.name] = judge_one(check, float(points[check.name]), asked, verdicts)
+            verdicts[check.name] = judge_one(check, float(points[check.name]), answered, verdicts)
         except (NotOver, CheckFailed):
             waiting.add(check.name)
     return [verdicts[name] for name in points if name in verdicts]

@@ -14,15 +14,6 @@ from pathlib import Path
 _one_at_a_time = threading.RLock()
 
 
-def _unlock() -> None:
-    global _one_at_a_time
-    _one_at_a_time = threading.RLock()
-
-
-if hasattr(os, "register_at_fork"):  # in a fork there is nobody else to give it back
-    os.register_at_fork(after_in_child=_unlock)
-
-
 @contextlib.contextmanager
 def contained() -> Iterator[None]:
     """What is printed goes to standard error; the current folder is the same afterwards.

@@ -10,13 +10,10 @@ from __future__ import annotations
 import importlib
 import importlib.machinery
 import importlib.util
-import opcode
-import os
 import re
 import sys
-import threading
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
@@ -26,7 +23,6 @@ from itertools import count
 from pathlib import Path
 from types import ModuleType
 
-from grader import limited, system
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
 from grader.exercise.foreign import contained
@@ -38,7 +34,6 @@ DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
 #: What the package of a folder that is in none is called, with a number.
 _PACKAGE = "_grader_exercise_"
 _numbers = count(1)
-_importing = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -146,23 +141,17 @@ def import_checks(place: Place) -> Checks:
 
     The files of a folder see each other as those of a package do: `from . import shape`.
 
-    What is not ours is imported in a copy of this process first: a loop without end, or the end of
-    the process, shows there.
-
     Raises:
         ExerciseError: there are none, or importing them fails; with file and line.
     """
     module: ModuleType
     if place.package:
         name = f"{place.package}.checks"
-        if not name.startswith(f"{GROUP}.") and name not in sys.modules:
-            _try(lambda: _imported(name, place))
         module = _imported(name, place)
     else:
         package = f"{_PACKAGE}{next(_numbers)}"
-        with contained(), _importing, _without_bytecode():
+        with contained(), _without_bytecode():
             importlib.invalidate_caches()
-            _try(lambda: _imported_folder(package, place))
             module = _imported_folder(package, place)
     checks = getattr(module, "checks", None)
     if not isinstance(checks, Checks):
@@ -186,34 +175,6 @@ def _imported_folder(package: str, place: Place) -> ModuleType:
         for name in [name for name in sys.modules if f"{name}.".startswith(f"{package}.")]:
             del sys.modules[name]
         raise
-
-
-def _try(import_it: Callable[[], ModuleType]) -> None:
-    """See whether an import comes to an end; what else is wrong with it, the next one tells.
-
-    Raises:
-        ExerciseError: it does not.
-    """
-    if not system.runs_submissions():
-        return
-
-    def trial() -> bytes:
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, 1)  # it is to print once, not twice
-        os.dup2(nowhere, 2)
-        try:
-            import_it()
-        except ExerciseError as error:
-            if isinstance(error.__cause__, MemoryError):
-                raise error.__cause__ from None
-        return b""
-
-    try:
-        limited.call(trial, limited.Limits())
-    except limited.LimitHit as hit:
-        raise ExerciseError(
-            say("{checks} cannot be imported: it {what}", checks=CHECKS, what=hit.args[0])
-        ) from None
 
 
 def locate(folder: Path, where: str) -> Path:
@@ -340,21 +301,9 @@ def _told_as_the_author_s(folder: Path, file: str) -> Iterator[None]:
     try:
         yield
     except BaseException as error:  # SystemExit too: a file must not end us unjudged
-        if isinstance(error, KeyboardInterrupt) and not _is_raised(error, folder):
+        if isinstance(error, KeyboardInterrupt):
             raise
         raise ExerciseError(describe(error, folder, file)) from error
-
-
-def _is_raised(error: BaseException, folder: Path) -> bool:
-    """Whether a statement `raise` in a file of the folder raised it, not a key on the keyboard."""
-    innermost = error.__traceback__
-    while innermost is not None and innermost.tb_next is not None:
-        innermost = innermost.tb_next
-    if innermost is None:
-        return False
-    code = innermost.tb_frame.f_code
-    raised = code.co_code[innermost.tb_lasti] == opcode.opmap["RAISE_VARARGS"]
-    return raised and Path(code.co_filename).is_relative_to(folder)
 
 
 def describe(error: BaseException, folder: Path, file: str = "") -> str:

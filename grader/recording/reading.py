@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -54,7 +55,7 @@ SIZES = {
 }
 #: An exercise has no more.
 MOST_VARIED_RUNS = 100
-#: Of reading one bag.
+#: Of reading the bags of a recording.
 READING = Limits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
 #: What begins an answer of the process that reads bags if it is no trace, but says why.
 _ERROR = b"!"
@@ -233,36 +234,35 @@ def _told(folder: Path) -> _Told:
 def _loaded(found: Sequence[_Told]) -> list[Recording]:
     """Recordings with what is in their bags, of which nobody knows how much they unpack to.
 
-    One copy of this process reads them all, each within the limits.
+    One copy of this process reads them all, within the limits.
     """
     bags = bag()
 
-    def answer(number: int) -> bytes:
-        told = found[number]
-        try:
-            trace = bags.read(told.folder / BAG, told.scene, told.run.ticks)
-            return transfer.pack(trace, told.scene)
-        except RecordingError as error:
-            return _ERROR + error.message.encode("utf-8", "backslashreplace")
+    def answers() -> Iterator[bytes]:
+        for told in found:
+            try:
+                trace = bags.read(told.folder / BAG, told.scene, told.run.ticks)
+                yield transfer.pack(trace, told.scene)
+            except RecordingError as error:
+                yield _ERROR + error.message.encode("utf-8", "backslashreplace")
 
-    with limited.Copy(answer, READING) as copy:
-        return [_recording(told, _trace(told, copy, n)) for n, told in enumerate(found)]
-
-
-def _trace(told: _Told, copy: limited.Copy, number: int) -> Trace:
+    made: list[Recording] = []
     try:
-        answer = copy.ask(number)
+        with closing(limited.stream(answers, READING)) as read:
+            for told, answer in zip(found, read, strict=False):  # asks for no more than that
+                if answer.startswith(_ERROR):
+                    raise RecordingError(answer.removeprefix(_ERROR).decode())
+                made.append(_recording(told, transfer.unpack(answer, told.scene)))
     except limited.LimitHit as hit:
+        folder = str(found[len(made)].folder)
         raise RecordingError(
             say(
                 "the bag in {folder} cannot be read: reading it {hit}",
-                folder=str(told.folder),
+                folder=folder,
                 hit=hit.args[0],
             )
         ) from None
-    if answer.startswith(_ERROR):
-        raise RecordingError(answer.removeprefix(_ERROR).decode())
-    return transfer.unpack(answer, told.scene)
+    return made
 
 
 def _recording(told: _Told, trace: Trace) -> Recording:

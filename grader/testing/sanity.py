@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from grader.exercise.asking import Asked, NoFinding
-from grader.exercise.check import judge_by
+from grader.exercise.asking import Answers, NoFinding, NotReached
+from grader.exercise.check import judge_by, rounds
 from grader.exercise.exercise import Exercise
 from grader.exercise.places import describe
 from grader.exercise.verdict import Evidence, Finding, Verdict
 from grader.language.phrase import say
-from grader.limited import LimitHit
 from grader.recording.recording import Recordings
 from grader.scenes import load_scene
 
@@ -27,32 +26,32 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
     """The verdicts on recordings, and what is wrong with the checks that made them."""
     faults: list[Fault] = []
 
-    def watched(name: str) -> Finding:
-        try:
-            finding = asked(name)
-        except NoFinding as error:
-            faults.append(
-                Fault(
-                    name,
-                    say("raises {error}", error=error.args[0])
-                    if error.was_raised
-                    else error.args[0],
+    def judged(answered: Answers) -> list[Verdict]:
+        def watched(name: str) -> Finding:
+            try:
+                finding = answered(name)
+            except NoFinding as error:
+                text = error.args[0]
+                faults.append(
+                    Fault(name, say("raises {error}", error=text) if error.was_raised else text)
                 )
-            )
-            return Finding(0, "The check found nothing.")
-        except LimitHit as hit:
-            faults.append(Fault(name, hit.args[0]))
-            return Finding(0, "The check found nothing.")
-        odd = list(_odd_about(finding, exercise, recordings))
-        faults.extend(Fault(name, text) for text in odd)
-        return finding
+                return Finding(0, "The check found nothing.")
+            except NotReached as hit:
+                if hit.by == name:
+                    faults.append(Fault(name, hit.args[0]))
+                return Finding(0, "The check found nothing.")
+            odd = list(_odd_about(finding, exercise, recordings))
+            faults.extend(Fault(name, text) for text in odd)
+            return finding
+
+        return judge_by(watched, exercise.checks, exercise.points)
 
     def told(_: object, error: BaseException) -> str:
         return describe(error, exercise.folder)
 
-    with Asked(exercise.checks.functions, recordings, exercise.tolerances, told) as asked:
-        # both times in the same process, which may remember what it should not
-        first, second = (judge_by(watched, exercise.checks, exercise.points) for _ in range(2))
+    # both times in the same process, which may remember what it should not
+    asked = rounds(recordings, exercise.checks, exercise.points, exercise.tolerances, told, many=2)
+    first, second = map(judged, asked)
     for once, again in zip(first, second, strict=True):
         if repr(once) != repr(again):  # not a number is none but looks like itself
             text = say("finds something else when it is asked again about the same recordings")

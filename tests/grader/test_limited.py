@@ -6,6 +6,7 @@ import os
 import re
 import signal
 import sys
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -14,53 +15,49 @@ import psutil
 import pytest
 
 from grader import limited, system
-from grader.limited import Copy, LimitHit, Limits
+from grader.limited import LimitHit, Limits
 
 BRIEF = Limits(cpu_s=0.3, wall_s=60.0, memory_bytes=2**26, answer_bytes=1000)
 ASLEEP = replace(BRIEF, wall_s=0.5)
 BUSY = replace(BRIEF, cpu_s=60.0)
 
 
-def test_an_answer_is_what_the_function_returns():
-    with Copy(lambda number: str(number * 2).encode(), Limits()) as copy:
-        assert [copy.ask(1), copy.ask(21)] == [b"2", b"42"]
-
-
-def test_it_is_another_process_that_remembers_what_it_has_done():
+def test_answers_come_as_they_are_made_from_one_other_process():
     seen = []
 
-    def answer(number):
-        seen.append(number)
-        return f"{os.getpid()} {seen}".encode()
+    def work():
+        for number in range(3):
+            seen.append(number)
+            yield f"{os.getpid()} {seen}".encode()
 
-    with Copy(answer, Limits()) as copy:
-        first, second = copy.ask(1).split(b" ", 1), copy.ask(2).split(b" ", 1)
-    assert first[0] == second[0] != str(os.getpid()).encode()
-    assert (second[1], seen) == (b"[1, 2]", [])
+    pids, told = zip(*(each.split(b" ", 1) for each in limited.stream(work, Limits())), strict=True)
+    assert told == (b"[0]", b"[0, 1]", b"[0, 1, 2]")
+    assert len(set(pids)) == 1 and pids[0] != str(os.getpid()).encode()
+    assert seen == []
 
 
-def backtracks(_):
+def backtracks():
     return str(re.match(r"(a+)+b", "a" * 60)).encode()
 
 
-def sleeps(_):
+def sleeps():
     time.sleep(600)
     return b""
 
 
-def closes_everything(_):
+def closes_everything():
     os.closerange(3, 1000)
     time.sleep(600)
     return b""
 
 
-def hoards(_):
+def hoards():
     kept = []
     while True:
         kept.append(bytearray(2**20))
 
 
-def raises(_):
+def raises():
     raise ValueError("nobody catches this")
 
 
@@ -70,33 +67,67 @@ WRONG = {
     "one that closes its files": (closes_everything, ASLEEP, "ended the process that it ran in"),
     "a hoarder": (hoards, BUSY, "needed more memory than it may have"),
     "one that leaves": (
-        lambda _: os._exit(7),
+        lambda: os._exit(7),
         BRIEF,
         "ended the process that it ran in (exit code 7)",
     ),
     "one that is killed": (
-        lambda _: os.kill(os.getpid(), signal.SIGKILL),
+        lambda: os.kill(os.getpid(), signal.SIGKILL),
         BRIEF,
         "ended the process that it ran in (signal 9)",
     ),
-    "one that says too much": (lambda _: bytes(1001), BRIEF, "answered with more than 0 MB"),
+    "one that says too much": (lambda: bytes(1001), BRIEF, "answered with more than 0 MB"),
     "one that raises": (raises, BRIEF, "ended the process that it ran in (exit code 1)"),
 }
 
 
 @pytest.mark.parametrize(("answer", "limits", "said"), WRONG.values(), ids=WRONG.keys())
-def test_what_hits_a_limit_is_told_and_the_next_question_finds_a_new_copy(
-    answer, limits, said, monkeypatch
-):
+def test_what_hits_a_limit_is_told_and_what_came_before_is_there(answer, limits, said, monkeypatch):
     monkeypatch.setattr(limited, "_GRACE_S", 0.1 if answer is closes_everything else 10.0)
-    with Copy(lambda number: answer(number) if number else b"well", limits) as copy:
-        with pytest.raises(LimitHit) as hit:
-            copy.ask(1)
-        assert said in str(hit.value)
-        assert copy.ask(0) == b"well"
-        pid = copy._pid
-    with pytest.raises(ProcessLookupError):
-        os.kill(pid, 0)
+
+    def work():
+        yield b"well"
+        yield answer()
+
+    family = psutil.Process().children()
+    answers = limited.stream(work, limits)
+    assert next(answers) == b"well"
+    with pytest.raises(LimitHit) as hit:
+        next(answers)
+    assert said in str(hit.value)
+    assert psutil.Process().children() == family
+
+
+def test_a_copy_that_got_a_lock_without_its_owner_is_made_again_and_nothing_comes_twice():
+    lock, is_held, is_over = threading.Lock(), threading.Event(), threading.Event()
+
+    def hold():
+        with lock:
+            is_held.set()
+            is_over.wait()
+
+    def work():
+        yield b"one"
+        if lock.locked():
+            is_over.set()  # in the copy, which nobody hears
+            lock.acquire()
+        yield b"two"
+
+    thread = threading.Thread(target=hold)
+    thread.start()
+    is_held.wait()
+    answers = limited.stream(work, ASLEEP)
+    assert next(answers) == b"one"
+    is_over.set()
+    while lock.locked():
+        os.sched_yield()
+    other = threading.Event()
+    keeps = threading.Thread(target=other.wait)
+    keeps.start()
+    assert list(answers) == [b"two"]
+    other.set()
+    for each in (thread, keeps):
+        each.join()
 
 
 def descriptors():
@@ -114,10 +145,11 @@ def test_nothing_is_left_of_a_copy():
 def test_a_copy_holds_no_file_of_ours_open():
     kept, given = os.pipe()
     try:
-        with Copy(lambda _: b"x", Limits()) as copy:
-            copy.ask(0)
-            os.close(given)
-            assert os.read(kept, 1) == b""
+        answers = limited.stream(lambda: iter([b"x", b"y"]), Limits())
+        next(answers)
+        os.close(given)
+        assert os.read(kept, 1) == b""
+        answers.close()
     finally:
         os.close(kept)
 

@@ -26,8 +26,6 @@ from grader.batch.regrade import html, judging, table
 from grader.batch.regrade.changes import Failure, Regrade
 from grader.batch.store import BEFORE, RECORDING, RUN, STUDENTS, Store
 from grader.batch.task import Task
-from grader.errors import UsageError
-from grader.language.phrase import say
 from grader.result.result import RESULT
 from grader.result.visible import View
 
@@ -87,9 +85,7 @@ def keep(found: Regrade, store: Store) -> Path:
         top.mkdir(exist_ok=True)
         made.rename(into)
     except OSError as error:
-        raise UsageError(
-            say("cannot write into {folder}: {why}", folder=str(top), why=str(error.strerror))
-        ) from None
+        raise files.cannot_write(top, error.strerror or str(error)) from None
     return into
 
 

@@ -27,9 +27,7 @@ from grader import files as whole_files
 from grader.batch.entry import Entry
 from grader.batch.similar import known
 from grader.batch.similar.sources import SOURCE, File, kept
-from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
-from grader.language.phrase import say
 
 FOLDER: Final = "export"
 JPLAG, DOLOS = "jplag", "dolos.zip"
@@ -44,16 +42,12 @@ def write(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
         UsageError: they cannot be written, or sources not read.
         ExerciseError: the exercise's solutions cannot be used.
     """
-    try:
+    with whole_files.writing(out / FOLDER):
         given = known.files(exercise)
         sources = [(entry, kept(entry.folder / SOURCE)) for entry in entries]
         present = [(entry, files) for entry, files in sources if files]
         _write_jplag(present, given, out / FOLDER / JPLAG)
         whole_files.put(out / FOLDER / DOLOS, dolos(present, given))
-    except OSError as error:
-        raise UsageError(
-            say("cannot write {path}: {why}", path=str(out / FOLDER), why=str(error.strerror))
-        ) from None
 
 
 def dolos(present: Sequence[tuple[Entry, list[File]]], given: Sequence[File]) -> bytes:

@@ -210,7 +210,7 @@ def test_a_class_of_which_a_part_is_a_link_is_not_written_into(tmp_path: Path, n
         folder.mkdir()
     (out / name).symlink_to(elsewhere)
     with (
-        pytest.raises(UsageError, match=rf"cannot write into .*{name}: it is a link"),
+        pytest.raises(UsageError, match=rf"cannot write .*{name}: it is a link"),
         Store.opened(out),
     ):
         pass

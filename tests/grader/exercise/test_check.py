@@ -219,19 +219,29 @@ def kills_itself(recordings, tolerances):
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
-@pytest.mark.parametrize(
-    ("function", "said"),
-    [
-        (endless, "did not come to an end in"),
-        (ends_the_process, "ended the process that it ran in (exit code 0)"),
-        (takes_all_memory, "needed more memory than it may have"),
-        (calls_itself, "called itself too deeply"),
-        (kills_itself, "ended the process that it ran in (signal 11)"),
-    ],
-)
-def test_a_check_that_hits_a_limit_is_not_judged_and_the_others_count(function, said, monkeypatch):
+ENDING = {
+    endless: "did not come to an end in",
+    ends_the_process: "ended the process that it ran in (exit code 0)",
+    kills_itself: "ended the process that it ran in (signal 11)",
+}
+LASTING = {
+    takes_all_memory: "needed more memory than it may have",
+    calls_itself: "called itself too deeply",
+}
+
+
+@pytest.mark.parametrize(("function", "said"), [*ENDING.items(), *LASTING.items()])
+def test_a_check_that_hits_a_limit_is_not_judged_and_those_before_it_count(
+    function, said, monkeypatch
+):
     monkeypatch.setattr(asking, "LIMITS", Limits(cpu_s=0.3, wall_s=30.0))
     checks = Checks()
+
+    @checks()
+    def before(recordings, tolerances):
+        """It comes before that."""
+        return Finding(1, "seen")
+
     checks()(function)
 
     @checks(after=(function.__name__,))
@@ -244,13 +254,19 @@ def test_a_check_that_hits_a_limit_is_not_judged_and_the_others_count(function, 
         """It has nothing to do with that."""
         return Finding(1, "seen")
 
-    found = verdicts(checks, {function.__name__: 5, "depends": 2, "other": 3})
+    found = verdicts(checks, {"before": 1, function.__name__: 5, "depends": 2, "other": 3})
     broken = found[function.__name__]
     assert (broken.status, broken.score, broken.max_score) == ("not_judged", 0, 5)
-    assert said in broken.rationale
+    assert f"the check {function.__name__!r} {said}" in broken.rationale
     assert "a fault of the exercise, not of the submission" in broken.rationale
+    assert found["before"].status == "passed"
+    assert "because “It depends" not in found["depends"].rationale
     assert found["depends"].status == "not_judged"
-    assert (found["other"].status, found["other"].score) == ("passed", 3)
+    if function in LASTING:  # Python itself has noticed, and goes on
+        assert found["other"].status == "passed"
+    else:
+        assert found["other"].status == "not_judged"
+        assert f"the check {function.__name__!r} {said}" in found["other"].rationale
 
 
 def test_a_finding_comes_back_as_it_was_made():
