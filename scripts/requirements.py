@@ -27,6 +27,8 @@ is_sourced = bool(os.environ.get("ROS_DISTRO"))  # the same rule as in setup.py
 dependencies = ours["dependencies"] + ([] if is_sourced else ours["without_ros"])
 tests = pyproject["project"]["optional-dependencies"]["test"] if "test" in sys.argv else []
 if os.environ.get("BOUNDS") == "lowest":
+    # our own build needs a newer setuptools than packages are read with
+    dependencies = [each for each in dependencies if not each.startswith("setuptools")]
     build, dependencies = map(lowest, build), map(lowest, dependencies)
     tests = [name for name in tests if not name.startswith(NOT_AT_LOWEST)]
 requirements = ["pip", *build, *dependencies, *tests]  # uv brings no pip

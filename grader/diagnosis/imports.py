@@ -79,8 +79,12 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
 
 def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
     """What it asks for is in its own package."""
-    slip = next((each for each in case.conduct.slips if each.kind == "beside"), None)
-    if slip is None or f"'{slip.name}'" not in raised.text:
+    file = raised.place.file if raised.place else ""
+    found = (
+        each for each in case.conduct.slips if each.kind == "beside" and each.place.file == file
+    )
+    slip = next((each for each in found if f"'{each.name}'" in raised.text), None)
+    if slip is None:
         return None
     name, near = told(slip.name), told(slip.near)
     package = near.rpartition(".")[0]

@@ -22,6 +22,7 @@ from grader.run.processes import usage
 from grader.run.processes.process import await_readable
 from grader.run.student.telling import asking_signal
 from grader.submission.opening import Submission
+from grader.submission.start import Slip
 
 MOST_BYTES = 65_536
 #: How long a process may take to say where it is [s]; it has nothing else to do.
@@ -138,7 +139,7 @@ def _conduct(text: str, submission: Submission, ended_s: float, computes: bool) 
         raise ValueError(f"more than {MOST_BYTES} bytes")
     told: dict[str, Any] = {
         **{"is_told": True, "ends": [], "spun_s": None, "waits": [], "slow": []},
-        **{"timers": [], "caught": [], "slips": []},
+        **{"timers": [], "caught": [], "slips": [_slip(each) for each in submission.slips]},
         **{"stop": None, "raised": None, "returned_s": None},
     }
     lines = text.splitlines()
@@ -172,8 +173,6 @@ def _add(told: dict[str, Any], line: Any) -> None:
             number, lines, sent = value
             bursts = [{"line": line, "times": times} for line, times in sent]
             told["ends"][number].update(lines=lines, sent=bursts)
-        case "slip":
-            told["slips"].append(value)
         case "wait" | "slow" | "timer" | "caught":
             number, value = value
             entries = told[_LISTS[what]]
@@ -191,6 +190,12 @@ def _add(told: dict[str, Any], line: Any) -> None:
             told[what] = value
         case _:  # also `blind`: our own code does not know this rclpy
             raise ValueError(f"told of {what!r:.40}")
+
+
+def _slip(found: Slip) -> dict[str, Any]:
+    """What the source has shown where it was read; it stands with what the process tells."""
+    place = {"file": found.file, "line": found.line, "function": "", "text": found.text}
+    return {"kind": found.kind, "name": found.name, "near": found.near, "place": place}
 
 
 def _places(told: dict[str, Any]) -> Iterator[dict[str, Any]]:

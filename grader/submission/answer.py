@@ -20,6 +20,7 @@ from grader.submission.start import (
     Launch,
     Program,
     Script,
+    Slip,
     Submission,
     Whole,
 )
@@ -70,6 +71,7 @@ def found(submission: Submission) -> bytes:
             "perhaps": _some(submission.imports.perhaps),
             "notes": [clip(note, _MAX_NOTE) for note in submission.notes[:_MAX_NOTES]],
             "unlaunched": [clip(note, _MAX_NOTE) for note in submission.unlaunched[:_MAX_NOTES]],
+            "slips": submission.slips,
             "added": [str(each) for each in submission.added],
             "in_package": str(submission.package) if submission.package else None,
         },
@@ -154,6 +156,7 @@ def decoded(said: dict[str, Any]) -> Submission:
             "perhaps": dict(perhaps),
             "notes": list(notes),
             "unlaunched": list(unlaunched),
+            "slips": list(slips),
             "added": list(added),
             "in_package": str() | None as package,
         } if all(isinstance(note, str) for note in (*notes, *unlaunched, *added)):
@@ -162,6 +165,7 @@ def decoded(said: dict[str, Any]) -> Submission:
                 *(name, Path(root), _start(start), _phrased(sentence, said), imports),
                 notes=_phrased(tuple(notes), said),
                 unlaunched=_phrased(tuple(unlaunched), said),
+                slips=tuple(map(_slip, slips)),
                 added=tuple(map(Path, added)),
                 package=Path(package) if package else None,
             )
@@ -187,6 +191,13 @@ def _program(said: object) -> Program:
             start = _start(entry)
             if isinstance(start, EntryPoint) and all(isinstance(each, str) for each in arguments):
                 return Program(name, start, tuple(arguments))
+    raise _nonsense()
+
+
+def _slip(said: object) -> Slip:
+    match said:
+        case [str(kind), str(name), str(near), str(file), int(line), str(text)]:
+            return Slip(kind, name, near, file, line, text)
     raise _nonsense()
 
 

@@ -15,7 +15,7 @@ from typing import Any, Final, NoReturn
 
 from grader.errors import SubmissionError, UsageError
 from grader.language.phrase import say
-from grader.submission import answer, encoding, limits, unpacking, whole
+from grader.submission import answer, encoding, limits, slips, unpacking, whole
 from grader.submission.finding import find
 from grader.submission.folder import shown
 from grader.submission.imports import read_imports
@@ -85,7 +85,8 @@ def _answer(request: dict[str, Any]) -> bytes:
         assert not isinstance(found.start, Whole)
         imports = read_imports(found.root, found.start, only)
         refused = encoding.faults(imports.files, found.root)
-        return answer.found(replace(found, imports=imports, notes=(*refused, *found.notes)))
+        notes, shows = (*refused, *found.notes), slips.look(found.root, imports.files)
+        return answer.found(replace(found, imports=imports, notes=notes, slips=shows))
     except (SubmissionError, UsageError) as error:
         return answer.refused(error)
     except OSError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.submission.private_copy import PrivateCopy
 
@@ -72,6 +73,21 @@ class Imports:
     files: tuple[Path, ...] = field(default=(), compare=False)
 
 
+class Slip(NamedTuple):
+    """What a look at the source shows; see `grader.recording.conduct.Slip`.
+
+    Attributes:
+        text: the line as it stands there.
+    """
+
+    kind: str
+    name: str
+    near: str
+    file: str
+    line: int
+    text: str = ""
+
+
 @dataclass(frozen=True)
 class Submission:
     """What was handed in, and how it starts."""
@@ -85,6 +101,8 @@ class Submission:
     notes: tuple[str, ...] = field(default=(), compare=False)
     #: the same of launch files that were read, and not run
     unlaunched: tuple[str, ...] = field(default=(), compare=False)
+    #: what its source shows that is seldom meant
+    slips: tuple[Slip, ...] = field(default=(), compare=False)
     #: files that it lacked, and has been given, below `root`
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none

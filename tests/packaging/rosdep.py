@@ -23,6 +23,7 @@ KEYS = {
     "pyyaml": "python3-yaml",
     "rich": "python3-rich",
     "rosbags": "python3-rosbags-pip",
+    "setuptools": "python3-setuptools",
     "watchdog": "python3-watchdog",
     "websockets": "python3-websockets",
     "xacro": "xacro",

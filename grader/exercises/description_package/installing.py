@@ -9,7 +9,7 @@ from grader.exercise.verdict import Finding
 from grader.exercises.description_package.looked import Looked, folder_of, how_it_ends, said, shown
 from grader.language.phrase import joined, say
 from grader.scenes.package.said import phrase_of
-from grader.scenes.package.trace import EMPTY, Lacking, Problem
+from grader.scenes.package.trace import EMPTY, Lacking, Launch, Problem
 
 #: One thing missing leaves so much; two leave nothing.
 ONE_MISSING = 0.5
@@ -32,12 +32,13 @@ class Missing(NamedTuple):
 
 def judge(looked: Looked) -> Finding:
     """Whether everything is installed that something asks for."""
-    stops = _stops(looked)
-    if stops is not None:
-        return stops
     found: dict[str, list[Missing]] = {}
+    if (stop := stops(looked)) is not None:
+        return Finding(0, stop.rationale, stop.help)
     for each in _missing(looked):
         found.setdefault(each.what, []).append(each)
+    if found and (not_known := not_followed(looked)):
+        return not_known
     if not found:
         return Finding(
             1,
@@ -55,36 +56,32 @@ def judge(looked: Looked) -> Finding:
     return Finding(ONE_MISSING if len(found) == 1 else 0.0, joined(told, " "), first[0].help)
 
 
-def _stops(looked: Looked) -> Finding | None:
+def not_followed(looked: Looked) -> Finding | None:
+    """Of a set-up that nobody can follow here; None where it can be."""
+    problem = looked.setup.problem
+    if problem is None or problem.kind != "unknown":
+        return None
+    return Finding(
+        0,
+        say(
+            "Not judged: {file} could not be followed: {why}.",
+            file=problem.file or "setup.py",
+            why=said(problem),
+        ),
+        say("Tell whoever runs the course."),
+        judged=False,
+    )
+
+
+def stops(looked: Looked) -> Missing | None:
     """What keeps the package from being built at all."""
     setup = looked.setup
     if setup.problem is not None:
-        problem = setup.problem
-        if problem.kind == "unknown":
-            return None if next(_missing(looked), None) is None else _not_known(problem)
-        if problem.text.startswith("there is no"):
-            return Finding(
-                0,
-                say("The package cannot be built: {why}.", why=phrase_of(problem.text)),
-                say(
-                    "<build_type> in package.xml is {build_type!r}: ament_python wants a "
-                    "setup.py, ament_cmake a CMakeLists.txt. Correct the one, or add the "
-                    "other.",
-                    build_type=shown(setup.build_type) or "ament_python",
-                ),
-            )
-        return Finding(
-            0,
-            say(
-                "{what_happens}: {build}.",
-                what_happens=how_it_ends("setup.py", problem),
-                build=_BUILD,
-            ),
-            say("Run `python3 setup.py --name` in the package's folder: it shows the same."),
-        )
-    if _is_cmake(looked) and setup.told and setup.told != looked.name:
-        return Finding(
-            0,
+        return None if setup.problem.kind == "unknown" else _ended(looked, setup.problem)
+    is_cmake = setup.build_type not in ("", "ament_python")
+    if is_cmake and setup.told and setup.told != looked.name:
+        return Missing(
+            "name",
             say(
                 "CMakeLists.txt says project({told}), and package.xml calls the "
                 "package {name}: {build}.",
@@ -95,10 +92,10 @@ def _stops(looked: Looked) -> Finding | None:
             say("Both have to be the same name, and the folder in share is called so."),
         )
     if setup.absent:
-        return _absent(shown(setup.absent[0]), _is_cmake(looked))
+        return _absent(shown(setup.absent[0]), is_cmake)
     if setup.folders:
-        return Finding(
-            0,
+        return Missing(
+            "folder",
             say(
                 "data_files lists {name!r}, which is a folder: {build} (can't copy: "
                 "not a regular file).",
@@ -113,11 +110,35 @@ def _stops(looked: Looked) -> Finding | None:
     return None
 
 
-def _absent(name: str, is_cmake: bool) -> Finding:
+def _ended(looked: Looked, problem: Problem) -> Missing:
+    """Of a set-up that comes to no end, or is not there."""
+    if problem.text.startswith("there is no"):
+        return Missing(
+            "set-up",
+            say("The package cannot be built: {why}.", why=phrase_of(problem.text)),
+            say(
+                "<build_type> in package.xml is {build_type!r}: ament_python wants a "
+                "setup.py, ament_cmake a CMakeLists.txt. Correct the one, or add the "
+                "other.",
+                build_type=shown(looked.setup.build_type) or "ament_python",
+            ),
+        )
+    return Missing(
+        "set-up",
+        say(
+            "{what_happens}: {build}.",
+            what_happens=how_it_ends("setup.py", problem),
+            build=_BUILD,
+        ),
+        say("Run `python3 setup.py --name` in the package's folder: it shows the same."),
+    )
+
+
+def _absent(name: str, is_cmake: bool) -> Missing:
     """Of something that is to be installed, and is not there."""
     if is_cmake:
-        return Finding(
-            0,
+        return Missing(
+            name,
             say(
                 "CMakeLists.txt installs {name!r}, and there is no such folder or file: {build}.",
                 name=name,
@@ -128,8 +149,8 @@ def _absent(name: str, is_cmake: bool) -> Finding:
                 "or a zip, hands on."
             ),
         )
-    return Finding(
-        0,
+    return Missing(
+        name,
         say(
             "setup.py installs {name!r}, and there is no such file: {build}.",
             name=name,
@@ -142,51 +163,12 @@ def _absent(name: str, is_cmake: bool) -> Finding:
     )
 
 
-def _not_known(problem: Problem) -> Finding:
-    """Of a set-up that nobody can follow here, where something seems to be missing."""
-    return Finding(
-        0,
-        say(
-            "Not judged: {file} could not be followed: {why}.",
-            file=problem.file or "setup.py",
-            why=said(problem),
-        ),
-        say("Tell whoever runs the course."),
-        judged=False,
-    )
-
-
-def _is_cmake(looked: Looked) -> bool:
-    return looked.setup.build_type not in ("", "ament_python")
-
-
 def _missing(looked: Looked) -> Iterator[Missing]:
-    setup = looked.setup
-    if setup.manifest:
-        yield Missing(
-            "package.xml",
-            say(
-                "package.xml cannot be used: {why}. colcon takes the folder for no ROS package.",
-                why=shown(phrase_of(setup.manifest)),
-            ),
-            say("Compare it with one that `ros2 pkg create` writes."),
-        )
-    yield from _scripts(looked)
+    yield from unstarted(looked)
     for launch in looked.launches:
-        for each in launch.lacking:
-            of_kind = {"file": _file, "package": _package}.get(each.kind, _program)
-            yield of_kind(looked, each)
+        yield from (lacking(looked, each) for each in launch.lacking)
         if launch.moved:
-            yield Missing(
-                launch.moved,
-                say(
-                    "{file} asks for {path}, which is there only as long as the package "
-                    "lies where it was installed first.",
-                    file=launch.file,
-                    path=shown(launch.moved),
-                ),
-                say("Ask for the share folder: get_package_share_directory(), FindPackageShare()."),
-            )
+            yield moved(launch)
     for description in looked.descriptions:
         for mesh in description.meshes:
             if mesh.state == "left":
@@ -198,6 +180,26 @@ def _missing(looked: Looked) -> Iterator[Missing]:
                         "it, with the folder that the description names."
                     ),
                 )
+
+
+def moved(launch: Launch) -> Missing:
+    """Of a path that is another where the package is installed in another place."""
+    return Missing(
+        launch.moved,
+        say(
+            "{file} asks for {path}, which is there only as long as the package "
+            "lies where it was installed first.",
+            file=launch.file,
+            path=shown(launch.moved),
+        ),
+        say("Ask for the share folder: get_package_share_directory(), FindPackageShare()."),
+    )
+
+
+def lacking(looked: Looked, lacks: Lacking) -> Missing:
+    """Of what a launch file names, and is not there."""
+    of_kind = {"file": _file, "package": _package}.get(lacks.kind, _program)
+    return of_kind(looked, lacks)
 
 
 def _by(lacking: Lacking) -> str:
@@ -322,7 +324,17 @@ def _program(looked: Looked, lacking: Lacking) -> Missing:
     )
 
 
-def _scripts(looked: Looked) -> Iterator[Missing]:
+def unstarted(looked: Looked) -> Iterator[Missing]:
+    """What keeps colcon from finding the package, or `ros2 run` from starting its programs."""
+    if looked.setup.manifest:
+        yield Missing(
+            "package.xml",
+            say(
+                "package.xml cannot be used: {why}. colcon takes the folder for no ROS package.",
+                why=shown(phrase_of(looked.setup.manifest)),
+            ),
+            say("Compare it with one that `ros2 pkg create` writes."),
+        )
     for each in looked.setup.scripts:
         if each.fault:
             yield Missing(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
@@ -10,7 +11,7 @@ from grader.exercises.description_package.looked import Looked, how_it_ends, not
 from grader.language.phrase import joined, say
 from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
 from grader.scenes.package.launch_errors import advice
-from grader.scenes.package.trace import Launch, Node
+from grader.scenes.package.trace import Launch, Node, Problem
 from robot_py.urdf import parse
 
 PUBLISHER = "robot_state_publisher"
@@ -54,14 +55,9 @@ def judge(looked: Looked) -> Finding:
     ]
     if share < 1 and looked.not_known is not None:
         return not_judged(looked.not_known, say("{best} alone does not show the robot", best=best))
-    if broken:
-        launch = broken[0]
-        assert launch.problem is not None
-        return Finding(
-            min(share, BROKEN) if launch.file != best else 0.0,
-            say("{what_happens}.", what_happens=how_it_ends(launch.file, launch.problem)),
-            advice(launch.problem.text),
-        )
+    if broken and (problem := broken[0].problem):
+        file = broken[0].file
+        return ends(file, problem, min(share, BROKEN) if file != best else 0.0)
     strange = next((each for each in looked.launches if each.file == best), None)
     if share <= DESCRIPTION and strange and (include := _not_followed(strange)):
         return Finding(
@@ -84,28 +80,29 @@ def judge(looked: Looked) -> Finding:
                 publisher=PUBLISHER,
             ),
         )
-    first, *others = (part.rationale for part in found[best])
+    return without(best, found[best])
+
+
+def ends(file: str, problem: Problem, share: float) -> Finding:
+    """Of a launch file that comes to no end; `share` of the points is left."""
+    what_happens = how_it_ends(file, problem)
+    return Finding(share, say("{what_happens}.", what_happens=what_happens), advice(problem.text))
+
+
+def without(file: str, parts: Sequence[Part]) -> Finding:
+    """Of a launch file that lacks some parts."""
+    first, *others = (part.rationale for part in parts)
     texts = joined([first, *(say("{fault!u}", fault=each) for each in others)], " ")
-    return Finding(share, say("{file}: {faults}", file=best, faults=texts), found[best][0].help)
+    share = 1 - sum(part.worth for part in parts)
+    return Finding(share, say("{file}: {faults}", file=file, faults=texts), parts[0].help)
 
 
 def lacking(looked: Looked, launch: Launch) -> list[Part]:
     """What of the three parts a launch file does not have."""
-    parts = []
     publishers = [node for node in launch.nodes if is_publisher(node)]
-    texts = [
-        looked.text(p.text) for n in publishers for p in n.parameters if is_description(p.name)
-    ]
-    if not publishers:
-        parts.append(
-            Part(
-                DESCRIPTION,
-                say("it starts no robot_state_publisher."),
-                say("Start it with the parameter robot_description: the text of your URDF."),
-            )
-        )
-    elif not any(text.strip() for text in texts) and not _is_refused(looked, launch):
-        parts.append(_no_description(publishers[0]))
+    texts = handed_on(looked, launch)
+    undescribed = None if refused(looked, launch) else no_description(looked, launch, DESCRIPTION)
+    parts = [undescribed] if undescribed else []
     is_needed = not publishers or moves(looked, texts)
     has_source = any(is_joint_source(looked, node) for node in launch.nodes)
     if is_needed and not has_source and not _includes_simulator(launch):
@@ -135,9 +132,16 @@ def is_rviz(node: Node) -> bool:
     return "rviz2" in (node.package, node.executable)
 
 
-def _is_refused(looked: Looked, launch: Launch) -> bool:
-    """Whether it would hand on a description, if xacro made one of the file."""
-    return any(each.by == launch.file and each.problem for each in looked.descriptions)
+def handed_on(looked: Looked, launch: Launch) -> list[str]:
+    """What robot_state_publisher gets as descriptions."""
+    nodes = filter(is_publisher, launch.nodes)
+    return [looked.text(p.text) for n in nodes for p in n.parameters if is_description(p.name)]
+
+
+def refused(looked: Looked, launch: Launch) -> Problem | None:
+    """Why xacro makes no description of the file that would be handed on."""
+    problems = (each.problem for each in looked.descriptions if each.by == launch.file)
+    return next((each for each in problems if each is not None), None)
 
 
 def is_description(name: str) -> bool:
@@ -189,15 +193,25 @@ def _not_followed(launch: Launch) -> str:
     )
 
 
-def _no_description(node: Node) -> Part:
-    names = [each.name for each in node.parameters]
-    found = (
-        say("its parameters are {names}.", names=shown(", ".join(names)))
-        if names
-        else say("it gets no parameter.")
-    )
+def no_description(looked: Looked, launch: Launch, worth: float) -> Part | None:
+    """Of a launch file in which no robot_state_publisher gets a text; None where one does."""
+    publishers = [node for node in launch.nodes if is_publisher(node)]
+    if not publishers:
+        return Part(
+            worth,
+            say("it starts no robot_state_publisher."),
+            say("Start it with the parameter robot_description: the text of your URDF."),
+        )
+    if any(text.strip() for text in handed_on(looked, launch)):
+        return None
+    names = [each.name for each in publishers[0].parameters]
+    found = say("it gets no parameter.")
+    if any(map(is_description, names)):
+        found = say("it is empty.")
+    elif names:
+        found = say("its parameters are {names}.", names=shown(", ".join(names)))
     return Part(
-        DESCRIPTION,
+        worth,
         say("robot_state_publisher has no robot_description: {found}", found=found),
         say(
             "Give it parameters=[{{'robot_description': ...}}] with the text of the"

@@ -24,10 +24,10 @@ class Looked:
     setup: Setup
 
     @classmethod
-    def at(cls, recordings: Recordings) -> Looked | None:
-        """What was found; None where nobody got so far."""
-        trace = PackageTrace.of(recordings.nominal.trace)
-        return None if trace.setup is None else cls(trace, trace.setup)
+    def at(cls, trace: object) -> Looked | None:
+        """What was found, by the trace of a look; None where nobody got so far."""
+        found = PackageTrace.of(trace)
+        return None if found.setup is None else cls(found, found.setup)
 
     @property
     def name(self) -> str:
@@ -64,8 +64,8 @@ class Looked:
 
 def looked_at(recordings: Recordings, judge: Callable[[Looked], Finding]) -> Finding:
     """What a check finds of a package; the same for every check where nobody got so far."""
-    looked = Looked.at(recordings)
-    return _nothing(recordings) if looked is None else judge(looked)
+    looked = Looked.at(recordings.nominal.trace)
+    return nothing(recordings.nominal.run.flags) if looked is None else judge(looked)
 
 
 def how_it_ends(file: str, problem: Problem) -> str:
@@ -78,12 +78,12 @@ def how_it_ends(file: str, problem: Problem) -> str:
     )
 
 
-def _nothing(recordings: Recordings) -> Finding:
-    run = recordings.nominal.run
+def nothing(remarks: Sequence[str] = ()) -> Finding:
+    """Of a package that nobody could look at; the first remark says why."""
     return Finding(
         0,
-        say("The package could not be looked at: {why}.", why=run.flags[0])
-        if run.flags
+        say("The package could not be looked at: {why}.", why=remarks[0])
+        if remarks
         else say("The package could not be looked at."),
         say("Does setup.py or a launch file end the process that it runs in, or run without end?"),
     )
@@ -99,17 +99,15 @@ def nothing_started() -> Finding:
     )
 
 
-def not_judged(launch: Launch, what: str) -> Finding:
+def not_judged(launch: Launch, what: str = "") -> Finding:
     """Of what nobody can tell, because a launch file uses what the grader does not know."""
     problem = launch.problem or Problem("", "")
+    values = {"file": launch.file, "why": said(problem)}
     return Finding(
         0,
-        say(
-            "Not judged: {what}, and {file} could not be evaluated: {why}.",
-            what=what,
-            file=launch.file,
-            why=said(problem),
-        ),
+        say("Not judged: {what}, and {file} could not be evaluated: {why}.", what=what, **values)
+        if what
+        else say("Not judged: {file} could not be evaluated: {why}.", **values),
         say("Give the argument a default_value: then `ros2 launch` needs no more than the file.")
         if problem.kind == "argument"
         else say("This is no fault of the package: tell whoever runs the course."),

@@ -109,13 +109,6 @@ class Teller:
             "text": self._text(file, number),
         }
 
-    def loaded(self) -> dict[str, str]:
-        """The files of the submission's own that are loaded or were told of -> their texts."""
-        modules = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
-        files = {file for file in modules if isinstance(file, str) and self.is_own(file)}
-        files |= set(self._sources)
-        return {file: "\n".join(self.source(file)) for file in sorted(files)}
-
     def source(self, file: str) -> list[str]:
         """The lines of a file of the submission's own."""
         if file not in self._sources:

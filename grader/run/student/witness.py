@@ -17,7 +17,6 @@ from grader.run.student import loops, telling
 from grader.run.student.catching import Catching
 from grader.run.student.delays import Callbacks, Timers, Waits
 from grader.run.student.sending import Sending
-from grader.run.student.sources import Sources
 from grader.run.student.telling import Line, Teller
 
 #: So many ends and places are told of: `grader.recording.conduct.MOST`.
@@ -79,7 +78,6 @@ class Witness:
         self.callbacks = Callbacks(teller)
         self.timers = Timers(teller)
         self.catching = Catching(teller)
-        self.sources = Sources(teller)
 
     # What rclpy's objects do ------------------------------------------------------------------
 
@@ -151,7 +149,6 @@ class Witness:
     def spins(self) -> None:
         """An executor is spun for the first time."""
         self._teller.tell("spun", self._teller.now_s())
-        quietly(self.sources.look)
 
     # How it ends ------------------------------------------------------------------------------
 
@@ -204,8 +201,6 @@ class Witness:
             place = self._of_syntax(error)
         if isinstance(error, TypeError) and at < len(lines) - 1:
             place = self._of_callback(error, lines[-1][0]) or place
-        if isinstance(error, ModuleNotFoundError) and place is not None:
-            self.sources.look_beside(str(error.name or ""), place)
         text = str(error.code) if isinstance(error, SystemExit) else telling.text(error)
         kind = type(error).__name__[: telling.LONGEST]
         told = {"type": kind, "text": text[: telling.LONGEST], "time_s": self._teller.now_s()}
@@ -258,7 +253,6 @@ class Witness:
 
     def sum_up(self) -> None:
         """Tell the last figures, where this is the end."""
-        quietly(self.sources.look)
         for end in self._ends:
             self._tell_of(end, is_last=True)
             if end.sending.sent:

@@ -7,6 +7,7 @@ import os
 import random
 import signal
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import count
 
 import pytest
@@ -17,6 +18,7 @@ from grader.run.evidence import MOST_BYTES, open_evidence
 from grader.run.processes import usage
 from grader.run.student import loops
 from grader.submission.opening import Submission, open_submission
+from grader.submission.start import Slip
 
 PLACE = {"file": "a.py", "line": 2, "function": "", "text": "pass"}
 END = {"kind": "publisher", "name": "/a", "type": "a/msg/B", "place": PLACE}
@@ -77,30 +79,37 @@ def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
     assert told(submission, say(end=END), say(sent=sent)) == Conduct()
 
 
-def test_what_was_seen_of_sources_timers_and_exceptions_is_believed_by_its_form(
+def test_what_was_seen_of_timers_and_exceptions_is_believed_by_its_form(
     submission: Submission,
 ) -> None:
-    slip = {"kind": "unread", "name": "stoped", "near": "stopped", "place": PLACE}
     timer = {"place": PLACE, "period_s": 0.1, "times": 1}
     caught = {"type": "E", "text": "", "time_s": 1, "times": 2, "place": PLACE, "by": None}
-    lines = [say(end=END), say(used_at=[0, PLACE]), say(slip=slip), say(timer=[0, timer])]
+    lines = [say(end=END), say(used_at=[0, PLACE]), say(timer=[0, timer])]
     lines += [say(timer=[0, {**timer, "times": 4}]), say(caught=[0, caught])]
     conduct = told(submission, *lines)
-    assert [(each.kind, each.name, each.near) for each in conduct.slips] == [
-        ("unread", "stoped", "stopped")
-    ]
     assert [each.times for each in conduct.timers] == [4]
     assert [(each.type, each.times, each.by) for each in conduct.caught] == [("E", 2, None)]
     assert conduct.ends[0].used_at is not None
     assert Conduct.from_json(json.loads(json.dumps(conduct.to_json()))) == conduct
     for wrong in (
-        say(slip={**slip, "kind": "sin"}),
-        say(slip={**slip, "place": None}),
         say(timer=[0, {**timer, "period_s": -1}]),
         say(caught=[0, {**caught, "times": 0.5}]),
         say(used_at=[7, PLACE]),
     ):
         assert told(submission, *lines, wrong) == Conduct()
+
+
+def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
+    submission: Submission,
+) -> None:
+    slip = Slip("unread", "stoped", "stopped", "a.py", 3, "self.stoped = True")
+    read = replace(submission, slips=(slip,))
+    (found,) = told(read, say(end=END)).slips
+    assert (found.kind, found.name, found.near) == ("unread", "stoped", "stopped")
+    assert (found.place.file, found.place.line, found.place.text) == slip[3:]
+    assert told(read) == Conduct()
+    forged = {"kind": "unread", "name": "a", "near": "b", "place": PLACE}
+    assert told(read, say(end=END), say(slip=forged)) == Conduct()
 
 
 def test_an_older_recording_without_them_is_still_read(submission: Submission) -> None:

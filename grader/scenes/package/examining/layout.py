@@ -11,11 +11,11 @@ import sys
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
+from grader.scenes.package import strict
 from grader.scenes.package.examining import cmake, known, paths
 from grader.scenes.package.examining.packages import MANIFEST, Package
-from grader.scenes.package.examining.setup_call import is_told, run_setup
+from grader.scenes.package.examining.setup_call import Told, run_setup
 from grader.scenes.package.examining.steps import NONSENSE, Ended, attempt, step
 from grader.scenes.package.trace import Problem, Script, Setup
 
@@ -71,9 +71,9 @@ def nothing(name: str, problem: Problem) -> Setup:
 
 def _laid_out(package: Package, root: Path, prefix: Path) -> Installed:
     said, problem, absent, files, programs = _said(package)
-    lines = said.get("scripts", [])[:_MOST]
-    scripts = [_script(line[:_LONGEST], package, said.get("packages")) for line in lines]
-    name = (package.name or said.get("name", "") or package.folder.name)[:_LONGEST]
+    lines = said.scripts[:_MOST]
+    scripts = [_script(line[:_LONGEST], package, said.packages) for line in lines]
+    name = (package.name or said.name or package.folder.name)[:_LONGEST]
     folders: list[str] = []
     found: dict[str, str] = {}
     for where, source in files[:_MOST_FILES]:
@@ -86,15 +86,15 @@ def _laid_out(package: Package, root: Path, prefix: Path) -> Installed:
             to = os.path.normpath(os.path.join(where, os.path.basename(source)))
             if _copy(path, prefix, to):
                 found[to] = os.path.relpath(path, package.folder)
-    where = said.get("scripts_folder") or "bin"
+    where = said.scripts_folder or "bin"
     programs += [f"{where}/{script.name}" for script in scripts]
-    programs += [f"{where}/{os.path.basename(each)}" for each in said.get("plain_scripts", [])]
+    programs += [f"{where}/{os.path.basename(each)}" for each in said.plain_scripts]
     for program in programs:
         _touch(prefix / os.path.normpath(program.lstrip("/")), prefix)
     _make_known(package, name, prefix)
     setup = Setup(
         name=name,
-        told=said.get("name", "")[:_LONGEST],
+        told=said.name[:_LONGEST],
         folder="" if package.folder == root else os.path.relpath(package.folder, root),
         build_type=package.build_type,
         manifest=package.manifest,
@@ -103,7 +103,7 @@ def _laid_out(package: Package, root: Path, prefix: Path) -> Installed:
         absent=_shown(absent),
         folders=_shown(folders),
         scripts=tuple(scripts),
-        scripts_folder=said.get("scripts_folder", "")[:_LONGEST],
+        scripts_folder=said.scripts_folder[:_LONGEST],
         installed=tuple(sorted(found)),
         sources=tuple(found[each] for each in sorted(found)),
         left=_left(package, set(found.values())),
@@ -113,31 +113,31 @@ def _laid_out(package: Package, root: Path, prefix: Path) -> Installed:
 
 def _said(
     package: Package,
-) -> tuple[dict[str, Any], Problem | None, list[str], list[tuple[str, str]], list[str]]:
-    """The set-up's arguments, its problem, what is absent, (folder, file) of each, programs."""
+) -> tuple[Told, Problem | None, list[str], list[tuple[str, str]], list[str]]:
+    """What the set-up says, its problem, what is absent, (folder, file) of each, programs."""
     if package.is_cmake:
         if not paths.is_file(package.folder / cmake.FILE):
-            return {}, Problem("error", "there is no CMakeLists.txt"), [], [], []
+            return Told(), Problem("error", "there is no CMakeLists.txt"), [], [], []
         try:
             found = attempt(lambda: cmake.read(package.folder), cmake.FILE)
         except Ended as ended:
-            return {}, ended.problem, [], [], []
+            return Told(), ended.problem, [], [], []
         problem = found.problems[0] if found.problems else None
-        return {"name": found.project}, problem, found.absent, found.files, found.programs
+        return Told(found.project), problem, found.absent, found.files, found.programs
     if not paths.is_file(package.folder / "setup.py"):
-        return {}, Problem("error", "there is no setup.py"), [], [], []
+        return Told(), Problem("error", "there is no setup.py"), [], [], []
 
     def own(path: str) -> str:
         here = f"{package.folder}/"
         return path.removeprefix(here) if path.startswith(here) else ""
 
     try:
-        said = step(lambda: run_setup(package.folder), own)
+        said = strict.from_json(Told, step(lambda: run_setup(package.folder), own))
     except Ended as ended:
-        return {}, ended.problem, [], [], []
-    if not is_told(said):
-        return {}, Problem("limit", NONSENSE), [], [], []
-    files = [(where, name) for where, names in said["data_files"] for name in names]
+        return Told(), ended.problem, [], [], []
+    except ValueError:
+        return Told(), Problem("limit", NONSENSE), [], [], []
+    files = [(each.folder, name) for each in said.data_files for name in each.files]
     return said, None, [], files, []
 
 
@@ -208,7 +208,7 @@ def _left(package: Package, installed: set[str]) -> tuple[str, ...]:
     )[:200]
 
 
-def _script(line: str, package: Package, installed: list[str] | None) -> Script:
+def _script(line: str, package: Package, installed: tuple[str, ...] | None) -> Script:
     """A console script; `installed` are the Python packages that setup.py names, if it does."""
     found = _SCRIPT.match(line)
     if found is None:

@@ -1,130 +1,143 @@
-"""What a setup.py installs: it is run with a `setup()` that only takes its arguments down."""
+"""What setup.py, setup.cfg and pyproject.toml install, by setuptools, which reads them.
+
+The `setup()` that a setup.py calls makes setuptools' own distribution of its arguments, which then
+takes what the other two files say. No command is run and no plugin is loaded: nobody's entry points
+are looked up. Nothing is fetched.
+"""
 
 from __future__ import annotations
 
 import configparser
+import importlib.metadata
 import os
 import runpy
 import sys
+import warnings
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
+from grader.scenes.package import strict
+from grader.scenes.package.examining import paths
 from grader.scenes.package.examining.steps import in_folder
 
+#: What a package may set for setuptools, which learns of these by entry points.
+_KEYWORDS: Final = (
+    *("dependency_links", "eager_resources", "entry_points", "exclude_package_data"),
+    *("extras_require", "include_package_data", "install_requires", "namespace_packages"),
+    *("packages", "python_requires", "setup_requires", "test_loader", "test_runner"),
+    *("test_suite", "tests_require", "zip_safe"),
+)
+_OFFLINE: Final = ("VALIDATE_PYPROJECT_NO_NETWORK", "NO_NETWORK")
 
-class Said(BaseException):
-    """Ends a setup.py whose setup() has been called."""
+
+@dataclass(frozen=True)
+class DataFiles:
+    """Files, and the folder that they come into."""
+
+    folder: str
+    files: tuple[str, ...]
 
 
-def run_setup(folder: Path) -> dict[str, Any]:
-    """In a copy of the process: run a setup.py in its folder; the arguments of setup() as JSON.
+@dataclass(frozen=True)
+class Told:
+    """What a set-up says.
+
+    Attributes:
+        name: of the package; '' where it gives none.
+        data_files: what it installs beside Python's packages.
+        scripts: lines such as 'talker = pkg.talker:main'.
+        plain_scripts: files that are programs.
+        packages: Python's; None where nothing lists them.
+        scripts_folder: where programs are installed, without `$base/`; '' where nothing says so.
+    """
+
+    name: str = ""
+    data_files: tuple[DataFiles, ...] = ()
+    scripts: tuple[str, ...] = ()
+    plain_scripts: tuple[str, ...] = ()
+    packages: tuple[str, ...] | None = None
+    scripts_folder: str = ""
+
+
+def run_setup(folder: Path) -> Any:
+    """In a copy of the process: evaluate a set-up in its folder; what it says (`Told`) as JSON.
 
     Raises:
-        Exception: whatever the setup.py raises.
+        Exception: whatever the setup.py raises, or setuptools does of it.
     """
+    warnings.simplefilter("ignore")  # of setuptools, and for whoever builds the package
+    importlib.metadata.entry_points = _no_entry_points
+    os.environ.update(dict.fromkeys(_OFFLINE, "1"))
+    import distutils.core
+
     import setuptools
 
-    calls: list[dict[str, Any]] = []
+    class Read(setuptools.Distribution):
+        def fetch_build_eggs(self, requires: object) -> list[object]:
+            return []
+
+        def find_config_files(self) -> list[str]:  # none of the system's or the user's
+            return ["setup.cfg"] if paths.is_file(folder / "setup.cfg") else []
+
+    for name in _KEYWORDS:
+        setattr(Read, name, None)
+    made: list[Any] = []
 
     def setup(**arguments: Any) -> Any:
-        calls.append(arguments)
+        arguments.pop("distclass", None)
+        made.append(Read({"script_name": "setup.py", **arguments}))
+        made[-1].parse_config_files()
+        return made[-1]
 
-    setuptools.setup = setup
-    try:
-        import distutils.core
-
-        distutils.core.setup = setup
-    except ImportError:  # Python 3.12, and no setuptools that brings one
-        pass
+    setuptools.setup = distutils.core.setup = setup
     in_folder(str(folder), [str(folder)], {})
     sys.argv = ["setup.py", "install"]
     runpy.run_path(str(folder / "setup.py"), run_name="__main__")
-    if not calls:
+    if not made:
         raise RuntimeError("setup.py never calls setup()")
-    return told(calls[-1], folder)
+    return strict.to_json(told(made[-1]))
 
 
-def told(arguments: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """What of the arguments counts.
+def _no_entry_points(**_: object) -> Any:
+    return importlib.metadata.EntryPoints()
+
+
+def told(of: Any) -> Told:
+    """What of a distribution counts.
 
     Raises:
         TypeError: `data_files` is no list of folders with files.
     """
-    files = []
-    for entry in arguments.get("data_files") or []:
-        if isinstance(entry, str):
-            files.append(("", [entry]))
-        elif isinstance(entry, tuple | list) and len(entry) == 2:
-            where, names = entry
-            if isinstance(names, str) or not hasattr(names, "__iter__"):
-                raise TypeError(f"data_files: expected a list of files, found {names!r:.100}")
-            files.append((str(where), [os.fspath(name) for name in names]))
-        else:
-            raise TypeError(f"data_files: expected (folder, files), found {entry!r:.100}")
-    return {
-        "name": str(arguments.get("name") or ""),
-        "data_files": files,
-        "scripts": _scripts(arguments.get("entry_points"), folder),
-        "plain_scripts": [os.fspath(each) for each in arguments.get("scripts") or []],
-        "packages": _packages(arguments.get("packages")),
-        "scripts_folder": _scripts_folder(folder),
-    }
-
-
-def is_told(said: Any) -> bool:
-    """Whether an answer is one of `told`: a set-up may have written another in its place."""
-
-    def are_texts(value: Any) -> bool:
-        return isinstance(value, list) and all(isinstance(each, str) for each in value)
-
-    def is_entry(value: Any) -> bool:
-        return isinstance(value, list) and len(value) == 2 and isinstance(value[0], str)
-
-    return (
-        isinstance(said, dict)
-        and all(isinstance(said.get(key), str) for key in ("name", "scripts_folder"))
-        and all(are_texts(said.get(key)) for key in ("scripts", "plain_scripts"))
-        and (said.get("packages") is None or are_texts(said["packages"]))
-        and isinstance(said.get("data_files"), list)
-        and all(is_entry(each) and are_texts(each[1]) for each in said["data_files"])
+    _, scripts_folder = of.get_option_dict("install").get("install_scripts", ("", ""))
+    return Told(
+        name=str(of.metadata.name or ""),
+        data_files=tuple(map(_data_files, of.data_files or [])),
+        scripts=tuple(_scripts(of.entry_points)),
+        plain_scripts=tuple(os.fspath(each) for each in of.scripts or []),
+        packages=None if of.packages is None else tuple(map(str, of.packages)),
+        scripts_folder=str(scripts_folder).strip().removeprefix("$base/"),
     )
 
 
-def _packages(given: Any) -> list[str] | None:
-    """The names of those that are listed; None where others may say them (setup.cfg)."""
-    if not isinstance(given, list | tuple):
-        return None
-    return [str(each) for each in given]
+def _data_files(entry: object) -> DataFiles:
+    if isinstance(entry, str):
+        return DataFiles("", (entry,))
+    if not isinstance(entry, tuple | list) or len(entry) != 2:
+        raise TypeError(f"data_files: expected (folder, files), found {entry!r:.100}")
+    folder, names = entry
+    if isinstance(names, str) or not hasattr(names, "__iter__"):
+        raise TypeError(f"data_files: expected a list of files, found {names!r:.100}")
+    return DataFiles(str(folder), tuple(os.fspath(name) for name in names))
 
 
-def _scripts(given: Any, folder: Path) -> list[str]:
-    """Lines such as 'talker = pkg.talker:main'."""
+def _scripts(given: Any) -> list[str]:
+    """The console scripts of entry points, in either of the forms that setuptools takes."""
     if isinstance(given, str):
         parser = configparser.ConfigParser(delimiters=("=",))
         parser.optionxform = str  # type: ignore[assignment, method-assign]
         parser.read_string(given)
         given = {part: [f"{k} = {v}" for k, v in parser.items(part)] for part in parser.sections()}
-    if not isinstance(given, dict):
-        given = {}
-    lines = given.get("console_scripts") or _config(folder).get(
-        ("options.entry_points", "console_scripts"), ""
-    )
+    lines = given.get("console_scripts") or () if isinstance(given, dict) else ()
     lines = lines.splitlines() if isinstance(lines, str) else lines
     return [str(line) for line in lines if str(line).strip()]
-
-
-def _scripts_folder(folder: Path) -> str:
-    found = _config(folder)
-    for key in ("install_scripts", "install-scripts"):
-        if value := found.get(("install", key)):
-            return value.strip().removeprefix("$base/")
-    return ""
-
-
-def _config(folder: Path) -> dict[tuple[str, str], str]:
-    parser = configparser.RawConfigParser()
-    try:
-        parser.read(folder / "setup.cfg", encoding="utf-8")
-    except (configparser.Error, UnicodeDecodeError):
-        return {}
-    return {(part, key): value for part in parser.sections() for key, value in parser.items(part)}

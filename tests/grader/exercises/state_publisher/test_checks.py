@@ -143,7 +143,7 @@ def test_a_path_from_the_current_folder_is_called_one():
     lacking = Lacking("file", "/somewhere/urdf/walker.urdf", "", LAUNCH.file)
     package = replace(PACKAGE, launches=(replace(LAUNCH, lacking=(lacking,)),))
     rationale, _ = said(walker(), "launch", package)
-    assert "'urdf/walker.urdf', a path from the current folder" in rationale
+    assert "asks for urdf/walker.urdf, a path from the current folder" in rationale
 
 
 @pytest.mark.parametrize(

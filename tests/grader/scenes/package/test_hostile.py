@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 
+from grader.scenes.package import strict
 from grader.scenes.package.examining import account, main, paths, steps, surfaces
-from grader.scenes.package.examining.setup_call import is_told
+from grader.scenes.package.examining.setup_call import Told
 from grader.scenes.package.examining.steps import (
     NONSENSE,
     Ended,
@@ -31,7 +32,7 @@ SETUP = (REFERENCE / "setup.py").read_text(encoding="utf-8")
 LISTS = "data_files=["
 ANSWER = {
     "name": "a",
-    "data_files": [["share/a", ["package.xml"]]],
+    "data_files": [{"folder": "share/a", "files": ["package.xml"]}],
     "scripts": ["a = a:main"],
     "plain_scripts": [],
     "packages": None,
@@ -212,14 +213,15 @@ def test_what_a_step_forks_does_not_answer_for_it():
         ("scripts", [5]),
         ("packages", 1),
         ("scripts_folder", None),
-        ("data_files", [["share/a", "package.xml"]]),
-        ("data_files", [["share/a"]]),
+        ("data_files", [{"folder": "share/a", "files": "package.xml"}]),
+        ("data_files", [{"folder": "share/a"}]),
     ],
 )
 def test_only_what_has_the_form_of_an_answer_is_one(key, value):
-    assert is_told(ANSWER)
-    assert not is_told({**ANSWER, key: value})
-    assert not is_told([])
+    assert strict.from_json(Told, ANSWER).scripts == ("a = a:main",)
+    for forged in ({**ANSWER, key: value}, []):
+        with pytest.raises(ValueError, match="expected"):
+            strict.from_json(Told, forged)
 
 
 def test_texts_that_are_cut_have_no_part_of_a_path_and_no_address():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import lru_cache
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -49,6 +50,7 @@ def own_nodes(node: ast.AST) -> Iterator[ast.AST]:
             waiting += ast.iter_child_nodes(each)
 
 
+@lru_cache  # of a module it is asked for each name in each of its functions
 def _assigned(scope: ast.AST) -> dict[str, int]:
     """The names that a scope has for itself, by plain assignments -> where first."""
     lines: dict[str, int] = {}

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from grader.run.student import slips
+from grader.submission import slips
+from grader.submission.opening import open_submission
+from grader.submission.start import Slip
 
+SETUP = """from setuptools import setup
+setup(name="spiral", entry_points={"console_scripts": ["draw = spiral.draw:main"]})
+"""
 HEAD = "class Controller(Node):\n    def __init__(self):\n        self.stopped = False\n"
 READ = "    def drive(self):\n        return self.stopped\n"
 FOUND = {
@@ -99,3 +104,25 @@ def test_what_one_file_sets_another_may_read():
     base = "class Base:\n    def go(self):\n        return self.stoped\n"
     source = f"{HEAD}{READ}    def on_pose(self, pose):\n        self.stoped = True\n"
     assert slips.find({"a.py": source, "b.py": base}) == []
+
+
+def test_what_a_package_shows_is_found_where_it_is_read(tmp_path):
+    package = tmp_path / "spiral"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "pens.py").touch()
+    (tmp_path / "setup.py").write_text(SETUP)
+    source = "import math\nimport pens\n\ndef main():\n    print(pens)\n    main\n"
+    (package / "draw.py").write_text(source)
+    with open_submission(tmp_path) as submission:
+        assert submission.slips == (
+            Slip("uncalled", "main", "", "spiral/draw.py", 6, "main"),
+            Slip("beside", "pens", "spiral.pens", "spiral/draw.py", 2, "import pens"),
+        )
+
+
+def test_a_file_that_nobody_looks_through_is_started_all_the_same(tmp_path):
+    deep = tmp_path / "draw.py"
+    deep.write_text("main\n" * slips.MOST_SOURCE)
+    with open_submission(deep) as submission:
+        assert submission.slips == ()

@@ -1,21 +1,28 @@
-"""What the source of a submission shows that is seldom meant: a little look, for a diagnosis.
+"""What the source of a submission shows that is seldom meant: lint findings, for a diagnosis.
 
-Looked at are files that Python has loaded here already: its parser has survived them. What each
-kind of slip says, `grader.recording.conduct.Slip` tells. Nothing of it is wrong by itself; a rule
-speaks of it where something has gone wrong that it explains.
+Made once, where a submission is read. What each kind of slip says, `grader.recording.conduct.Slip`
+tells. Nothing of it is wrong by itself; a rule speaks of it where something has gone wrong that it
+explains.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
-from typing import NamedTuple
+from pathlib import Path
 
-from grader.run.student import scopes
-from grader.run.student.scopes import Function
+from grader.submission import scopes
+from grader.submission.folder import read_bounded
+from grader.submission.python_source import parse
+from grader.submission.scopes import Function
+from grader.submission.start import Slip
 
+#: So many slips are told of, and so much of a name or a line [characters].
+MOST, LONGEST = 20, 300
+#: Sources that are longer are not looked at [characters].
+MOST_SOURCE = 200_000
 #: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
 ALIKE = 0.85
 #: Words of a name that are shorter are no misspellings of each other: last_x, last_y.
@@ -24,16 +31,6 @@ SPINS = ("spin", "spin_once", "spin_until_future_complete", "add_node")
 THREADS = ("Thread", "Process", "Timer")
 #: What reads or sets attributes by names that nobody sees.
 BY_NAME = ("getattr", "setattr", "hasattr", "vars", "locals", "globals", "eval", "exec", "__dict__")
-
-
-class Slip(NamedTuple):
-    """What was found; see `grader.recording.conduct.Slip`."""
-
-    kind: str
-    name: str
-    near: str
-    file: str
-    line: int
 
 
 @dataclass
@@ -72,11 +69,38 @@ class Names:
                 self.read.add(node.target.attr)
 
 
-def find(sources: Mapping[str, str]) -> list[Slip]:
+def look(root: Path, files: Iterable[Path]) -> tuple[Slip, ...]:
+    """The slips in files of a submission, by their paths below its root; none if it cannot look."""
+
+    def lies(name: str) -> bool:
+        return (root / name).is_dir() or (root / f"{name}.py").is_file()
+
+    lines = {}
+    try:
+        for file in files:
+            text = (read_bounded(file) or b"").decode("utf-8", "replace")
+            lines[file.relative_to(root).as_posix()] = text.splitlines()
+        sources = {file: "\n".join(text) for file, text in lines.items()}
+        is_short = sum(map(len, sources.values())) <= MOST_SOURCE
+        found = find(sources, lies)[:MOST] if is_short else []
+    except (OSError, RecursionError, MemoryError):
+        return ()
+    return tuple(
+        each._replace(
+            name=each.name[:LONGEST],
+            near=each.near[:LONGEST],
+            text=lines[each.file][each.line - 1].strip()[:LONGEST],
+        )
+        for each in found
+    )
+
+
+def find(sources: Mapping[str, str], lies: Callable[[str], bool] = lambda _: False) -> list[Slip]:
     """The slips in some files.
 
     Args:
         sources: file -> its text; what cannot be parsed is left out.
+        lies: whether there is a module of this name, as 'folder/name', in what was handed in.
 
     Raises:
         RecursionError, MemoryError: too deep for Python.
@@ -84,8 +108,8 @@ def find(sources: Mapping[str, str]) -> list[Slip]:
     trees, names = {}, Names()
     for file, text in sources.items():
         try:
-            trees[file] = ast.parse(text)
-        except (SyntaxError, ValueError):
+            trees[file] = parse(text.encode("utf-8", "replace"), file)
+        except SyntaxError:
             continue
         names.add(trees[file])
     words = {word for text in sources.values() for word in BY_NAME if word in text}
@@ -106,7 +130,25 @@ def find(sources: Mapping[str, str]) -> list[Slip]:
         found += _handed_over(tree, names, file)
     if not names.read & {"call_async", "call"} and not words:
         found += [slip for file, tree in trees.items() for slip in _unsent(tree, file)]
+    found += [slip for file, tree in trees.items() for slip in _beside(tree, file, lies)]
     return list(dict.fromkeys(found))
+
+
+def _beside(tree: ast.AST, file: str, lies: Callable[[str], bool]) -> Iterator[Slip]:
+    """Modules that lie in the package that asks for them as if they lay beside it."""
+    folder = file.rpartition("/")[0]
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import(names=names):
+                modules = [each.name for each in names]
+            case ast.ImportFrom(module=str() as module, level=0):
+                modules = [module]
+            case _:
+                continue
+        for name in (each.partition(".")[0] for each in modules):
+            if folder and not lies(name) and lies(f"{folder}/{name}"):
+                near = ".".join((*folder.split("/"), name))
+                yield Slip("beside", name, near, file, node.lineno)
 
 
 # Attributes and methods ---------------------------------------------------------------------------
@@ -157,7 +199,8 @@ def misspelt(name: str, other: str) -> bool:
         others = [pair for pair in zip(one, two, strict=True) if pair[0] != pair[1]]
         if any(min(map(len, pair)) < SHORT for pair in others):
             return False
-    return SequenceMatcher(None, name, other).ratio() >= ALIKE
+    alike = SequenceMatcher(None, name, other)  # the first two take little time, and say no less
+    return min(alike.real_quick_ratio(), alike.quick_ratio()) >= ALIKE and alike.ratio() >= ALIKE
 
 
 def _of_methods(of: ast.ClassDef, file: str) -> Iterator[Slip]:
