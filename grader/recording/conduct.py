@@ -271,13 +271,6 @@ class Conduct:
         )
 
 
-#: What older recordings do not have.
-_LATER: Mapping[type[Any], Mapping[str, Any]] = {
-    Conduct: {"timers": [], "caught": [], "slips": []},
-    End: {"used_at": None, "lines": [], "sent": []},
-}
-
-
 def _end(data: Any) -> End:
     data = _object(data, End)
     lines = tuple(map(_place, _list(data["lines"])))
@@ -358,10 +351,9 @@ def _place(data: Any) -> Place:
 
 def _object(data: Any, kind: type[Any]) -> Mapping[str, Any]:
     wanted = {field.name for field in fields(kind)}
-    later = _LATER.get(kind, {})
-    if not isinstance(data, dict) or {**later, **data}.keys() != wanted:
+    if not isinstance(data, dict) or data.keys() != wanted:
         raise ValueError(f"expected an object of {', '.join(sorted(wanted))}, found {data!r:.80}")
-    return {**later, **data}
+    return data
 
 
 def _list(data: Any, most: int = MOST) -> list[Any]:

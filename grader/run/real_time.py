@@ -61,9 +61,8 @@ def run(
         seat.taken()
         simulator.expect("ready")
         submission = place.own(submission)
-        words = command(submission, scene.introduction, told.descriptor)
-        student = place.student(words, submission, (told.descriptor,))
-        told.has_begun()
+        words = command(submission, scene.introduction, told.page)
+        student = place.student(words, submission, (told.page,))
         began_s = time.monotonic()
 
         def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
@@ -99,10 +98,10 @@ def run(
     return record(plan, trace, topics, ending(how, exit_code, tuple(done["flags"])), conduct)
 
 
-def command(submission: Submission, introduction: Introduction, evidence_fd: int) -> list[str]:
+def command(submission: Submission, introduction: Introduction, page: int) -> list[str]:
     """How the submission's process is started."""
     awaited = json.dumps([introduction.topics, introduction.services])
-    words = [awaited, str(evidence_fd), *stage.target(submission)]
+    words = [awaited, str(page), *stage.target(submission)]
     return [sys.executable, stage.program(submission), *words]
 
 

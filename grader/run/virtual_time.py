@@ -92,11 +92,10 @@ def _try(
         theirs,
     ):
         submission = place.own(submission)
-        fds = (ours.fileno(), told.descriptor)
+        fds = (ours.fileno(), told.page)
         words = command(submission, scene.introduction, *fds)
         student = place.virtual_student(words, submission, pass_fds=fds)
         ours.close()
-        told.has_begun()
 
         def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
             output = submission.as_handed_in(student.output())
@@ -154,11 +153,11 @@ def _try(
 
 
 def command(
-    submission: Submission, introduction: Introduction, link_fd: int, evidence_fd: int
+    submission: Submission, introduction: Introduction, link_fd: int, page: int
 ) -> list[str]:
     """How the submission's process is started."""
     known = json.dumps([introduction.nodes, introduction.compares_stamps])
-    words = [str(link_fd), str(evidence_fd), known, *stage.target(submission)]
+    words = [str(link_fd), str(page), known, *stage.target(submission)]
     return [*zygotes.command(zygotes.STUDENT), *words]
 
 

@@ -1,4 +1,4 @@
-"""Exceptions of callbacks that do not end the program; told like all else.
+"""Exceptions of callbacks that do not end the program.
 
 Those that leave a callback are seen each time. One that an `except` in it catches is seen where the
 call is traced: the first calls, and then ever fewer, because tracing takes time of the machine.
@@ -18,8 +18,6 @@ from grader.run.student.telling import Teller
 #: So many calls are traced, and after them each whose number is a power of two.
 FIRST_CALLS = 24
 MOST = 20
-#: How often something was seen is told again when it is so many times as much.
-STEP = 4
 #: How a program is ended, and what a loop ends with.
 NO_ERRORS = ("KeyboardInterrupt", "ExternalShutdownException", "StopIteration", "GeneratorExit")
 
@@ -28,10 +26,8 @@ NO_ERRORS = ("KeyboardInterrupt", "ExternalShutdownException", "StopIteration", 
 class Caught:
     """An exception; see `grader.recording.conduct.Caught`."""
 
-    number: int
     told: dict[str, Any]
     times: int = 0
-    times_told: int = 0
 
 
 class Catching:
@@ -81,21 +77,15 @@ class Catching:
                 return
             told = {"type": kind, "text": telling.text(error), "time_s": self._teller.now_s()}
             told |= {"place": self._teller.line(*where), "by": by}
-            seen = self._seen[(kind, *where)] = Caught(len(self._seen), told)
+            seen = self._seen[(kind, *where)] = Caught(told)
         seen.times += 1
-        if seen.times >= STEP * seen.times_told:
-            self._tell(seen)
+        if seen.times == 1:
+            self._teller.account.write()
+        self._teller.account.changed()
 
-    def sum_up(self) -> None:
-        """Tell the last figures."""
-        for seen in list(self._seen.values()):
-            if seen.times != seen.times_told:
-                self._tell(seen, is_last=True)
-
-    def _tell(self, seen: Caught, *, is_last: bool = False) -> None:
-        seen.times_told = seen.times
-        told = {**seen.told, "times": seen.times}
-        self._teller.tell("caught", [seen.number, told], is_last=is_last)
+    def told(self) -> list[dict[str, Any]]:
+        """All that were seen."""
+        return [{**seen.told, "times": seen.times} for seen in list(self._seen.values())]
 
 
 class Tracing:

@@ -1,4 +1,4 @@
-"""What a submission waits for, its timers, and which callbacks let time pass; told like all else.
+"""What a submission waits for, its timers, and which callbacks let time pass.
 
 `Waits` are those for a service, its answer or an action server that last, or are in vain.
 `Callbacks` adds up, while one runs, how long each of the submission's own lines has waited.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from _thread import get_ident
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from types import CodeType
 from typing import Any
 
@@ -19,8 +19,6 @@ LONG_S = 1.0
 #: Time that a callback may let pass, as publishing does [s]: a tick.
 SHORT_S = 0.016
 MOST = 100
-#: How often, and how long, is told again when it is so many times as much.
-STEP = 4
 
 #: A line of the submission's own.
 Where = tuple[CodeType, int]
@@ -31,17 +29,17 @@ class Wait:
     """A wait for something, which may be made up of several in vain.
 
     Attributes:
-        number: in the order in which they were told of; -1: not yet.
-        told_s: how long it had lasted when that was told last.
+        lasted_s: how long, when it was over last.
+        is_told: whether it is one that is told of.
     """
 
     name: str
     type: str
     since_s: float
     place: dict[str, Any] | None
-    number: int = -1
-    told_s: float = 0.0
+    lasted_s: float = 0.0
     is_going_on: bool = True
+    is_told: bool = False
 
 
 class Waits:
@@ -50,7 +48,7 @@ class Waits:
     def __init__(self, teller: Teller) -> None:
         self._teller = teller
         self._open: dict[tuple[str, str], Wait] = {}
-        self._told = 0
+        self._told: list[Wait] = []
 
     def since(self, name: str, kind: str) -> Wait:
         """A wait begins, or goes on after one in vain for the same."""
@@ -64,45 +62,49 @@ class Waits:
     def over(self, wait: Wait, *, has_come: bool) -> None:
         """It has come, or nobody waits any longer."""
         wait.is_going_on = False
-        lasted_s = self._teller.now_s() - wait.since_s
+        wait.lasted_s = self._since_s(wait)
         if has_come:
             self._open.pop((wait.name, wait.type), None)
-            is_news = lasted_s > LONG_S or wait.number >= 0
-        else:
-            is_news = lasted_s > STEP * wait.told_s
-        if is_news:
-            self._tell(wait, lasted_s)
+        if wait.lasted_s > LONG_S or not has_come:
+            self._take(wait)
 
-    def look(self, *, is_last: bool = False) -> None:
-        """Tell of those that still go on."""
+    def look(self) -> None:
+        """Take those that still go on."""
         for wait in list(self._open.values()):
-            lasted_s = self._teller.now_s() - wait.since_s
-            if wait.is_going_on and (wait.number < 0 or is_last) and lasted_s > LONG_S:
-                self._tell(wait, None)
-            elif is_last and not wait.is_going_on:
-                self._tell(wait, max(wait.told_s, lasted_s if wait.number < 0 else 0.0))
+            if wait.is_going_on and self._since_s(wait) > LONG_S:
+                self._take(wait)
 
-    def _tell(self, wait: Wait, lasted_s: float | None) -> None:
-        if wait.number < 0:
-            if self._told >= MOST:
-                return
-            wait.number, self._told = self._told, self._told + 1
-        wait.told_s = wait.told_s if lasted_s is None else lasted_s
-        told = {"name": wait.name, "type": wait.type, "since_s": wait.since_s}
-        self._teller.tell(
-            "wait", [wait.number, {**told, "lasted_s": lasted_s, "place": wait.place}]
-        )
+    def _take(self, wait: Wait) -> None:
+        if not wait.is_told and len(self._told) < MOST:
+            wait.is_told = True
+            self._told.append(wait)
+            self._teller.account.write()
+        self._teller.account.changed()
+
+    def _since_s(self, wait: Wait) -> float:
+        return self._teller.now_s() - wait.since_s
+
+    def told(self) -> list[dict[str, Any]]:
+        """Those that are told of."""
+        return [
+            {
+                **{"name": wait.name, "type": wait.type, "since_s": wait.since_s},
+                "lasted_s": None
+                if wait.is_going_on and self._since_s(wait) > LONG_S
+                else wait.lasted_s,
+                "place": wait.place,
+            }
+            for wait in list(self._told)
+        ]
 
 
 @dataclass
 class Slow:
     """A line at which callbacks let time pass; see `grader.recording.conduct.Slow`."""
 
-    number: int
     place: dict[str, Any]
     longest_s: float = 0.0
     times: int = 0
-    told: tuple[int, float] = (0, 0.0)
 
 
 class Callbacks:
@@ -145,34 +147,26 @@ class Callbacks:
         if slow is None:
             if len(self._slow) >= MOST:
                 return
-            slow = self._slow[where] = Slow(len(self._slow), self._teller.line(*where))
+            slow = self._slow[where] = Slow(self._teller.line(*where))
         slow.times += 1
         slow.longest_s = max(slow.longest_s, total_s)
-        if slow.times >= STEP * slow.told[0]:
-            self._tell(slow)
+        self._teller.account.changed()
 
-    def sum_up(self) -> None:
-        """Tell the last figures."""
-        for slow in list(self._slow.values()):
-            if slow.told != (slow.times, slow.longest_s):
-                self._tell(slow, is_last=True)
-
-    def _tell(self, slow: Slow, *, is_last: bool = False) -> None:
-        slow.told = slow.times, slow.longest_s
-        longest_s = round(slow.longest_s, 9)
-        told = {"place": slow.place, "longest_s": longest_s, "times": slow.times}
-        self._teller.tell("slow", [slow.number, told], is_last=is_last)
+    def told(self) -> list[dict[str, Any]]:
+        """All lines."""
+        return [
+            {"place": each.place, "longest_s": round(each.longest_s, 9), "times": each.times}
+            for each in list(self._slow.values())
+        ]
 
 
 @dataclass
 class Timer:
     """A line that makes timers; see `grader.recording.conduct.Timer`."""
 
-    number: int
     place: dict[str, Any]
     period_s: float = 0.0
     times: int = 0
-    told: int = 0
 
 
 class Timers:
@@ -189,18 +183,10 @@ class Timers:
         where = place["file"], place["line"]
         if where not in self._made and len(self._made) >= MOST:
             return
-        timer = self._made.setdefault(where, Timer(len(self._made), place))
+        timer = self._made.setdefault(where, Timer(place))
         timer.times, timer.period_s = timer.times + 1, period_s
-        if timer.times >= STEP * timer.told:
-            self._tell(timer)
+        self._teller.account.changed()
 
-    def sum_up(self) -> None:
-        """Tell the last figures."""
-        for timer in list(self._made.values()):
-            if timer.told != timer.times:
-                self._tell(timer, is_last=True)
-
-    def _tell(self, timer: Timer, *, is_last: bool = False) -> None:
-        timer.told = timer.times
-        told = {"place": timer.place, "period_s": timer.period_s, "times": timer.times}
-        self._teller.tell("timer", [timer.number, told], is_last=is_last)
+    def told(self) -> list[dict[str, Any]]:
+        """All lines."""
+        return [asdict(each) for each in list(self._made.values())]

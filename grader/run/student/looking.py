@@ -38,10 +38,10 @@ class Looking:
         calls: what is to be called when a module of rclpy has been loaded.
     """
 
-    def __init__(self, descriptor: int, root: str) -> None:
+    def __init__(self, page: int, root: str) -> None:
         started_s = time.monotonic()
         now, self._sleep = time.monotonic, time.sleep
-        self._teller = Teller(descriptor, root, lambda: now() - started_s)
+        self._teller = Teller(page, root, lambda: now() - started_s)
         self._witness = witness.Witness(self._teller, self._is_met)
         self._is_asking = False
         self._code = -1

@@ -249,12 +249,12 @@ def main(arguments: Sequence[str] = ()) -> None:
     Args:
         arguments: of the submission's program.
     """
-    _, awaited, evidence, root, target, *more = sys.argv
+    _, awaited, page, root, target, *more = sys.argv
     die_with_parent()
     sys.path[0] = str(Path(__file__).resolve().parents[3])
     from grader.run.student.looking import Looking
 
-    looking = Looking(int(evidence), root)
+    looking = Looking(int(page), root)
     forget_ourselves(root, target, arguments)
     introduced = Introduced(*json.loads(awaited))
     calls = {name: [look] for name, look in looking.calls.items()}

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from types import CodeType, FrameType
 
-#: So many lines of one end, and changes between them, are kept: what is told of it is one line of
-#: `telling.MOST_LINE_BYTES`.
+#: So many lines of one end, and changes between them, are kept.
 MOST_LINES, MOST_CHANGES = 8, 150
 
 

@@ -1,14 +1,13 @@
-"""How a submission's process tells of itself while it lives: lines of JSON into a pipe.
+"""What a submission's process tells of itself, by the lines of the submission's own files.
 
-What is told goes at once, so that a process that is killed has told what it knew. Nothing here
-waits, raises, or takes time of the run: where the pipe is full or closed, nobody hears of it.
-`grader.run.evidence` reads it, and says what a line may hold.
+Nothing here waits, raises, or takes time of the run. It goes into the process's `account`; where
+its threads are, Python's faulthandler writes there, at a signal or where the process dies by a
+mistake in C.
 """
 
 from __future__ import annotations
 
 import faulthandler
-import json
 import os
 import signal
 import sys
@@ -18,10 +17,8 @@ from pathlib import Path
 from types import CodeType, FrameType, TracebackType
 from typing import Any
 
-#: So much is told of what goes on [bytes]; the rest of the pipe is for how it ends.
-MOST_BYTES = 40_000
-#: One line of it is never cut.
-MOST_LINE_BYTES = 4000
+from grader.run.student.account import Account
+
 LONGEST = 300
 #: A larger file is no source that somebody reads [bytes].
 MOST_SOURCE_BYTES = 1_000_000
@@ -32,45 +29,23 @@ Line = tuple[FrameType, int]
 
 
 class Teller:
-    """The pipe, and what is the submission's own.
+    """What is the submission's own, and the account that tells of it.
 
     Attributes:
         root: the folder of the submission.
+        account: what is told.
         now_s: tells the time [s since the start of this process] on the clock of the run.
     """
 
-    def __init__(self, descriptor: int, root: str, now_s: Callable[[], float]) -> None:
-        """`descriptor`: -1: nobody listens."""
+    def __init__(self, page: int, root: str, now_s: Callable[[], float]) -> None:
+        """`page`: of the account; -1: nobody reads it."""
         self.root = root.rstrip("/") + "/"
         self.now_s = now_s
-        self._descriptor = descriptor
-        self._process = os.getpid()
-        self._told = 0
+        self.account = Account(page)
         self._sources: dict[str, list[str]] = {}
-        self._identity = _identity(descriptor)
-        if descriptor >= 0:
-            os.set_inheritable(descriptor, False)
-            os.set_blocking(descriptor, False)
-            _tell_when_asked(descriptor)
-            self.tell("begun", 0.0)
-
-    def tell(self, what: str, value: object, *, is_last: bool = False) -> None:
-        """Tell something.
-
-        Args:
-            is_last: it is how the program ends, for which there is always room.
-        """
-        line = json.dumps({what: value}).encode("ascii", "replace") + b"\n"
-        too_much = len(line) > MOST_LINE_BYTES or self._told + len(line) > MOST_BYTES
-        if self._descriptor < 0 or (too_much and not is_last) or self._is_another():
-            return
-        self._told += len(line)
-        with suppress(OSError):
-            os.write(self._descriptor, line)
-
-    def _is_another(self) -> bool:
-        """Whether this is a fork, or the program has closed the pipe and opened something else."""
-        return os.getpid() != self._process or _identity(self._descriptor) != self._identity
+        if page >= 0:
+            os.set_inheritable(page, False)
+            _dump_when_asked(page)
 
     # Places -----------------------------------------------------------------------------------
 
@@ -165,14 +140,6 @@ def _outwards(frame: FrameType | None) -> Iterator[Line]:
         frame = frame.f_back
 
 
-def _identity(descriptor: int) -> tuple[int, int]:
-    try:
-        found = os.fstat(descriptor)
-    except OSError:
-        return 0, 0
-    return found.st_dev, found.st_ino
-
-
 def asking_signal() -> int:
     """What the grader sends to hear where this process is; 0 where there is no such signal.
 
@@ -184,7 +151,7 @@ def asking_signal() -> int:
     return 0
 
 
-def _tell_when_asked(descriptor: int) -> None:
+def _dump_when_asked(descriptor: int) -> None:
     """Write where all threads are, at the signal and where the process dies by a mistake in C."""
     if number := asking_signal():
         with suppress(OSError, RuntimeError, ValueError):

@@ -59,9 +59,9 @@ def main() -> None:
             sys.exit(fault)  # the run says so, when it has started from nothing
         words = become_one_of_many(scheduler, state, words[2:])
         student_main.die_with_parent()
-    _, fd, evidence, introduction, root, target, *more = words
+    _, fd, page, introduction, root, target, *more = words
     connection = socket.socket(fileno=int(fd))
-    teller = telling.Teller(int(evidence), root, lambda: scheduler.now_ns / 1e9)
+    teller = telling.Teller(int(page), root, lambda: scheduler.now_ns / 1e9)
 
     def give_up(kind: Kind, what: str) -> None:
         with suppress(OSError):  # the simulator is gone

@@ -21,8 +21,6 @@ from grader.run.student.telling import Line, Teller
 
 #: So many ends and places are told of: `grader.recording.conduct.MOST`.
 MOST = 100
-#: How often something was used is told at 1, 4, 16, ... times, and at the end.
-STEP = 4
 #: Modules of rclpy whose ends every node has, without its author's doing.
 _EVERY_NODE = frozenset(
     f"rclpy.{name}"
@@ -46,20 +44,19 @@ class End:
     """An end that the submission has made; see `grader.recording.conduct.End`.
 
     Attributes:
-        number: in the order in which they were made.
-        name, type: as they are told.
+        name, type, place, used_at: as they are told.
         ask: whether somebody has the other end.
-        told: how often it was used when that was told last.
     """
 
-    number: int
+    kind: str
     name: str
     type: str
+    place: dict[str, Any] | None
     ask: Callable[[], bool]
     used: int = 0
     is_met: bool = False
+    used_at: dict[str, Any] | None = None
     sending: Sending = field(default_factory=Sending)
-    told: tuple[int, bool] = field(default=(0, False))
 
 
 class Witness:
@@ -71,13 +68,17 @@ class Witness:
         self._is_met = is_met
         self._ends: list[End] = []
         self._has_ended = False
-        self._told: set[str] = set()
+        #: how it ended, when it was first spun: what is told of once
+        self._once: dict[str, Any] = dict.fromkeys(("spun_s", "stop", "raised", "returned_s"))
+        self._is_blind = False
         #: where something that cannot be called was first given for a callback
         self._uncallable: dict[str, Any] | None = None
         self.waits = Waits(teller)
         self.callbacks = Callbacks(teller)
         self.timers = Timers(teller)
         self.catching = Catching(teller)
+        teller.account.tell = self._tell
+        teller.account.write()
 
     # What rclpy's objects do ------------------------------------------------------------------
 
@@ -87,12 +88,11 @@ class Witness:
         if frame is None or len(self._ends) >= MOST:
             return
         name, ros_type = name[: telling.LONGEST], _ros_type(interface)
-        end = End(len(self._ends), name, ros_type, self._is_met(kind, entity))
+        place = self._teller.place(frame)
+        end = End(kind, name, ros_type, place, self._is_met(kind, entity))
         entity._witnessed = end
         self._ends.append(end)
-        place = self._teller.place(frame)
-        told = {"kind": kind, "name": name, "type": ros_type}
-        self._teller.tell("end", {**told, "place": place})
+        self._teller.account.write()
 
     def is_given(self, callback: Any) -> None:
         """A timer or a future is to call this."""
@@ -112,9 +112,8 @@ class Witness:
             return
         if is_sent:
             frame = self._teller.own_frame(sys._getframe())
-            if end.used == 0:
-                place = None if frame is None else self._teller.line(frame.f_code, frame.f_lineno)
-                self._teller.tell("used_at", [end.number, place])
+            if end.used == 0 and frame is not None:
+                end.used_at = self._teller.line(frame.f_code, frame.f_lineno)
             end.sending.count(frame)
         self._count(end)
 
@@ -126,29 +125,49 @@ class Witness:
 
     def _count(self, end: End) -> None:
         end.used += 1
-        if end.used >= STEP * end.told[0]:
-            self._tell_of(end)
-
-    def _tell_of(self, end: End, *, is_last: bool = False) -> None:
-        end.is_met = end.is_met or bool(end.ask())
-        if end.told != (end.used, end.is_met):
-            end.told = end.used, end.is_met
-            self._teller.tell("used", [end.number, end.used, end.is_met], is_last=is_last)
+        self._teller.account.changed()
 
     def look_for_others(self) -> None:
         """Ask of each end whether somebody has the other one, now that something may have come."""
-        for end in list(self._ends):
-            if not end.is_met:
-                quietly(self._tell_of, end)
+        before = [end.is_met for end in self._ends]
+        self._ask_of_ends()
+        if before != [end.is_met for end in self._ends]:
+            self._teller.account.changed()
         quietly(self.waits.look)
+
+    def _ask_of_ends(self) -> None:
+        for end in list(self._ends):
+            end.is_met = end.is_met or bool(quietly(end.ask))
 
     def is_blind(self) -> None:
         """Nothing that was told may be believed: not all of it is seen."""
-        self._teller.tell("blind", True, is_last=True)
+        self._is_blind = True
+        self._teller.account.write()
+
+    def _tell(self) -> dict[str, Any]:
+        """All of it, as `grader.run.evidence` reads it."""
+        self._ask_of_ends()
+        return {
+            "is_blind": self._is_blind,
+            "ends": [self._told_of(end) for end in list(self._ends)],
+            "waits": self.waits.told(),
+            "slow": self.callbacks.told(),
+            "timers": self.timers.told(),
+            "caught": self.catching.told(),
+            **self._once,
+        }
+
+    def _told_of(self, end: End) -> dict[str, Any]:
+        names = ("kind", "name", "type", "is_met", "used", "place", "used_at")
+        return {
+            **{name: getattr(end, name) for name in names},
+            "lines": [self._teller.line(*line) for line in end.sending.lines],
+            "sent": [{"line": line, "times": times} for line, times in end.sending.sent],
+        }
 
     def spins(self) -> None:
         """An executor is spun for the first time."""
-        self._teller.tell("spun", self._teller.now_s())
+        self._tell_once("spun_s", self._teller.now_s())
 
     # How it ends ------------------------------------------------------------------------------
 
@@ -233,7 +252,7 @@ class Witness:
     def returned(self, code: int) -> None:
         """The program has come to its end by itself."""
         if code == 0:
-            self._end("returned", self._teller.now_s())
+            self._end("returned_s", self._teller.now_s())
         else:
             now_s = self._teller.now_s()
             told = {"type": "SystemExit", "text": str(code), "time_s": now_s, "place": None}
@@ -247,21 +266,14 @@ class Witness:
         self.sum_up()
 
     def _tell_once(self, what: str, value: object) -> None:
-        if what not in self._told:
-            self._told.add(what)
-            self._teller.tell(what, value, is_last=True)
+        if self._once[what] is None:
+            self._once[what] = value
+            self._teller.account.write()
 
     def sum_up(self) -> None:
-        """Tell the last figures, where this is the end."""
-        for end in self._ends:
-            self._tell_of(end, is_last=True)
-            if end.sending.sent:
-                lines = [self._teller.line(*line) for line in end.sending.lines]
-                self._teller.tell("sent", [end.number, lines, end.sending.sent])
-        self.waits.look(is_last=True)
-        self.callbacks.sum_up()
-        self.timers.sum_up()
-        self.catching.sum_up()
+        """This is the end: the account is the last one."""
+        quietly(self.waits.look)
+        self._teller.account.write(is_last=True)
 
 
 def quietly(look: Callable[..., Any], *args: Any) -> Any:

@@ -14,14 +14,22 @@ import pytest
 
 from grader.recording.conduct import Conduct
 from grader.run import evidence
-from grader.run.evidence import MOST_BYTES, open_evidence
+from grader.run.evidence import open_evidence
 from grader.run.processes import usage
-from grader.run.student import loops
+from grader.run.student import account, loops
 from grader.submission.opening import Submission, open_submission
 from grader.submission.start import Slip
+from tests.children import in_child
 
 PLACE = {"file": "a.py", "line": 2, "function": "", "text": "pass"}
-END = {"kind": "publisher", "name": "/a", "type": "a/msg/B", "place": PLACE}
+END = {
+    **{"kind": "publisher", "name": "/a", "type": "a/msg/B", "is_met": True, "used": 4},
+    **{"place": PLACE, "used_at": None, "lines": [], "sent": []},
+}
+ACCOUNT = {
+    **{"is_blind": False, "ends": [END], "waits": [], "slow": [], "timers": [], "caught": []},
+    **{"spun_s": 0.5, "stop": None, "raised": None, "returned_s": 1},
+}
 
 
 @pytest.fixture(scope="module")
@@ -32,71 +40,79 @@ def submission(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Submission]
         yield opened
 
 
-def told(submission: Submission, *lines: bytes) -> Conduct:
-    with open_evidence() as pipe:
-        for line in lines:
-            os.write(pipe.descriptor, line + b"\n")
-    return pipe.conduct(submission, 1.5, computes=True)
+def told(submission: Submission, account: bytes = b"", dumped: bytes = b"") -> Conduct:
+    """What is believed of what stands in the page."""
+    with open_evidence() as evidence:
+        if account:
+            put(evidence.page, 1, account)
+        os.write(evidence.page, dumped)
+        return evidence.conduct(submission, 1.5, computes=True)
 
 
-def say(**what: object) -> bytes:
-    return json.dumps(what).encode()
+def put(page: int, number: int, data: bytes, length: int | None = None) -> None:
+    """Write a half of the page, as anybody may."""
+    length = len(data) if length is None else length
+    head = account._HEAD.pack(account._checksum(number, data), number, length, False)
+    os.pwrite(page, head + data[: account.MOST_BYTES], account.HALF_BYTES * (number % 2))
 
 
-def test_what_was_told_line_by_line_is_put_together(submission: Submission) -> None:
-    conduct = told(submission, say(end=END), say(used=[0, 4, True]), say(spun=0.5), say(returned=1))
+def say(**changes: object) -> bytes:
+    return json.dumps({**ACCOUNT, **changes}).encode()
+
+
+def test_what_stands_in_the_account_is_told(submission: Submission) -> None:
+    conduct = told(submission, say())
     assert conduct.is_told
     assert [(end.name, end.used, end.is_met) for end in conduct.ends] == [("/a", 4, True)]
     assert (conduct.spun_s, conduct.returned_s) == (0.5, 1.0)
 
 
 def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission) -> None:
-    other = {**PLACE, "line": 1}
-    sent = [0, [PLACE, other], [[0, 104], [1, 1]]]
-    conduct = told(submission, say(end=END), say(used=[0, 105, True]), say(sent=sent))
+    lines = [PLACE, {**PLACE, "line": 1}]
+    sent = [{"line": 0, "times": 104}, {"line": 1, "times": 1}]
+    conduct = told(submission, say(ends=[{**END, "lines": lines, "sent": sent}]))
     (end,) = conduct.ends
     assert [place.line for place in end.lines] == [2, 1]
     assert [(burst.line, burst.times) for burst in end.sent] == [(0, 104), (1, 1)]
 
 
 @pytest.mark.parametrize(
-    "sent",
+    ("lines", "sent"),
     [
-        [0, [PLACE], [[1, 1]]],
-        [0, [PLACE], [[0, -1]]],
-        [0, [PLACE], [[0, 1.5]]],
-        [0, [PLACE], [[True, 1]]],
-        [0, [PLACE], [[0, 1]] * 201],
-        [0, [{**PLACE, "file": "../b.py"}], [[0, 1]]],
-        [1, [PLACE], [[0, 1]]],
-        [0, PLACE, [[0, 1]]],
-        [0, [PLACE], 7],
+        ([PLACE], [{"line": 1, "times": 1}]),
+        ([PLACE], [{"line": 0, "times": -1}]),
+        ([PLACE], [{"line": 0, "times": 1.5}]),
+        ([PLACE], [{"line": True, "times": 1}]),
+        ([PLACE], [{"line": 0, "times": 1}] * 201),
+        ([{**PLACE, "file": "../b.py"}], []),
+        (PLACE, []),
+        ([PLACE], 7),
     ],
 )
 def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
-    submission: Submission, sent: object
+    submission: Submission, lines: object, sent: object
 ) -> None:
-    assert told(submission, say(end=END), say(sent=sent)) == Conduct()
+    assert told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])) == Conduct()
 
 
 def test_what_was_seen_of_timers_and_exceptions_is_believed_by_its_form(
     submission: Submission,
 ) -> None:
-    timer = {"place": PLACE, "period_s": 0.1, "times": 1}
+    timer = {"place": PLACE, "period_s": 0.1, "times": 4}
     caught = {"type": "E", "text": "", "time_s": 1, "times": 2, "place": PLACE, "by": None}
-    lines = [say(end=END), say(used_at=[0, PLACE]), say(timer=[0, timer])]
-    lines += [say(timer=[0, {**timer, "times": 4}]), say(caught=[0, caught])]
-    conduct = told(submission, *lines)
+    right = {"ends": [{**END, "used_at": PLACE}], "timers": [timer], "caught": [caught]}
+    conduct = told(submission, say(**right))
     assert [each.times for each in conduct.timers] == [4]
     assert [(each.type, each.times, each.by) for each in conduct.caught] == [("E", 2, None)]
     assert conduct.ends[0].used_at is not None
     assert Conduct.from_json(json.loads(json.dumps(conduct.to_json()))) == conduct
     for wrong in (
-        say(timer=[0, {**timer, "period_s": -1}]),
-        say(caught=[0, {**caught, "times": 0.5}]),
-        say(used_at=[7, PLACE]),
+        {"timers": [{**timer, "period_s": -1}]},
+        {"caught": [{**caught, "times": 0.5}]},
+        {"caught": [caught] * 101},
+        {"ends": [{**END, "used_at": [7, PLACE]}]},
     ):
-        assert told(submission, *lines, wrong) == Conduct()
+        assert told(submission, say(**{**right, **wrong})) == Conduct()
 
 
 def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
@@ -104,45 +120,124 @@ def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
 ) -> None:
     slip = Slip("unread", "stoped", "stopped", "a.py", 3, "self.stoped = True")
     read = replace(submission, slips=(slip,))
-    (found,) = told(read, say(end=END)).slips
+    (found,) = told(read, say()).slips
     assert (found.kind, found.name, found.near) == ("unread", "stoped", "stopped")
     assert (found.place.file, found.place.line, found.place.text) == slip[3:]
     assert told(read) == Conduct()
     forged = {"kind": "unread", "name": "a", "near": "b", "place": PLACE}
-    assert told(read, say(end=END), say(slip=forged)) == Conduct()
-
-
-def test_an_older_recording_without_them_is_still_read(submission: Submission) -> None:
-    data = json.loads(json.dumps(told(submission, say(end=END)).to_json()))
-    for name in ("timers", "caught", "slips"):
-        del data[name]
-    del data["ends"][0]["used_at"]
-    assert Conduct.from_json(data) == told(submission, say(end=END))
+    assert told(read, say(slips=[forged])).slips == (found,)
 
 
 @pytest.mark.parametrize(
-    "line",
+    "account",
     [
-        *(b"{", b'{"spun": NaN}', b'{"spun": 1e999}', b'{"spun": true}', b'{"spun": -1}', b"\xff"),
-        *(
-            b"{}",
-            b'{"spun": 1, "returned": 2}',
-            b'{"unheard of": 1}',
-            b'{"end": {}}',
-            b'{"end": 3}',
-        ),
-        *(say(used=[7, 1, True]), say(used=[0]), say(used=None), say(stop={"place": None})),
-        *(say(end={**END, "kind": "friend"}), say(end={**END, "name": "x" * 301})),
-        *(say(end={**END, "place": {**PLACE, "line": "2"}}), say(wait=[-3, {}]), say(slow=[0, 1])),
-        say(blind=True),
-        *(b'{"end": ' + b"[" * 5000 + b"]" * 5000 + b"}", b'{"is_told": false}'),
+        *(b"{", b"\xff", b"[]", b"3", b"null", b"{}", b"[" * 20_000),
+        *(say(spun_s=True), say(spun_s=-1), say(spun_s="1"), say(ends=None), say(ends=[3])),
+        say().replace(b'"spun_s": 0.5', b'"spun_s": NaN'),
+        say().replace(b'"spun_s": 0.5', b'"spun_s": 1e999'),
+        *(say(unheard_of=1), say(is_blind=True), say(ends=[{}]), say(stop={"place": None})),
+        *(say(ends=[{**END, "kind": "friend"}]), say(ends=[{**END, "name": "x" * 301}])),
+        *(say(ends=[END] * 101), say(waits=[{}]), say(slow=[1]), say(is_told=False, extra=1)),
+        say(ends=[{**END, "place": {**PLACE, "line": "2"}}]),
     ],
 )
 def test_of_a_process_that_tells_nonsense_nothing_is_told(
-    submission: Submission, line: bytes
+    submission: Submission, account: bytes
 ) -> None:
-    assert told(submission, say(end=END), line) == Conduct()
-    assert told(submission, line) == Conduct()
+    assert told(submission, account) == Conduct()
+
+
+def test_the_newest_half_that_is_whole_counts(submission: Submission) -> None:
+    with open_evidence() as evidence:
+        page = evidence.page
+        put(page, 1, say(spun_s=1))
+        put(page, 2, say(spun_s=2))
+        put(page, 3, say(spun_s=3))
+        os.pwrite(page, b"?", account.HALF_BYTES + 100)  # killed in the middle of writing
+        assert evidence.conduct(submission, 1.5, computes=True).spun_s == 2
+
+
+@pytest.mark.parametrize("length", [0, 1, 2**31, 2**32 - 1])
+def test_a_length_that_is_none_is_not_believed(submission: Submission, length: int) -> None:
+    with open_evidence() as evidence:
+        page = evidence.page
+        put(page, 1, say(), length)
+        assert evidence.conduct(submission, 1.5, computes=True) == Conduct()
+
+
+def test_nobody_makes_the_page_longer_or_shorter() -> None:
+    with open_evidence() as evidence:
+        page = evidence.page
+        for size in (0, 10 * account.HALF_BYTES):
+            with pytest.raises(PermissionError):
+                os.ftruncate(page, size)
+
+
+def kept(told: dict[str, object], times: int = 1) -> dict[str, object]:
+    """What of an account comes through the page, as a process writes it."""
+    page = account.make()
+    try:
+        writer = account.Account(page)
+        writer.tell = lambda: json.loads(json.dumps(told))
+        for _ in range(times):
+            writer.write()
+        found: dict[str, object] = json.loads(account.read(page)[0])
+        return found
+    finally:
+        os.close(page)
+
+
+def test_what_there_is_no_room_for_is_left_out_in_an_order() -> None:
+    slow = [{"place": PLACE, "longest_s": 0.1, "times": n} for n in range(600)]
+    found = kept({**ACCOUNT, "slow": slow, "timers": [1]})
+    assert (found["slow"], found["timers"], found["ends"]) == ([], [1], [END])
+    found = kept({**ACCOUNT, "ends": [END] * 500, "waits": [1]})
+    ends = found["ends"]
+    assert isinstance(ends, list)
+    assert 100 < len(ends) < 500
+    assert (found["waits"], found["returned_s"]) == ([], 1)
+
+
+def test_a_fork_tells_nothing() -> None:
+    page = account.make()
+    writer = account.Account(page)
+    writer.tell = lambda: {"ends": []}
+    writer.write()
+    in_child(writer.write)
+    assert len({os.pread(page, 16, begin) for begin in (0, account.HALF_BYTES)} - {bytes(16)}) == 1
+    os.close(page)
+
+
+def test_the_last_one_is_known_as_such(submission: Submission) -> None:
+    page = account.make()
+    writer = account.Account(page)
+    writer.write()
+    assert not account.read(page)[1]
+    writer.write(is_last=True)
+    assert account.read(page)[1]
+    os.close(page)
+
+
+def test_what_a_program_has_opened_in_its_place_is_left_alone(tmp_path) -> None:
+    page = account.make()
+    writer = account.Account(page)
+    other = os.open(tmp_path / "its own", os.O_RDWR | os.O_CREAT)
+    os.dup2(other, page)
+    writer.write()
+    assert (tmp_path / "its own").read_bytes() == b""
+    for each in (page, other):
+        os.close(each)
+
+
+def test_the_more_often_something_changes_the_less_often_it_is_written() -> None:
+    page = account.make()
+    writer = account.Account(page)
+    written = []
+    writer.tell = lambda: {"n": written.append(1)}
+    for _ in range(100_000):
+        writer.changed()
+    os.close(page)
+    assert len(written) < 60
 
 
 def test_texts_are_told_in_one_line_that_can_be_shown(submission: Submission) -> None:
@@ -159,34 +254,35 @@ def test_of_a_process_that_tells_nothing_nothing_is_told(submission: Submission)
 
 def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None:
     chance = random.Random(12)
-    whole = b"\n".join((say(end=END), say(used=[0, 4, True]), say(spun=0.5), say(returned=1)))
+    whole = say()
     for _ in range(300):
         data = bytearray(whole)
         for _ in range(chance.randint(1, 6)):
             data[chance.randrange(len(data))] = chance.randrange(256)
-        told(submission, bytes(data))
+        told(submission, bytes(data), bytes(data))
 
 
-def test_the_pipe_holds_so_much_and_no_more(submission: Submission) -> None:
-    with open_evidence() as pipe:
-        os.set_blocking(pipe.descriptor, False)
+def test_a_dump_has_so_much_room_and_no_more(submission: Submission) -> None:
+    with open_evidence() as evidence:
+        put(evidence.page, 1, say())
         sent = 0
-        with pytest.raises(BlockingIOError):
+        with pytest.raises(PermissionError):
             while True:
-                sent += os.write(pipe.descriptor, b"x" * 1000)
-        assert sent <= MOST_BYTES
-    assert pipe.conduct(submission, 0.0, computes=True) == Conduct()
+                sent += os.write(evidence.page, b"x" * 1000)
+        assert sent == account.DUMP_BYTES
+        assert evidence.conduct(submission, 0.0, computes=True).is_told
 
 
-def dump(submission: Submission, *frames: tuple[str, int, str]) -> list[bytes]:
+def dump(submission: Submission, *frames: tuple[str, int, str]) -> bytes:
     head = b"Current thread 0x00007f (most recent call first):"
-    return [head, *(f'  File "{file}", line {n} in {name}'.encode() for file, n, name in frames)]
+    lines = (f'  File "{file}", line {n} in {name}'.encode() for file, n, name in frames)
+    return b"".join(line + b"\n" for line in (head, *lines))
 
 
 def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
     file = str(submission.root / "a.py")
     for line in (1, 2):
-        conduct = told(submission, *dump(submission, (file, line, "<module>")))
+        conduct = told(submission, b"", dump(submission, (file, line, "<module>")))
         assert conduct.stop is not None
         assert conduct.stop.place is not None
         assert (conduct.stop.place.line, conduct.stop.place.text) == (1, "while True:")
@@ -196,8 +292,8 @@ def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
 def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
     submission: Submission, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    lines = iter(dump(submission, (str(submission.root / "a.py"), 2, "<module>")))
-    with open_evidence() as pipe:
+    lines = iter(dump(submission, (str(submission.root / "a.py"), 2, "<module>")).splitlines())
+    with open_evidence() as heard:
         # each look finds it where the last one did; every fifth time it has come to a line more
         looks = count(1)
 
@@ -205,24 +301,24 @@ def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
             number = next(looks)
             line = next(lines, None) if number % 5 == 0 else None
             if line is not None:
-                os.write(pipe.descriptor, line + b"\n")
+                os.write(heard.page, line + b"\n")
             return usage.Usage(0.0 if number < 20 else number, "R")
 
         monkeypatch.setattr(evidence.usage, "look", look)
         monkeypatch.setattr(evidence, "asking_signal", lambda: signal.SIGCONT)
         monkeypatch.setattr(evidence, "QUIET_S", 0.01)
         monkeypatch.setattr(evidence, "PATIENCE_S", 0.01)
-        pipe.ask(os.getpid())
-        said = pipe._data.splitlines()
+        heard.ask(os.getpid())
+        said = account.dumped(heard.page).splitlines()
     assert len(said) == 2
 
 
 def test_what_lies_beside_a_submission_is_none_of_its_own(submission: Submission) -> None:
     file = f"{submission.root}/../secret.py"
-    assert told(submission, *dump(submission, (file, 1, "f"))) == Conduct(is_told=True)
+    assert told(submission, b"", dump(submission, (file, 1, "f"))) == Conduct(is_told=True)
     for name in ("../secret.py", "/etc/passwd", "a/../../b.py"):
         place = {**PLACE, "file": name}
-        assert told(submission, say(end={**END, "place": place})) == Conduct()
+        assert told(submission, say(ends=[{**END, "place": place}])) == Conduct()
 
 
 NESTED = """\
