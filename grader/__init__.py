@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from grader.recording.recording import Recording, Recordings
     from grader.result.result import Result
     from grader.result.visible import student_view
-    from grader.submission.opening import open_submission
+    from grader.run.opening import open_submission
 
 #: module -> its public names
 _PUBLIC = {
     "grader.grading": ("grade", "record"),
     "grader.judging": ("judge", "load_recordings", "save_recordings"),
-    "grader.submission.opening": ("open_submission",),
+    "grader.run.opening": ("open_submission",),
     "grader.exercise.exercise": ("Exercise",),
     "grader.exercise.loading": ("load_exercise",),
     "grader.exercise.check": ("Checks", "Tolerances"),

@@ -29,11 +29,12 @@ from grader.run.audience import Audience
 from grader.run.budget import Budget
 from grader.run.finish import not_run
 from grader.run.lost import SimulatorLost, judged_all_the_same
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.run.processes import cores
 from grader.scenes import load_scene
 from grader.scenes.scene import Trace
-from grader.submission.opening import Submission, open_submission
+from grader.submission.opening import Submission
 from grader.submission.private_copy import not_handed_in
 
 Progress = Callable[[float], None]
@@ -162,6 +163,8 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         SubmissionError: there is no ROS in which it could run.
     """
     starts = exercise.starts(seed)
+    budget = Budget(exercise.cpu_s)
+    budget.spend(submission.spent_s)
     used = exercise.varied.seed if seed is None else seed
     imports = submission.imports
     scene = load_scene(exercise.scene)
@@ -172,7 +175,7 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         interfaces=scene.interfaces_for(imports.surely, imports.perhaps),
         setting=exercise.setting,
         looks_at_package=exercise.looks_at_package and submission.package is not None,
-        budget=Budget(exercise.cpu_s),
+        budget=budget,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
     missing = not_handed_in(submission.name, submission.copy, (*imports.surely, *imports.perhaps))

@@ -17,9 +17,9 @@ from grader.recording import reading, saving
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result
 from grader.run import real_time, virtual_time
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.run.simulator.link import Patience
-from grader.submission.opening import open_submission
 from tests import once
 from tests.submissions import beginners
 from tests.submissions.mutants import MUTANTS, REFERENCE

@@ -95,8 +95,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     # a package is looked at in the submission's process, which sees little of ours
     "grader.scenes.package.strict": set(),
     "grader.scenes.package.trace": {"grader.scenes.package.strict"},
+    "grader.scenes.package.inspection": below("grader.scenes.package", "strict", "trace"),
     "grader.scenes.package.examining": below("grader", "limited")
-    | below("grader.scenes.package", "strict", "trace", "__init__"),
+    | below("grader.scenes.package", "strict", "trace", "inspection", "__init__"),
     "grader.scenes.package.examining.doubles": {"grader.scenes.package.examining"},
     "grader.recording": GROUND | {"grader.scenes"},
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),

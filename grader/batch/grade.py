@@ -30,7 +30,8 @@ from grader.result import json_file
 from grader.result.error import ErrorResult
 from grader.result.handed_in import HandedIn
 from grader.result.result import ARTIFACTS, PAGE, RESULT, Result
-from grader.submission.opening import Submission, open_submission
+from grader.run.opening import open_submission
+from grader.submission.opening import Submission
 from grader.text import plain_phrase
 
 #: Where a student's traceback says that the hand-in lies.

@@ -29,8 +29,9 @@ from grader.language.telling import told
 from grader.recording import saving
 from grader.recording.recording import Recording, Recordings
 from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
+from grader.run.opening import open_submission
 from grader.run.processes import cores
-from grader.submission.opening import Submission, open_submission
+from grader.submission.opening import Submission
 from grader.text import for_terminal
 
 if TYPE_CHECKING:

@@ -25,10 +25,12 @@ PER_STUDENT = "per_student"
 
 
 class Opening(TypedDict, total=False):
-    """Arguments of `grader.submission.opening.open_submission`."""
+    """Arguments of `grader.run.opening.open_submission`."""
 
     is_started: bool
     usual: str
+    is_whole: bool
+    cpu_s: float
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,11 @@ class Exercise:
     @property
     def opening(self) -> Opening:
         """How a submission to it is opened."""
-        opening: Opening = {"is_started": self.is_started}
+        opening: Opening = {
+            "is_started": self.is_started,
+            "is_whole": self.looks_at_package,
+            "cpu_s": self.cpu_s,
+        }
         if self.program:
             opening["usual"] = self.program
         return opening

@@ -15,22 +15,25 @@ class Budget:
 
     Args:
         cpu_s: so much processor time [s].
+
+    Attributes:
+        spent_s: so much of it was taken [s].
     """
 
     def __init__(self, cpu_s: float = math.inf) -> None:
         self._cpu_s = cpu_s
-        self._spent_s = 0.0
+        self.spent_s = 0.0
         self._lock = Lock()
 
     def spend(self, cpu_s: float) -> None:
         """So much more was taken [s]."""
         with self._lock:
-            self._spent_s += cpu_s
+            self.spent_s += cpu_s
 
     @property
     def is_spent(self) -> bool:
         """Whether more was taken than there was: what still runs is to be ended."""
-        return self._spent_s > self._cpu_s
+        return self.spent_s > self._cpu_s
 
     @property
     def remark(self) -> str:

@@ -1,9 +1,10 @@
 """A run without a clock: one process looks at a submission, of which nothing is started by that.
 
-It is the only run where a scene has no nodes (`run`), and goes beside another one where an exercise
-has the package looked at around what is started (`look_beside`). That process is the submission's,
-and confined like one, since looking runs a stranger's set-up and launch files. What it leaves is
-decoded by its scene as strictly as anything that a submission says.
+It is the only run where a scene has no nodes (`run`). It says what there is to start of a package
+(`inspect`), and goes beside the nominal run where an exercise has the package looked at around what
+is started and the inspection has not seen it (`look_beside`). That process is the submission's, and
+confined like one, since looking runs a stranger's set-up and launch files. What it leaves is
+decoded as strictly as anything that a submission says.
 """
 
 from __future__ import annotations
@@ -11,11 +12,11 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Final, Generic, TypeVar
 
 import psutil
 
@@ -30,13 +31,16 @@ from grader.run.finish import Ending, limits_struck, record
 from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
 from grader.scenes import load_scene
+from grader.scenes.package import inspection
 from grader.scenes.package.by_itself import unlike_launched
+from grader.scenes.package.inspection import Inspection
 from grader.scenes.package.trace import FAILED, PackageTrace, decode
-from grader.scenes.scene import Scene, Trace
+from grader.scenes.scene import Trace
 from grader.submission.opening import EntryPoint, Submission, Whole
 
 #: Told the simulated time [s], of which none passes here.
 Progress = Callable[[float], None]
+Found = TypeVar("Found")
 #: The scene of what is looked at beside a run.
 SCENE: Final = "package"
 #: Whatever a package does has come to an end by then [s]: its steps have an account of processor
@@ -58,7 +62,8 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
         GraderFailure: the process could not be started.
     """
     started = time.monotonic()
-    looked = _look(submission, load_scene(plan.scene), plan.budget)
+    scene = load_scene(plan.scene)
+    looked = _look(submission, _words(submission), decode, plan.budget)
     ending = Ending(
         time="virtual",
         outcome=_outcome(looked.exit_code, looked.lost),
@@ -68,7 +73,32 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
         output=looked.output,
         flags=looked.flags,
     )
-    return record(plan, looked.trace, (), ending)
+    trace = scene.untouched(None) if looked.found is None else looked.found
+    return record(plan, trace, (), ending)
+
+
+def inspect(
+    submission: Submission,
+    folders: Sequence[str],
+    program: str,
+    budget: Budget,
+    *,
+    is_whole: bool,
+) -> tuple[Inspection, tuple[str, ...]]:
+    """What there is to start of packages, before anything is; and what kept it from being found.
+
+    Args:
+        submission: all that was handed in.
+        folders: those with set-up files, below its root.
+        program: the console script that is asked for.
+        is_whole: whether its package is looked at as `look_beside` does.
+
+    Raises:
+        GraderFailure: the process could not be started.
+    """
+    words = {"set_ups": list(folders), "program": program, "is_whole": is_whole}
+    looked = _look(submission, words, inspection.decode, budget)
+    return Inspection() if looked.found is None else looked.found, looked.flags
 
 
 def look_beside(submission: Submission, budget: Budget) -> tuple[Trace, tuple[str, ...]]:
@@ -81,29 +111,39 @@ def look_beside(submission: Submission, budget: Budget) -> tuple[Trace, tuple[st
     Raises:
         GraderFailure: the process could not be started.
     """
+    flags: tuple[str, ...] = ()
+    if isinstance(submission.seen, PackageTrace):
+        found = submission.seen
+    else:
+        found, flags = _look_again(submission, budget)
+    unlike: list[str] = []
+    if isinstance(submission.start, EntryPoint):
+        started = (submission.start.module, submission.start.function)
+        unlike = unlike_launched(found, *started)
+    return found, (*flags, *unlike)
+
+
+def _look_again(submission: Submission, budget: Budget) -> tuple[PackageTrace, tuple[str, ...]]:
     with scratch.make_folder() as folder:
         own = submission.again(folder.resolve())
         assert own.copy is not None
         for each in own.added:
             (own.root / each).unlink()  # ros2 does not add it
-        looked = _look(replace(own, root=own.copy.folder, start=Whole()), load_scene(SCENE), budget)
-    unlike: list[str] = []
-    if isinstance(submission.start, EntryPoint):
-        started = (submission.start.module, submission.start.function)
-        unlike = unlike_launched(PackageTrace.of(looked.trace), *started)
-    return looked.trace, (*looked.flags, *unlike)
+        own = replace(own, root=own.copy.folder, start=Whole())
+        looked = _look(own, _words(own), decode, budget)
+    return PackageTrace.of(looked.found or PackageTrace()), looked.flags
 
 
 @dataclass(frozen=True)
-class _Looked:
+class _Looked(Generic[Found]):
     """What a process that has looked leaves.
 
     Attributes:
+        found: None where it is nothing, and `lost` says why.
         exit_code: None where it had to be stopped.
-        lost: why its trace is nothing; '' where it is something.
     """
 
-    trace: Trace
+    found: Found | None
     exit_code: int | None
     lost: str
     isolation: str
@@ -111,11 +151,16 @@ class _Looked:
     flags: tuple[str, ...]
 
 
-def _look(submission: Submission, scene: Scene, budget: Budget) -> _Looked:
+def _look(
+    submission: Submission,
+    asked: Mapping[str, object],
+    decode: Callable[[bytes], Found],
+    budget: Budget,
+) -> _Looked[Found]:
     with stage.open_stage(budget) as place:
         submission = place.own(submission)
         student = place.student(
-            command(submission, scene, place.recording),
+            command(submission, asked, place.recording),
             submission,
             (place.recording,),
             virtual_environment({}),
@@ -124,12 +169,12 @@ def _look(submission: Submission, scene: Scene, budget: Budget) -> _Looked:
             exit_code, why = _wait(student)
         finally:
             student.end(gently=False)
-        trace, lost = _fetch(place.recording, scene)
+        found, lost = _fetch(place.recording, decode)
         output = submission.as_handed_in(student.output())
         if exit_code == FAILED:
             raise GraderFailure(_failure(output))
         flags = (why,) if exit_code is None else _flags(exit_code, lost, output, student)
-        return _Looked(trace, exit_code, lost, place.isolation, output, flags)
+        return _Looked(found, exit_code, lost, place.isolation, output, flags)
 
 
 def _wait(student: Watched) -> tuple[int | None, str]:
@@ -167,16 +212,20 @@ def _failure(output: str) -> str:
     )
 
 
-def command(submission: Submission, scene: Scene, leaves: int) -> list[str]:
+def command(submission: Submission, asked: Mapping[str, object], leaves: int) -> list[str]:
     """How the process is started; `leaves` is where it leaves what it has found."""
-    package = submission.start.package if isinstance(submission.start, Whole) else ""
-    words = {"root": str(submission.root), "package": package, "leaves": leaves}
+    words = {"root": str(submission.root), **asked, "leaves": leaves}
     if submission.package:
         words["folder"] = str(submission.package)
-    return [sys.executable, str(ROOT / scene.examiner), json.dumps(words)]
+    return [sys.executable, str(ROOT / load_scene(SCENE).examiner), json.dumps(words)]
 
 
-def _fetch(file: int, scene: Scene) -> tuple[Trace, str]:
+def _words(submission: Submission) -> dict[str, object]:
+    """What is asked of a package that is looked at."""
+    return {"package": submission.start.package if isinstance(submission.start, Whole) else ""}
+
+
+def _fetch(file: int, decode: Callable[[bytes], Found]) -> tuple[Found | None, str]:
     """What was left, and why it is nothing."""
     try:
         with open(file, "rb", closefd=False) as opened:
@@ -186,7 +235,7 @@ def _fetch(file: int, scene: Scene) -> tuple[Trace, str]:
             raise ValueError(f"more than {MOST_BYTES} bytes")
         return decode(data), ""
     except (OSError, ValueError, RecursionError) as error:
-        return scene.untouched(None), f"{error!s:.200}"
+        return None, f"{error!s:.200}"
 
 
 def _outcome(exit_code: int | None, lost: str) -> Outcome:

@@ -14,6 +14,7 @@ from typing import Any, Final, TypeVar
 from grader import strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.language import stored
+from grader.submission.set_ups import NotInspected
 from grader.submission.start import (
     EntryPoint,
     Imports,
@@ -97,6 +98,12 @@ def _told(start: EntryPoint | Script | Launch | Whole) -> dict[str, object]:
     }
 
 
+def asks(for_: NotInspected) -> bytes:
+    """The answer of one whose submission only an inspection can tell what to start of."""
+    told = {"base": str(for_.base), "folders": list(for_.folders), "inside": for_.inside}
+    return _line({"not_inspected": told})
+
+
 def refused(error: GraderError) -> bytes:
     """The answer of one who cannot use the submission."""
     return _line({"refused": error.whose, "message": error.message}, error.message)
@@ -137,7 +144,7 @@ def decoded(said: dict[str, Any]) -> Submission:
     """What was found.
 
     Raises:
-        SubmissionError, UsageError, OSError: that was the answer.
+        SubmissionError, UsageError, OSError, NotInspected: that was the answer.
         GraderFailure: the process has made a mistake.
     """
     match said:
@@ -145,6 +152,10 @@ def decoded(said: dict[str, Any]) -> Submission:
             raise _REFUSALS[whose](_phrased(message, said))
         case {"errno": int() | None as number, "message": str(message)}:
             raise OSError(number, message)
+        case {"not_inspected": {"base": str(base), "folders": [*folders], "inside": [*inside]}}:
+            asked = NotInspected(Path(base), list(map(str, folders)))
+            asked.inside = list(map(str, inside))
+            raise asked
         case {"failed": str(what)}:
             raise GraderFailure(f"the submission could not be read: {what}")
         case {

@@ -1,21 +1,20 @@
 """What of a package would keep `colcon build` or `ros2 run` from starting it, though it runs here.
 
-For students who hand in what works in their editor alone. It costs no points, and what only a run
-of setup.py could tell is not told. The rules are those of colcon-ros' ament_python (package.xml
-makes a ROS package; `setup.py install`, then a marker if none was installed), of setuptools (what
-is listed has to be there) and of ros2run (programs are looked for in lib/PACKAGE).
+For students who hand in what works in their editor alone. It costs no points. The rules are those
+of colcon-ros' ament_python (package.xml makes a ROS package; `setup.py install`, then a marker if
+none was installed), of setuptools (what is listed has to be there) and of ros2run (programs are
+looked for in lib/PACKAGE).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 from grader.language.phrase import say
-from grader.submission.constants import UNKNOWN
 from grader.submission.folder import HandedIn, listed, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
-from grader.submission.setup_files import ConsoleScript, Package
+from grader.submission.set_ups import ConsoleScript, Package
 
 
 def shortcomings(
@@ -28,6 +27,8 @@ def shortcomings(
         script: what of it; None if its set-up files name nothing.
     """
     folder = package.folder
+    if package.said.problem:
+        yield _not_built(package.said.problem)
     if (folder / "CMakeLists.txt").is_file():
         return  # ament_cmake_python, by other rules
     setup_py = folder / "setup.py"
@@ -37,7 +38,7 @@ def shortcomings(
     manifest = None
     if not (folder / FILE).is_file():
         why = say("no {file} beside {other}", file=FILE, other=handed_in.called(setup_py))
-        yield _not_built(why) if FILE in _data_files(package) else _not_found(why)
+        yield _not_built(why) if FILE in _installed(package) else _not_found(why)
     elif (manifest := read_manifest(folder / FILE)) is not None:
         yield from _of_manifest(manifest, handed_in.called(folder / FILE))
     yield from _of_setup(handed_in, package, script)
@@ -70,7 +71,7 @@ def _of_manifest(manifest: Manifest, called: str) -> Iterator[str]:
 def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | None) -> Iterator[str]:
     """What setup.py installs, and what it does not."""
     called = handed_in.called(package.folder / "setup.py")
-    named = (name for name in _data_files(package) if name != FILE)
+    named = (name for name in _installed(package) if name != FILE)
     if missing := [name for name in named if not _may_be_there(package.folder, name)]:
         yield _not_built(
             say(
@@ -79,9 +80,9 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
                 names=listed(missing),
             )
         )
-    if package.setup.get("package_dir") is not None or package.source_folders:
+    if package.said.package_folders:
         return  # not where their names say
-    packages = _all_texts(package.setup.get("packages"))
+    packages = package.said.packages
     absent = [name for name in packages or () if not (package.folder / _path(name)).is_dir()]
     if absent:
         yield _not_built(
@@ -105,24 +106,16 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
             if packages
             else say("{file} lists no packages, and so does not install {parent}", **words)
         )
-    bare = [each for each in _parents(script.module) if _is_bare(package.folder / _path(each))]
-    if bare and package.finds_packages:
-        yield _not_started(
-            say(
-                "find_packages() in {file} passes over {names}, which has no __init__.py",
-                file=called,
-                names=listed(bare),
-            )
-        )
 
 
 def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]:
     """Where the programs are installed, and where they are looked for."""
-    if _may_place_programs(package.setup):
-        return
+    said = package.said
+    if said.has_commands or any(folder.startswith("lib") for folder, _ in said.data_files):
+        return  # in a place of its own choice
     expected = f"$base/lib/{name}"
     setup_cfg = package.folder / "setup.cfg"
-    if not package.scripts_folder:
+    if not said.scripts_folder:
         lacking = say("install_scripts={expected} below [install]", expected=expected)
         if setup_cfg.is_file():
             file = handed_in.called(setup_cfg)
@@ -130,13 +123,13 @@ def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]
         else:
             why = _no("setup.cfg", handed_in, package.folder)
             yield _not_found(say("{none} with {lacking}", none=why, lacking=lacking))
-    elif package.scripts_folder.rstrip("/") != expected:
+    elif said.scripts_folder.rstrip("/") != f"lib/{name}":
         yield say(
             "ros2 run {name} would find nothing: {setup} installs programs in {place}, and "
             "{manifest} calls the package {name}: expected install_scripts={expected}",
             name=name,
             setup=handed_in.called(setup_cfg),
-            place=shown(package.scripts_folder),
+            place=shown(f"$base/{said.scripts_folder}"),
             manifest=FILE,
             expected=expected,
         )
@@ -154,26 +147,9 @@ def _not_started(why: str) -> str:
     return say("ros2 run would not start this: {why}", why=why)
 
 
-def _may_place_programs(setup: Mapping[str, object]) -> bool:
-    """Whether a setup.py may install programs in a place of its own choice."""
-    files = setup.get("data_files", [])
-    entries = files if isinstance(files, list) else [UNKNOWN]
-    places = [entry[0] if isinstance(entry, list) and entry else UNKNOWN for entry in entries]
-    unusual = not setup or any(key in setup for key in ("options", "cmdclass", "script_args"))
-    return unusual or any(
-        place is UNKNOWN or (isinstance(place, str) and place.startswith("lib")) for place in places
-    )
-
-
-def _data_files(package: Package) -> list[str]:
-    """The files that setup.py installs by `data_files`, as far as it names them."""
-    entries = package.setup.get("data_files")
-    files: list[str] = []
-    for entry in entries if isinstance(entries, list) else []:
-        match entry:
-            case [_, list(names)]:
-                files += [name for name in names if isinstance(name, str)]
-    return list(dict.fromkeys(files))
+def _installed(package: Package) -> list[str]:
+    """The files that setup.py installs by `data_files`."""
+    return list(dict.fromkeys(file for _, file in package.said.data_files))
 
 
 def _may_be_there(folder: Path, name: str) -> bool:
@@ -186,24 +162,8 @@ def _may_be_there(folder: Path, name: str) -> bool:
         return False
 
 
-def _all_texts(value: object) -> list[str] | None:
-    """A list of names; None if it is not all known."""
-    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
-        return None
-    return [str(name) for name in value]
-
-
 def _path(package: str) -> str:
     return package.replace(".", "/")
-
-
-def _parents(module: str) -> list[str]:
-    parts = module.split(".")[:-1]
-    return [".".join(parts[: n + 1]) for n in range(len(parts))]
-
-
-def _is_bare(folder: Path) -> bool:
-    return folder.is_dir() and not (folder / "__init__.py").exists()
 
 
 def _no(file: str, handed_in: HandedIn, folder: Path) -> str:

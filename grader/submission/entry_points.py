@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -10,7 +11,7 @@ from grader.errors import SubmissionError
 from grader.language.phrase import say
 from grader.submission.folder import USUAL_NAME, HandedIn, files_below, listed, near, shown
 from grader.submission.python_source import read_source
-from grader.submission.setup_files import SETUP_FILES, ConsoleScript, Package, read_package
+from grader.submission.set_ups import ConsoleScript, Package, SetUp, read_package
 
 Choice = tuple[Package, ConsoleScript]
 #: Of what there may be several that could be started.
@@ -49,9 +50,6 @@ class Packages:
         if self.faults:
             raise self.faults[0]
         names = [script.name for _, script in every]
-        for package in self.readable:
-            for file in package.unread:
-                raise self._computed(file, wanted, names)
         if executable and every:
             raise no_such_executable(self.handed_in, "console script", executable, names)
         if len(every) > 1:
@@ -92,34 +90,23 @@ class Packages:
             )
         )
 
-    def _computed(self, file: Path, wanted: str, names: list[str]) -> SubmissionError:
-        return SubmissionError(
-            say(
-                "{file} computes console scripts, and is not run to learn them. "
-                "Expected to read there: {example}; found: {names}. Write the entry "
-                "point out in full.",
-                file=self.handed_in.called(file),
-                example=example("my_package.turtle_controller", wanted),
-                names=listed(names) or say("none"),
-            )
-        )
 
-
-def find_packages(handed_in: HandedIn, files: list[Path]) -> Packages:
-    """Read the set-up files among `files`; not those below a folder that has a console script."""
+def find_packages(handed_in: HandedIn, said: Sequence[SetUp]) -> Packages:
+    """The folders with set-up files; not those below a folder that has a console script."""
     readable: list[Package] = []
     faults: list[SubmissionError] = []
     have_script: set[Path] = set()
-    for folder in dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES):
+    for each in said:
+        folder = handed_in.base / each.folder
         if not have_script.isdisjoint((folder, *folder.parents)):
             continue
         try:
-            package = read_package(folder, handed_in)
+            package = read_package(each, handed_in)
         except SubmissionError as fault:
             faults.append(fault)
         else:
-            readable += [package] if package else []
-            have_script |= {folder} if package and package.scripts else set()
+            readable.append(package)
+            have_script |= {folder} if package.scripts else set()
     return Packages(handed_in, tuple(readable), tuple(faults))
 
 

@@ -1,12 +1,15 @@
-"""What of a file, a folder, a package or an archive to start, found without running any of it.
+"""What of a file, a folder, a package or an archive to start.
+
+Nothing of it is run here; what set-up and launch files say is told by an inspection.
 
 The rules, in order:
 
 0. An archive is unpacked first; so is the only one in a folder that holds no source beside it.
 1. A `.py` file is itself what to start.
-2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml): the one that
-   is asked for; else those that a launch file of the package starts, if it plainly starts several
-   of its programs; else the usual one (`turtle_controller`), else the only one.
+2. In a folder, a console script of a package (setup.py, setup.cfg, pyproject.toml, by what an
+   inspection says of them): the one that is asked for; else those that a launch file of the package
+   starts, if it plainly starts several of its programs; else the usual one (`turtle_controller`),
+   else the only one.
 3. Else a Python file that starts itself or has a function `main`: the one that is asked for, else
    the usual one, else `main.py`, else the only one. So in a package whose setup.py
    names no console script.
@@ -47,11 +50,11 @@ from grader.submission.folder import (
     shown,
     top_of,
 )
-from grader.submission.launching import find_launched, launch_files, not_run
+from grader.submission.launching import find_launched, is_launch_file, launch_files, not_run
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.python_source import Source, read_source
 from grader.submission.refusals import CPP, advice, missing, no_python, unreadable
-from grader.submission.setup_files import SETUP_FILES, Package
+from grader.submission.set_ups import MOST, SETUP_FILES, Inspected, NotInspected, Package
 from grader.submission.start import EntryPoint, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
 
@@ -61,7 +64,13 @@ _UNREADABLE: Final = (
 )
 
 
-def find(path: Path, executable: str | None, scratch: Path, usual: str = USUAL_NAME) -> Submission:
+def find(
+    path: Path,
+    executable: str | None,
+    scratch: Path,
+    usual: str = USUAL_NAME,
+    inspected: Inspected | None = None,
+) -> Submission:
     """Find what to start.
 
     Args:
@@ -69,26 +78,31 @@ def find(path: Path, executable: str | None, scratch: Path, usual: str = USUAL_N
             .py file leaves no choice.
         scratch: an empty folder, for what has to be unpacked or mended.
         usual: is started where there are several and none is asked for.
+        inspected: what an inspection has said; None where none was made yet.
 
     Raises:
+        NotInspected: it is a package, and none was made.
         SubmissionError: there is nothing to start, or no way to tell what.
         UsageError: there is no such path; or a choice is asked for where there is none.
         OSError: something is wrong with the machine.
     """
     try:
-        return _find(path, executable, scratch, usual)
+        return _find(path, executable, scratch, usual, inspected)
     except OSError as error:
         if error.errno not in _UNREADABLE:
             raise
         raise unreadable(path, error) from error
 
 
-def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Submission:
+def _find(
+    path: Path, executable: str | None, scratch: Path, usual: str, inspected: Inspected | None
+) -> Submission:
     name = shown(path.name or path.resolve().name)
     if not path.exists():
         raise missing(path)
     if path.is_dir():
-        return _in_folder(HandedIn(name, path.resolve(), usual), executable, Unpacking(scratch))
+        handed_in = HandedIn(name, path.resolve(), usual)
+        return _in_folder(handed_in, executable, Unpacking(scratch), inspected)
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
@@ -115,10 +129,29 @@ def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Subm
         folder = path.parent.resolve()
         return _from_file(HandedIn(name, folder, usual), folder / path.name)
     unpacking = Unpacking(scratch)
-    return _in_folder(HandedIn(name, unpacking.unpack(path), usual), executable, unpacking)
+    handed_in = HandedIn(name, unpacking.unpack(path), usual)
+    return _in_folder(handed_in, executable, unpacking, None)
 
 
-def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking) -> Submission:
+def find_inspected(
+    base: Path, name: str, executable: str | None, scratch: Path, usual: str, inspected: Inspected
+) -> Submission:
+    """The same of all that lies in a folder of ours, after an inspection; see `find`."""
+    try:
+        handed_in = HandedIn(shown(name), base, usual)
+        return _in_folder(handed_in, executable, Unpacking(scratch), inspected)
+    except OSError as error:
+        if error.errno not in _UNREADABLE:
+            raise
+        raise unreadable(base, error) from error
+
+
+def _in_folder(
+    handed_in: HandedIn,
+    executable: str | None,
+    unpacking: Unpacking,
+    inspected: Inspected | None,
+) -> Submission:
     top = top_of(handed_in.base)
     if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
         raise SubmissionError(
@@ -128,21 +161,26 @@ def _in_folder(handed_in: HandedIn, executable: str | None, unpacking: Unpacking
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
         return _in_archive(handed_in, archives, executable, unpacking)
-    packages = find_packages(handed_in, files)
-    if executable is None and (launched := find_launched(handed_in, packages, files)):
+    if inspected is None and (folders := _set_ups(handed_in, files)):
+        raise NotInspected(handed_in.base, folders)
+    inspected = inspected or Inspected()
+    packages = find_packages(handed_in, inspected.set_ups)
+    launches = inspected.launches
+    if executable is None and (launched := find_launched(handed_in, packages, launches)):
         found = _from_script(handed_in, packages, launched.first, unpacking.scratch)
         return launched.start(handed_in, found)
     if choice := packages.choose(executable):
         found = _from_script(handed_in, packages, choice, unpacking.scratch)
-        launches = launch_files(handed_in, choice[0], files)
-        return replace(found, unlaunched=tuple(not_run(handed_in, launches, *choice)))
+        of_package = launch_files(handed_in, choice[0], launches)
+        return replace(found, unlaunched=tuple(not_run(handed_in, of_package, *choice)))
     candidates = [file for file in files if _may_be_node(file)]
     if not candidates:
         raise no_python(handed_in, files)
     starting = [file for file in candidates if _starts(read_source(file))] or candidates
     several = executable is None and len(_usual(handed_in, starting)) > 1
     if several and (package := packages.holding(starting[0])):
-        raise SubmissionError(f"{_no_script(handed_in, package, starting)}.")
+        told = package.said.problem or _no_script(handed_in, package, starting)
+        raise SubmissionError(f"{told}.")
     chosen = _only(handed_in, starting, executable)
     handed_in.must_hold(chosen)
     if package := packages.holding(chosen):
@@ -169,11 +207,27 @@ def _in_archive(
     (archive,) = archives
     handed_in.must_hold(archive)
     inside = replace(handed_in, base=unpacking.unpack(archive))
-    found = _in_folder(inside, executable, unpacking)
-    return replace(
-        found,
-        found=say("{found}, in {file}", found=found.found, file=handed_in.called(archive)),
-    )
+    try:
+        found = _in_folder(inside, executable, unpacking, None)
+    except NotInspected as asks:
+        asks.inside.append(handed_in.called(archive))
+        raise
+    return in_archive(found, handed_in.called(archive))
+
+
+def in_archive(found: Submission, archive: str) -> Submission:
+    """The same, told as what it is: found in an archive within what was handed in."""
+    return replace(found, found=say("{found}, in {file}", found=found.found, file=archive))
+
+
+def _set_ups(handed_in: HandedIn, files: list[Path]) -> list[str]:
+    """The folders with set-up files, which an inspection is to evaluate."""
+    found = dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES)
+    for file in files:
+        is_one = file.name in SETUP_FILES or is_launch_file(file)
+        if is_one and not found.keys().isdisjoint(file.parents):
+            handed_in.must_hold(file)
+    return [str(folder.relative_to(handed_in.base)) for folder in found][:MOST]
 
 
 def _from_script(
@@ -209,7 +263,9 @@ def _from_script(
 def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submission:
     """Start a file of a package that names no console script, as one would that named it."""
     source = read_source(file)
-    short = (*shortcomings(handed_in, package, None), _no_script(handed_in, package, [file]))
+    short = tuple(shortcomings(handed_in, package, None))
+    if not package.said.problem:
+        short = (*short, _no_script(handed_in, package, [file]))
     inside = file.relative_to(package.folder).with_suffix("").parts
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
         return replace(_from_file(handed_in, file), notes=short, package=package.folder)
@@ -225,7 +281,7 @@ def _unbuilt(handed_in: HandedIn, file: Path) -> list[str]:
         if not folder.is_relative_to(handed_in.base):
             break
         if (folder / MANIFEST).is_file():
-            return list(shortcomings(handed_in, Package.without_setup(folder), None))
+            return list(shortcomings(handed_in, Package(folder), None))
     return []
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,11 +11,11 @@ from grader.language.phrase import say
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import Packages, find_module, not_started
 from grader.submission.folder import HandedIn, listed, shown
-from grader.submission.launch_files import LaunchFile, Node, is_launch_file, read_launch_file
 from grader.submission.manifest import FILE, read_manifest
-from grader.submission.setup_files import ConsoleScript, Package
+from grader.submission.set_ups import ConsoleScript, LaunchFile, Node, Package
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 
+_ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
 _SIMULATOR = ("turtlesim", "turtlesim_node")
 
@@ -36,7 +36,7 @@ class Launched:
 
     def start(self, handed_in: HandedIn, found: Submission) -> Submission:
         """A submission that would start the first program, with all of them."""
-        called = handed_in.called(self.launch.file)
+        called = handed_in.called(handed_in.base / self.launch.folder / self.launch.file)
         programs = tuple(
             Program(script.name, EntryPoint(script.module, script.function), node.arguments)
             for script, node in self.programs
@@ -62,10 +62,12 @@ class Launched:
         )
 
 
-def find_launched(handed_in: HandedIn, packages: Packages, files: list[Path]) -> Launched | None:
+def find_launched(
+    handed_in: HandedIn, packages: Packages, launches: Sequence[LaunchFile]
+) -> Launched | None:
     """The launch file by which several programs are started, if there is just one such package."""
     each = (
-        several_programs(launch_files(handed_in, package, files), package)
+        several_programs(launch_files(handed_in, package, launches), package)
         for package in packages.readable
         if package.scripts
     )
@@ -81,13 +83,16 @@ def find_launched(handed_in: HandedIn, packages: Packages, files: list[Path]) ->
     return launched if len(modules) == 1 else None  # else they lie in several places
 
 
-def launch_files(handed_in: HandedIn, package: Package, files: list[Path]) -> list[LaunchFile]:
+def launch_files(
+    handed_in: HandedIn, package: Package, launches: Sequence[LaunchFile]
+) -> list[LaunchFile]:
     """Those in a package."""
-    found = [file for file in files if is_launch_file(file)]
-    inside = [file for file in found if file.is_relative_to(package.folder)]
-    for file in inside:
-        handed_in.must_hold(file)
-    return [read_launch_file(file) for file in inside]
+    return [each for each in launches if handed_in.base / each.folder == package.folder]
+
+
+def is_launch_file(file: Path) -> bool:
+    """Tell by its name whether `ros2 launch` would take a file: spiral_launch.py, a.launch.xml."""
+    return file.name.endswith(_ENDINGS)
 
 
 def several_programs(launches: list[LaunchFile], package: Package) -> Launched | None:
@@ -102,7 +107,7 @@ def not_run(
     """Notes on launch files that would have made a difference."""
     names = _names(package)
     for launch in launches:
-        called = handed_in.called(launch.file)
+        called = handed_in.called(handed_in.base / launch.folder / launch.file)
         if launch.unread:
             yield (
                 say(
@@ -140,7 +145,7 @@ def _launched(launch: LaunchFile, package: Package) -> Launched | None:
     names = _names(package)
     scripts = {script.name: script for script in package.scripts}
     own = [node for node in launch.nodes if node.package in names]
-    if len(own) < 2 or any(node.executable not in scripts for node in own):
+    if not launch.is_plain or len(own) < 2 or any(node.executable not in scripts for node in own):
         return None
     others = [node for node in launch.nodes if node.package not in names]
     return Launched(
@@ -156,5 +161,4 @@ def _names(package: Package) -> set[str]:
     manifest = None
     if (package.folder / FILE).is_file():
         manifest = read_manifest(package.folder / FILE)
-    names = {package.setup.get("name"), manifest.name if manifest else ""}
-    return {name for name in names if isinstance(name, str) and name}
+    return {package.said.name, manifest.name if manifest else ""} - {""}

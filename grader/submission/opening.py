@@ -1,21 +1,24 @@
 """What was handed in — a file, a folder, a package, a zip — and what of it to start.
 
-Nothing of it is run or imported to find out, and nothing of it is read in this process: a file can
-be made so that its parser takes all memory, or falls over. `finding.py` has the rules, and goes by
-them in a process with limits, `reader.py`.
+Nothing of it is read in this process: a file can be made so that its parser takes all memory, or
+falls over. `finding.py` has the rules, and goes by them in a process with limits, `reader.py`. A
+package is inspected besides, in a process of the submission's: that evaluates its set-up and launch
+files.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple, Protocol
 
 from grader.scratch import make_folder
 from grader.submission import reader
 from grader.submission.folder import USUAL_NAME
-from grader.submission.private_copy import copy_privately
+from grader.submission.private_copy import PrivateCopy, copy_privately
+from grader.submission.set_ups import Inspected, NotInspected
 from grader.submission.start import EntryPoint, Imports, Launch, Script, Submission, Whole
 
 __all__ = [
@@ -25,41 +28,85 @@ __all__ = [
     "Script",
     "Submission",
     "Whole",
-    "open_submission",
 ]
 
 
+class Inspect(Protocol):
+    """What inspects a package, in a process of the submission's."""
+
+    def __call__(self, submission: Submission, folders: Sequence[str], program: str) -> Seen:
+        """What is said of the set-up files in some folders.
+
+        Args:
+            submission: all of what was handed in, in its copy.
+            folders: below its root.
+            program: the console script that is asked for, or the usual one.
+        """
+
+
+class Seen(NamedTuple):
+    """What an inspection has said, and remarks on what kept it from saying more.
+
+    Attributes:
+        cpu_s: the processor time that it took [s].
+        package: the folder of the package that `whole` is of.
+        whole: a trace of the scene package; None where no more was looked at than needed.
+    """
+
+    said: Inspected
+    remarks: tuple[str, ...] = ()
+    cpu_s: float = 0.0
+    package: str = ""
+    whole: object = None
+
+
 @contextmanager
-def open_submission(
+def opened(
     path: Path,
-    executable: str | None = None,
+    executable: str | None,
+    inspect: Inspect,
     *,
     is_started: bool = True,
     usual: str = USUAL_NAME,
 ) -> Iterator[Submission]:
     """Find what to start, in a copy that is there until the context ends.
 
-    `executable` chooses among the console scripts or Python files of a folder or zip; a single
-    .py file leaves no choice. Without it, `usual` is taken where there are several. Where nothing
-    is started (`is_started`), all of it is taken, which must be a folder or an archive with a
-    package; `executable` then chooses among packages.
-
-    Raises:
-        SubmissionError: there is nothing to start, no way to tell what, or too much to be read.
-        UsageError: there is no such path; or a choice is asked for where there is none.
-        OSError: something is wrong with the machine.
-        GraderFailure: it could not be read, for a reason of ours.
+    See `grader.run.opening.open_submission`.
     """
     with make_folder() as folder:
         scratch = folder.resolve() / "submission"
         scratch.mkdir()
-        found = reader.read(path, executable, scratch, is_started=is_started, usual=usual)
-        yield _in_private(found, path, scratch)
+        try:
+            found = reader.read(path, executable, scratch, is_started=is_started, usual=usual)
+        except NotInspected as asked:
+            yield _inspected(path, executable, scratch, usual, asked, inspect)
+        else:
+            yield _in_private(found, copy_privately(path, found.root, scratch))
 
 
-def _in_private(submission: Submission, path: Path, scratch: Path) -> Submission:
+def _inspected(
+    path: Path,
+    executable: str | None,
+    scratch: Path,
+    usual: str,
+    asked: NotInspected,
+    inspect: Inspect,
+) -> Submission:
+    """A package as it is started by what an inspection says."""
+    copy = copy_privately(path, asked.base, scratch)
+    whole = Submission(path.name, copy.of(asked.base), Whole(), "", copy=copy)
+    seen = inspect(whole, asked.folders, executable or usual)
+    found = reader.read(path, executable, scratch, usual=usual, again=(asked, seen.said))
+    if found.package == asked.base / seen.package and not found.added:
+        found = replace(found, seen=seen.whole)
+    found = replace(found, notes=(*seen.remarks, *found.notes), spent_s=seen.cpu_s)
+    if found.added:  # it was mended in a copy of its own
+        copy = copy_privately(path, found.root, scratch)
+    return _in_private(found, copy)
+
+
+def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
     """The same in a copy of its own."""
-    copy = copy_privately(path, submission.root, scratch)
     start = submission.start
     if isinstance(start, Script):
         start = replace(start, path=copy.of(start.path))

@@ -25,6 +25,7 @@ from grader.errors import GraderFailure, SubmissionError
 from grader.language.phrase import say
 from grader.submission import answer, limits
 from grader.submission.folder import USUAL_NAME, shown
+from grader.submission.set_ups import Inspected, NotInspected
 from grader.submission.start import Submission
 
 #: No module but Python's own and ours, nothing from the environment, no start-up code of a venv.
@@ -73,10 +74,15 @@ def read(
     *,
     is_started: bool = True,
     usual: str = USUAL_NAME,
+    again: tuple[NotInspected, Inspected] | None = None,
 ) -> Submission:
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
+    Args:
+        again: what the first reading asked for, and what the inspection has said.
+
     Raises:
+        NotInspected: it is a package; read it again, with what an inspection says.
         SubmissionError: as there, or it takes more than the limits.
         UsageError, OSError: as there.
         GraderFailure: the process has failed.
@@ -89,6 +95,8 @@ def read(
             "scratch": str(scratch),
             "is_started": is_started,
             "usual": usual,
+            "inspected": None,
+            **({} if again is None else _told(*again)),
         }
     )
     said = answer.parsed(last)
@@ -116,6 +124,10 @@ def read(
             plain=_PLAIN,
         )
     )
+
+
+def _told(asked: NotInspected, said: Inspected) -> dict[str, object]:
+    return {"base": str(asked.base), "inside": asked.inside, "inspected": said.to_json()}
 
 
 def _asked(request: dict[str, object]) -> tuple[str, bytes, str]:

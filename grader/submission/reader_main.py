@@ -16,10 +16,11 @@ from typing import Any, Final, NoReturn
 from grader.errors import SubmissionError, UsageError
 from grader.language.phrase import say
 from grader.submission import answer, encoding, limits, slips, unpacking, whole
-from grader.submission.finding import find
+from grader.submission.finding import find, find_inspected, in_archive
 from grader.submission.folder import shown
 from grader.submission.imports import read_imports
-from grader.submission.start import Whole
+from grader.submission.set_ups import Inspected, NotInspected
+from grader.submission.start import Submission, Whole
 
 _STDIN, _STDOUT, _STDERR = range(3)
 _SHORT_OF_MEMORY: Final = answer.short_of_memory()  # made while there is some
@@ -80,13 +81,15 @@ def _answer(request: dict[str, Any]) -> bytes:
     try:
         if not request["is_started"]:
             return answer.found(whole.find(path, request["executable"], scratch))
-        found = find(path, request["executable"], scratch, request["usual"])
+        found = _found(request, path, scratch)
         only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
         assert not isinstance(found.start, Whole)
         imports = read_imports(found.root, found.start, only)
         refused = encoding.faults(imports.files, found.root)
         notes, shows = (*refused, *found.notes), slips.look(found.root, imports.files)
         return answer.found(replace(found, imports=imports, notes=notes, slips=shows))
+    except NotInspected as asks:
+        return answer.asks(asks)
     except (SubmissionError, UsageError) as error:
         return answer.refused(error)
     except OSError as error:
@@ -102,6 +105,19 @@ def _answer(request: dict[str, Any]) -> bytes:
         import traceback  # here: most submissions are read without
 
         return answer.failed(traceback.format_exc())
+
+
+def _found(request: dict[str, Any], path: Path, scratch: Path) -> Submission:
+    """What to start, by the rules; of a package, by what an inspection has said."""
+    executable, usual = request["executable"], request["usual"]
+    if request["inspected"] is None:
+        return find(path, executable, scratch, usual)
+    inspected = Inspected.from_json(request["inspected"])
+    name = path.name or path.resolve().name
+    found = find_inspected(Path(request["base"]), name, executable, scratch, usual, inspected)
+    for archive in request["inside"]:
+        found = in_archive(found, archive)
+    return found
 
 
 def _tell_what_is_read(*folders: Path) -> None:

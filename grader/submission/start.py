@@ -107,6 +107,10 @@ class Submission:
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none
     package: Path | None = field(default=None, compare=False)
+    #: a trace of the scene package, where an inspection has seen its package as a whole
+    seen: object = field(default=None, compare=False)
+    #: the processor time that the inspection took [s]
+    spent_s: float = field(default=0.0, compare=False)
     #: where its runs find it; None where it lies in place
     copy: PrivateCopy | None = field(default=None, compare=False)
 

@@ -10,7 +10,7 @@ from grader.language.phrase import say, say_many
 from grader.submission.folder import HandedIn, files_below, listed, near, shown, top_of
 from grader.submission.manifest import FILE, read_manifest
 from grader.submission.refusals import missing, unreadable
-from grader.submission.setup_files import SETUP_FILES
+from grader.submission.set_ups import SETUP_FILES
 from grader.submission.start import Submission, Whole
 from grader.submission.unpacking import Unpacking, is_archive
 

@@ -14,8 +14,8 @@ from grader.grading import run_all, runner
 from grader.judging import AnyPath
 from grader.language.phrase import say
 from grader.recording.recording import Recordings
+from grader.run.opening import open_submission
 from grader.scratch import make_folder
-from grader.submission.opening import open_submission
 from grader.testing.examination import Examination, Problem, Trial
 from grader.testing.oddities import odd_recordings
 from grader.testing.sanity import Fault, examine

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked, folder_of, how_it_ends, said, shown
+from grader.exercises.description_package.looked import Looked, folder_of
 from grader.language.phrase import joined, say
-from grader.scenes.package.said import phrase_of
+from grader.scenes.package.said import how_it_ends, phrase_of, said, shown
 from grader.scenes.package.trace import EMPTY, Lacking, Launch, Problem
 
 #: One thing missing leaves so much; two leave nothing.

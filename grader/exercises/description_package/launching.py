@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked, how_it_ends, not_judged, shown
+from grader.exercises.description_package.looked import Looked, not_judged
 from grader.language.phrase import joined, say
 from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
 from grader.scenes.package.launch_errors import advice
+from grader.scenes.package.said import how_it_ends, shown
 from grader.scenes.package.trace import Launch, Node, Problem
 from robot_py.urdf import parse
 

@@ -9,11 +9,8 @@ from pathlib import PurePosixPath
 from grader.exercise.verdict import Finding
 from grader.language.phrase import say
 from grader.recording.recording import Recordings
-from grader.scenes.package.said import phrase_of
+from grader.scenes.package.said import said
 from grader.scenes.package.trace import Description, Launch, PackageTrace, Problem, Setup
-from grader.text import clip_inside, without_controls
-
-_LONGEST = 200
 
 
 @dataclass(frozen=True)
@@ -68,16 +65,6 @@ def looked_at(recordings: Recordings, judge: Callable[[Looked], Finding]) -> Fin
     return nothing(recordings.nominal.run.flags) if looked is None else judge(looked)
 
 
-def how_it_ends(file: str, problem: Problem) -> str:
-    """'setup.py ends with NameError: ... (setup.py, line 3)', '... did not come to an end ...'."""
-    if problem.kind == "limit":
-        what = shown(phrase_of(problem.text.removeprefix("it ")))
-        return say("{file} {what}", file=file, what=what)
-    return say(
-        "{file} ends with {error}{place}", file=file, error=said(problem), place=placed(problem)
-    )
-
-
 def nothing(remarks: Sequence[str] = ()) -> Finding:
     """Of a package that nobody could look at; the first remark says why."""
     return Finding(
@@ -113,26 +100,6 @@ def not_judged(launch: Launch, what: str = "") -> Finding:
         else say("This is no fault of the package: tell whoever runs the course."),
         judged=False,
     )
-
-
-def shown(text: str) -> str:
-    """A text of the submission's in a sentence; a phrase that fits there stays one."""
-    made = clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
-    return text if made == text else made
-
-
-def said(problem: Problem) -> str:
-    """What a problem says, in a sentence."""
-    return shown(phrase_of(problem.text))
-
-
-def placed(problem: Problem) -> str:
-    """' (launch/display.launch.py, line 9)', with a blank before it; '' for no place."""
-    if not problem.file:
-        return ""
-    if not problem.line:
-        return f" ({problem.file})"
-    return say(" ({file}, line {line})", file=problem.file, line=problem.line)
 
 
 def folder_of(path: str) -> str:

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package import xacro_said
-from grader.exercises.description_package.looked import Looked, not_judged, nothing_started, shown
+from grader.exercises.description_package.looked import Looked, not_judged, nothing_started
 from grader.language.phrase import say
-from grader.scenes.package.said import phrase_of
+from grader.scenes.package.said import phrase_of, shown
 from grader.scenes.package.trace import Description, Mesh
 from robot_py.findings import Consequence
 from robot_py.model import Inertial, Joint, JointType, Model, Pose

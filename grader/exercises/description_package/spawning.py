@@ -10,8 +10,9 @@ from grader.exercises.description_package.launching import (
     is_description,
     is_publisher,
 )
-from grader.exercises.description_package.looked import Looked, nothing_started, shown
+from grader.exercises.description_package.looked import Looked, nothing_started
 from grader.language.phrase import say
+from grader.scenes.package.said import shown
 from grader.scenes.package.trace import Launch, Node
 
 #: Program -> where the model may come from (one of these), and what must be named.

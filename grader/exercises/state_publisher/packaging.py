@@ -7,9 +7,10 @@ from dataclasses import replace
 from grader.exercise.verdict import Finding
 from grader.exercises.description_package import installing, launching
 from grader.exercises.description_package.launching import JOINT_SOURCES, Part
-from grader.exercises.description_package.looked import Looked, not_judged, nothing, said, shown
+from grader.exercises.description_package.looked import Looked, not_judged, nothing
 from grader.language.phrase import joined, say
 from grader.recording.recording import Recording
+from grader.scenes.package.said import said, shown
 from grader.scenes.package.trace import PREFIX, Launch, Node
 
 STATE_PUBLISHER = launching.PUBLISHER

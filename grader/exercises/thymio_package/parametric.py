@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from grader.exercise.verdict import Finding
-from grader.exercises.description_package.looked import Looked, shown
+from grader.exercises.description_package.looked import Looked
 from grader.language.phrase import say
+from grader.scenes.package.said import shown
 from robot_py import kinematics
 from robot_py.findings import Consequence
 from robot_py.model import Box, Model, Pose

@@ -8,11 +8,16 @@ from collections.abc import Mapping
 from typing import Final
 
 from grader.language.phrase import Phrase, say
+from grader.scenes.package.trace import Problem
+from grader.text import clip_inside, without_controls
 
 #: Stands for a value, where only the sentence counts.
 _ANY: Final = ""
 #: Values that have no blank in them: what looks alike and is somebody else's stays as it is.
 _WORDS: Final = ("file", "module", "package", "program", "tag")
+
+#: A text of the submission's in a sentence is no longer.
+_LONGEST: Final = 200
 
 #: What goes on from "it", or from the name of a file.
 _CLAUSES: Final = (
@@ -85,6 +90,36 @@ def phrase_of(text: str) -> str:
     if text.startswith("it ") and isinstance(clause := _found(text[3:], _CLAUSES_BY), Phrase):
         return say("it {what}", what=clause)
     return _found(text, {**_CLAUSES_BY, **_SENTENCES_BY})
+
+
+def how_it_ends(file: str, problem: Problem) -> str:
+    """'setup.py ends with NameError: ... (setup.py, line 3)', '... did not come to an end ...'."""
+    if problem.kind == "limit":
+        what = shown(phrase_of(problem.text.removeprefix("it ")))
+        return say("{file} {what}", file=file, what=what)
+    return say(
+        "{file} ends with {error}{place}", file=file, error=said(problem), place=placed(problem)
+    )
+
+
+def shown(text: str) -> str:
+    """A text of the submission's in a sentence; a phrase that fits there stays one."""
+    made = clip_inside(without_controls(" ".join(text.split()), "?"), _LONGEST).rstrip(".")
+    return text if made == text else made
+
+
+def said(problem: Problem) -> str:
+    """What a problem says, in a sentence."""
+    return shown(phrase_of(problem.text))
+
+
+def placed(problem: Problem) -> str:
+    """' (launch/display.launch.py, line 9)', with a blank before it; '' for no place."""
+    if not problem.file:
+        return ""
+    if not problem.line:
+        return f" ({problem.file})"
+    return say(" ({file}, line {line})", file=problem.file, line=problem.line)
 
 
 def _found(text: str, known: Mapping[str, re.Pattern[str]]) -> str:

@@ -12,7 +12,7 @@ import json
 from dataclasses import dataclass
 from typing import Self
 
-from grader.scenes.package.strict import from_json, longest, to_json
+from grader.scenes.package.strict import Made, from_json, longest, to_json
 
 #: A description may have so many characters; all of a trace so many bytes.
 LONGEST_TEXT = 2_000_000
@@ -327,18 +327,31 @@ def decode(data: bytes) -> PackageTrace:
     Raises:
         ValueError: they mean none.
     """
-    if len(data) > MOST_BYTES:
-        raise ValueError(f"a trace of {len(data)} bytes; expected {MOST_BYTES} at most")
-    try:
-        trace = from_json(PackageTrace, json.loads(data.decode("ascii")))
-    except (TypeError, LookupError, RecursionError) as error:
-        raise ValueError(f"no trace of a package: {type(error).__name__}: {error}") from None
-    _must_agree(trace)
+    trace = read(PackageTrace, data)
+    must_agree(trace)
     return trace
 
 
-def _must_agree(trace: PackageTrace) -> None:
-    """Numbers of texts are of texts that there are."""
+def read(kind: type[Made], data: bytes) -> Made:
+    """The dataclass that bytes mean.
+
+    Raises:
+        ValueError: they mean none.
+    """
+    if len(data) > MOST_BYTES:
+        raise ValueError(f"a trace of {len(data)} bytes; expected {MOST_BYTES} at most")
+    try:
+        return from_json(kind, json.loads(data.decode("ascii")))
+    except (TypeError, LookupError, RecursionError) as error:
+        raise ValueError(f"no trace of a package: {type(error).__name__}: {error}") from None
+
+
+def must_agree(trace: PackageTrace) -> None:
+    """Numbers of texts are of texts that there are.
+
+    Raises:
+        ValueError: they are not.
+    """
     values = (p for launch in trace.launches for node in launch.nodes for p in node.parameters)
     numbers = [
         *(each.text for each in values),

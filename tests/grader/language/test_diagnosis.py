@@ -14,11 +14,11 @@ from grader.recording import reading, remarks, saving
 from grader.recording.recording import Recordings
 from grader.run import finish, static, virtual_time
 from grader.run.lockstep.faults import failed
+from grader.run.opening import open_submission
 from grader.run.simulator import link, real_time
 from grader.run.simulator.virtual_time import VAIN
 from grader.run.student.refusal import _OTHER_PROCESS
 from grader.scenes import NAMES, load_scene, load_words
-from grader.submission.opening import open_submission
 from tests.grader.diagnosis.cases import run_of
 from tests.grader.diagnosis.test_rules import CAUSES
 from tests.grader.language.holes import holes

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from grader.run import audience, real_time, virtual_time
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits, Start
 from grader.scenes.turtlesim.live.mirror import Mirror
-from grader.submission.opening import open_submission
 from tests.grader.run.conftest import LIMITS
 from tests.runs import SUBMISSIONS
 from turtlesim_py.live.feed import Whole

@@ -12,9 +12,9 @@ import pytest
 
 from grader.recording.recording import Run
 from grader.run import virtual_time
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
-from grader.submission.opening import open_submission
 from tests import runs
 
 NAMES = (

@@ -15,9 +15,10 @@ import pytest
 from grader.recording.conduct import Conduct
 from grader.run import evidence
 from grader.run.evidence import open_evidence
+from grader.run.opening import open_submission
 from grader.run.processes import usage
 from grader.run.student import account, loops
-from grader.submission.opening import Submission, open_submission
+from grader.submission.opening import Submission
 from grader.submission.start import Slip
 from tests.children import in_child
 

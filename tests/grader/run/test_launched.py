@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from grader.run import virtual_time
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
-from grader.submission.opening import open_submission
 from turtlesim_py.world.events import CmdVel, SetPen
 
 TWO_NODES = Path(__file__).parents[2] / "submissions" / "launched" / "spiral"

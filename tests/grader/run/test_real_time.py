@@ -6,9 +6,10 @@ import pytest
 
 from grader.recording.recording import Recording
 from grader.run import real_time
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
-from grader.submission.opening import EntryPoint, Submission, open_submission
+from grader.submission.opening import EntryPoint, Submission
 from tests import runs
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen

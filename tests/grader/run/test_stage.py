@@ -14,10 +14,11 @@ from grader import scratch
 from grader.errors import NotNow
 from grader.run import environment, real_time, virtual_time
 from grader.run.lost import SimulatorLost
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.run.processes import domain, levels
 from grader.scenes.scene import Limits
-from grader.submission.opening import Submission, open_submission
+from grader.submission.opening import Submission
 from turtlesim_py.world.events import CmdVel
 
 ROOT = Path(__file__).parents[3]
@@ -147,7 +148,7 @@ from pathlib import Path
 from grader.run import {time}_time
 from grader.run.plan import Plan
 from grader.scenes.scene import Limits
-from grader.submission.opening import open_submission
+from grader.run.opening import open_submission
 with open_submission(Path({str(handed_in / "weg_zurück.py")!r})) as submission:
     plan = Plan(Limits(0.2, 0.2, 2))
     recording = {time}_time.run(submission, plan)

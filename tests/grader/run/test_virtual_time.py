@@ -9,11 +9,11 @@ import pytest
 
 from grader.recording.recording import Recording
 from grader.run import virtual_time
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.run.simulator.link import Patience
 from grader.run.student import executor
 from grader.scenes.scene import Limits, Start
-from grader.submission.opening import open_submission
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel
 

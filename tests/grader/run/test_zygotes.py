@@ -17,10 +17,10 @@ import pytest
 from grader.errors import GraderFailure
 from grader.recording.recording import Recording
 from grader.run import virtual_time, zygotes
+from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.run.processes import ZYGOTE, isolation, levels
 from grader.scenes.scene import Limits
-from grader.submission.opening import open_submission
 
 ROOT = Path(__file__).parents[3]
 PLAN = Plan(Limits(first_motion_s=0.5, rest_s=0.2, total_s=5))

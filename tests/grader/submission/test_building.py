@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from grader.submission.opening import open_submission
+from grader.run.opening import open_submission
+from grader.submission.opening import EntryPoint
 from tests.files import lay
 from tests.grader.submission.test_opening import NODE, below
 
 SETUP = """
+import os
+from glob import glob
 from setuptools import find_packages, setup
 package_name = 'spiral'
 setup(
@@ -133,8 +136,8 @@ def test_a_file_alone_and_loose_files_are_no_package(tmp_path: Path) -> None:
                 "spiral/__init__.py": None,
                 **changed("setup.py", "packages=[package_name]", "packages=find_packages()"),
             },
-            "ros2 run would not start this: find_packages() in setup.py passes over spiral, which "
-            "has no __init__.py",
+            "ros2 run would not start this: setup.py lists no packages, and so does not install "
+            "spiral",
         ),
         ({"setup.py": None, "setup.cfg": None}, "colcon would not build this: no setup.py"),
     ],
@@ -152,17 +155,25 @@ def test_each_shortcoming_is_a_note(
     [
         changed("setup.py", "['resource/' + package_name]", "glob('resource/*')"),
         changed("setup.py", "[package_name]", "find_packages(exclude=['test'])"),
-        changed("setup.py", "packages=[package_name]", "packages=more()"),
-        {"setup.cfg": "", **changed("setup.py", "packages=", "cmdclass=mine, packages=")},
-        {"setup.cfg": "", **changed("setup.py", "data_files=[", "data_files=more() + [")},
+        {"setup.cfg": "", **changed("setup.py", "packages=", "cmdclass={'a': 1}, packages=")},
         {"setup.cfg": "", **changed("setup.py", "('share/' + package_name,", "('lib/spiral',")},
         changed("package.xml", "<name>", "<!-- a -->\n<name>"),
         changed("package.xml", "<package ", "<!DOCTYPE p [<!ENTITY a 'b'>]>\n<package "),
         {"CMakeLists.txt": "", **changed("package.xml", "ament_python", "ament_cmake")},
     ],
 )
-def test_what_only_a_run_could_tell_is_not_told(tmp_path: Path, change: dict[str, str]) -> None:
+def test_what_is_no_shortcoming_is_not_told(tmp_path: Path, change: dict[str, str]) -> None:
     assert notes(lay(tmp_path, PACKAGE | change)) == ()
+
+
+def test_a_set_up_that_cannot_be_evaluated_is_a_note_with_its_line(tmp_path: Path) -> None:
+    change = changed("setup.py", "packages=[package_name]", "packages=more()")
+    with open_submission(lay(tmp_path, PACKAGE | change)) as submission:
+        assert submission.start == EntryPoint("spiral.node", "main")
+        assert submission.notes == (
+            "colcon would not build this: setup.py ends with NameError: name 'more' is not "
+            "defined (setup.py, line 8)",
+        )
 
 
 def test_a_place_that_os_path_join_makes_is_known(tmp_path: Path) -> None:

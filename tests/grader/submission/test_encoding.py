@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from grader.run.opening import open_submission
 from grader.run.student import main as student_main
 from grader.submission.encoding import fault
-from grader.submission.opening import EntryPoint, Script, open_submission
+from grader.submission.opening import EntryPoint, Script
 from tests.grader.submission.copies import in_place
 
 NODE = b"import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
@@ -78,7 +79,8 @@ def test_a_lone_file_is_refused_as_python3_would_and_noted(tmp_path: Path) -> No
 
 def test_a_module_that_only_an_import_passes_over_is_imported_and_noted(tmp_path: Path) -> None:
     """As `ros2 run` does it: an import of older Pythons does not look at comments."""
-    setup = "setup(entry_points={'console_scripts': ['turtle_controller = node:main']})\n"
+    setup = "from setuptools import setup\n"
+    setup += "setup(entry_points={'console_scripts': ['turtle_controller = node:main']})\n"
     (tmp_path / "setup.py").write_text(setup)
     (tmp_path / "node.py").write_bytes(b"import helper\n" + NODE)
     (tmp_path / "helper.py").write_bytes(LATIN_1)

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.submission.opening import EntryPoint, Submission, open_submission
+from grader.run.opening import open_submission
+from grader.submission.opening import EntryPoint, Submission
 from tests.files import lay
 from tests.grader.submission.copies import in_place
 
@@ -126,13 +127,35 @@ def test_a_package_may_be_called_test(tmp_path: Path) -> None:
 def test_a_broken_set_up_file_does_not_matter_beside_a_good_one(tmp_path: Path) -> None:
     lay(tmp_path, {"src/bad/setup.py": "setup(\n"} | below("src/good", package("good")))
     assert found_in(tmp_path).root == tmp_path / "src/good"
-    assert "src/bad/setup.py does not parse, line 1" in refused(tmp_path, "other")
+    assert "no console script other; it has: turtle_controller" in refused(tmp_path, "other")
 
 
-def test_a_set_up_file_that_computes_its_scripts_is_refused_and_not_run(tmp_path: Path) -> None:
-    text = refused(lay(tmp_path, {"setup.py": "setup(entry_points=compute())\n", "a.py": NODE}))
-    assert text.startswith("setup.py computes console scripts, and is not run to learn them.")
-    assert "'turtle_controller = my_package.turtle_controller:main'" in text
+def test_a_set_up_file_may_compute_its_scripts(tmp_path: Path) -> None:
+    entries = "*(f'{name} = spiral.{name}:main' for name in ['turtle_controller'])"
+    files = package("spiral") | {"setup.py": SETUP.format(package="spiral", entries=entries)}
+    submission = found_in(lay(tmp_path, files))
+    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.found == "console script turtle_controller in setup.py"
+
+
+@pytest.mark.parametrize(
+    ("setup", "why"),
+    [
+        ("setup(\n", "SyntaxError: '(' was never closed (setup.py, line 1)"),
+        ("import no_such_module\n", "No module named 'no_such_module' (setup.py, line 1)"),
+        ("import sys\nsys.exit(3)\n", "SystemExit: 3 (setup.py, line 2)"),
+        ("import os\nos._exit(3)\n", "ended the process that it ran in (exit code 3)"),
+    ],
+)
+def test_where_setup_py_cannot_be_evaluated_the_program_is_found_as_without_scripts(
+    tmp_path: Path, setup: str, why: str
+) -> None:
+    submission = found_in(lay(tmp_path, package("spiral") | {"setup.py": setup}))
+    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.notes[0].startswith("colcon would not build this: setup.py ")
+    assert submission.notes[0].endswith(why)
+    files = package("spiral", module="draw") | {"spiral/pens.py": GUARDED, "setup.py": setup}
+    assert refused(lay(tmp_path / "several", files)).endswith(f"{why}.")
 
 
 def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_told(
@@ -184,7 +207,8 @@ def test_a_source_layout_is_imported_from_its_folder(tmp_path: Path) -> None:
 
 
 def test_a_module_may_lie_beside_setup_py(tmp_path: Path) -> None:
-    setup = "setup(py_modules=['n'], entry_points={'console_scripts': ['x = n:main']})\n"
+    setup = "from setuptools import setup\n"
+    setup += "setup(py_modules=['n'], entry_points={'console_scripts': ['x = n:main']})\n"
     assert found_in(lay(tmp_path, {"setup.py": setup, "n.py": NODE})).start == EntryPoint(
         "n", "main"
     )

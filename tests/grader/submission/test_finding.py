@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.submission.finding import find
+from grader.submission.finding import find, find_inspected
+from grader.submission.set_ups import Inspected, NotInspected, SetUp
 from tests.files import lay
 from tests.grader.submission.test_opening import NODE, PACKAGE
 
@@ -24,13 +25,25 @@ def refused(path: Path, scratch: Path) -> str:
     return str(error.value)
 
 
-@pytest.mark.parametrize("name", ["node.py", "spiral/node.py"])
 def test_an_unreadable_file_is_named(
-    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch, name: str
+    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    handed_in = lay(tmp_path / "in", {"node.py": NODE} if name == "node.py" else PACKAGE)
-    forbid(monkeypatch, handed_in / name)
-    assert refused(handed_in, scratch).startswith(f"{name} cannot be read: Permission denied.")
+    handed_in = lay(tmp_path / "in", {"node.py": NODE})
+    forbid(monkeypatch, handed_in / "node.py")
+    assert refused(handed_in, scratch).startswith("node.py cannot be read: Permission denied.")
+
+
+def test_an_unreadable_file_of_a_package_is_named(
+    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    handed_in = lay(tmp_path / "in", PACKAGE)
+    with pytest.raises(NotInspected) as asked:
+        find(handed_in, None, scratch)
+    assert asked.value.folders == ["."]
+    forbid(monkeypatch, handed_in / "spiral/node.py")
+    said = SetUp(".", scripts=("turtle_controller = spiral.node:main",))
+    with pytest.raises(SubmissionError, match=r"^spiral/node\.py cannot be read: Permission"):
+        find_inspected(handed_in, "in", None, scratch, "a", Inspected((said,)))
 
 
 def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.submission.launch_files import Node, read_launch_file
-from grader.submission.opening import EntryPoint, Launch, Submission, open_submission
+from grader.run.opening import open_submission
+from grader.submission.opening import EntryPoint, Launch, Submission
 from grader.submission.start import Program
 from tests.files import lay
 from tests.grader.submission.test_building import PACKAGE
@@ -30,13 +30,6 @@ TWO = PACKAGE | {
 }
 
 
-def nodes(tmp_path: Path, text: str, name: str = "a.launch.py") -> tuple[Node, ...] | str:
-    """What a launch file starts, or why that is not known."""
-    (tmp_path / name).write_text(text)
-    launch = read_launch_file(tmp_path / name)
-    return launch.unread or launch.nodes
-
-
 def opened(path: Path, executable: str | None = None) -> Submission:
     with open_submission(path, executable) as submission:
         return submission
@@ -53,73 +46,71 @@ def opened(path: Path, executable: str | None = None) -> Submission:
             ", parameters=[{'rate': 2.5, 'on': True}, {'name': 'x: y', 'many': [1, 2]}]",
             ("-p", "rate:=2.5", "-p", "on:=true", "-p", 'name:="x: y"', "-p", "many:=[1, 2]"),
         ),
+        (", arguments=['--fast']", None),
     ],
 )
 def test_what_a_node_is_given_becomes_the_arguments_of_ros(
-    tmp_path: Path, node: str, arguments: tuple[str, ...]
+    tmp_path: Path, node: str, arguments: tuple[str, ...] | None
 ) -> None:
-    words = ("--ros-args", *arguments) if arguments else ()
-    text = LIST.format(f"Node(package='p', executable='e'{node})")
-    assert nodes(tmp_path, text) == (Node("p", "e", words),)
+    words = ("--fast",) if arguments is None else ("--ros-args", *arguments) if arguments else ()
+    given = DRIVE.replace(")", f"{node})")
+    text = LIST.format(f"{given}, {PENS}")
+    start = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text})).start
+    assert isinstance(start, Launch)
+    assert start.programs[0].arguments == words
 
 
 @pytest.mark.parametrize(
     "body",
     [
-        f"    return LaunchDescription([{DRIVE}, {PENS}])\n",
         f"    a = {DRIVE}\n    b = {PENS}\n    return LaunchDescription([a, b])\n",
         f"    ld = LaunchDescription()\n    ld.add_action({DRIVE})\n    b = {PENS}\n"
         "    ld.add_action(b)\n    return ld\n",
-        f"    d = LaunchDescription([{DRIVE}])\n    d.add_action({PENS})\n    return d\n",
         f"    '''Both.'''\n    both = [launch_ros.actions.{DRIVE}, {PENS}]\n"
         "    return LaunchDescription(initial_entities=both)\n",
+        "    names = ['turtle_controller', 'pen_node']\n"
+        "    return LaunchDescription([Node(package='spiral', executable=n) for n in names])\n",
     ],
 )
-def test_the_usual_ways_to_write_a_launch_file_are_read(tmp_path: Path, body: str) -> None:
-    expected = (Node("spiral", "turtle_controller"), Node("spiral", "pen_node"))
-    assert nodes(tmp_path, HEAD + body) == expected
+def test_however_a_launch_file_is_written_what_counts_is_what_it_starts(
+    tmp_path: Path, body: str
+) -> None:
+    start = opened(lay(tmp_path, TWO | {"launch/a.launch.py": HEAD + body})).start
+    assert isinstance(start, Launch)
+    assert [program.name for program in start.programs] == ["turtle_controller", "pen_node"]
 
 
 @pytest.mark.parametrize(
-    ("text", "why"),
+    "more",
     [
-        (LIST.format("DeclareLaunchArgument('a'), " + DRIVE), "it holds DeclareLaunchArgument"),
-        (LIST.format("ExecuteProcess(cmd=['ls'])"), "it holds ExecuteProcess beside nodes"),
-        (LIST.format("Node(package=p(), executable='e')"), "the package of a node in line 7"),
-        (LIST.format("Node(package='p', executable='e', parameters=[f])"), "are computed"),
-        (LIST.format("Node(package='p', executable='e', parameters=['a.yaml'])"), "not written"),
-        (LIST.format("Node(package='p', executable='e', condition=c)"), "has condition"),
-        (LIST.format("Node(package='p', executable='e', **more)"), "has **"),
-        (LIST.format("Node(package='p', executable='e', name='a b')"), "a name in it"),
-        (LIST.format("*more()"), "something else beside nodes"),
-        (HEAD + f"    if x:\n        return LaunchDescription([{DRIVE}])\n", "in line 7"),
-        (HEAD + f"    a = {DRIVE}\n    a = {PENS}\n    return LaunchDescription([a])\n", "line 8"),
-        (HEAD + "    return 1\n", "it returns no LaunchDescription"),
-        ("x = 1\n", "no function generate_launch_description"),
-        ("def generate(:\n", "it does not parse"),
+        "DeclareLaunchArgument('a', default_value='b')",
+        "ExecuteProcess(cmd=['ls'])",
+        "Node(package='spiral', executable='pen_node', name='a b')",
+        "Node(package='spiral', executable='pen_node', condition=IfCondition('true'))",
+        "TimerAction(period=1.0, actions=[Node(package='spiral', executable='pen_node')])",
     ],
 )
-def test_what_only_a_run_could_tell_makes_a_launch_file_unread(
-    tmp_path: Path, text: str, why: str
+def test_a_launch_file_that_does_more_than_start_nodes_settles_nothing(
+    tmp_path: Path, more: str
 ) -> None:
-    told = nodes(tmp_path, text)
-    assert isinstance(told, str) and why in told
+    head = "from launch.actions import *\nfrom launch.conditions import IfCondition\n"
+    text = head + LIST.format(f"{DRIVE}, {PENS}, {more}")
+    submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
+    assert submission.start == EntryPoint("spiral.node", "main")
+    assert submission.unlaunched == (
+        "launch/a.launch.py was not run: judged is turtle_controller alone, without pen_node",
+    )
 
 
-def test_a_launch_file_in_xml_is_read_too(tmp_path: Path) -> None:
-    node = "<node pkg='p' exec='e' {}>{}</node>"
+def test_a_launch_file_in_xml_is_evaluated_too(tmp_path: Path) -> None:
+    node = "<node pkg='spiral' exec='{}' {}>{}</node>"
     inside = "<remap from='a' to='/b'/><param name='rate' value='2.5'/>"
-    text = "<launch>" + node.format("name='n' output='screen'", inside) + "</launch>"
+    drive = node.format("turtle_controller", "name='n' output='screen'", inside)
+    text = f"<launch>{drive}{node.format('pen_node', '', '')}</launch>"
+    start = opened(lay(tmp_path, TWO | {"launch/a.launch.xml": text})).start
+    assert isinstance(start, Launch)
     words = ("--ros-args", "-r", "__node:=n", "-r", "a:=/b", "-p", "rate:=2.5")
-    assert nodes(tmp_path, text, "a.launch.xml") == (Node("p", "e", words),)
-    for unread in (
-        "<launch><arg name='a'/></launch>",
-        "<launch>" + node.format("if='$(var a)'", "") + "</launch>",
-        "<launch><node pkg='$(env HOME)' exec='e'/></launch>",
-        "<!DOCTYPE a [<!ENTITY b 'c'>]><launch/>",
-        "<launch>",
-    ):
-        assert isinstance(nodes(tmp_path, unread, "a.launch.xml"), str)
+    assert [program.arguments for program in start.programs] == [words, ()]
 
 
 def test_several_nodes_of_a_launch_file_are_started(tmp_path: Path) -> None:
@@ -167,9 +158,9 @@ def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path: Pa
     ("text", "note"),
     [
         (
-            LIST.format("DeclareLaunchArgument('a'), " + DRIVE),
-            "launch/a.launch.py was not run, and what it starts cannot be read (it holds "
-            "DeclareLaunchArgument beside nodes): judged is turtle_controller alone",
+            LIST.format("nothing(), " + DRIVE),
+            "launch/a.launch.py was not run, and what it starts cannot be read (NameError: name "
+            "'nothing' is not defined): judged is turtle_controller alone",
         ),
         (
             LIST.format(PENS.replace("pen_node", "pem_node") + ", " + DRIVE),
@@ -192,7 +183,7 @@ def test_a_launch_file_that_is_not_run_is_told_where_it_matters(
 
 
 def test_two_launch_files_that_differ_settle_nothing(tmp_path: Path) -> None:
-    other = LIST.format(f"{DRIVE}, {PENS}, {PENS}")
+    other = LIST.format(f"{PENS}, {DRIVE}")
     lay(tmp_path, TWO | {"launch/a.launch.py": BOTH, "launch/b.launch.py": other})
     assert opened(tmp_path).start == EntryPoint("spiral.node", "main")
 

@@ -9,19 +9,18 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError, UsageError
+from grader.run.opening import open_submission
 from grader.submission.folder import HAND_IN
-from grader.submission.opening import (
-    EntryPoint,
-    Script,
-    Submission,
-    open_submission,
-)
+from grader.submission.opening import EntryPoint, Script, Submission
 from tests.files import lay
 from tests.grader.submission.copies import in_place
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n"
 GUARDED = NODE + '\n\nif __name__ == "__main__":\n    main()\n'
-SETUP = "setup(entry_points={'console_scripts': ['turtle_controller = spiral.node:main']})\n"
+SETUP = (
+    "from setuptools import setup\n"
+    "setup(entry_points={'console_scripts': ['turtle_controller = spiral.node:main']})\n"
+)
 PACKAGE = {
     "package.xml": "",
     "setup.py": SETUP,

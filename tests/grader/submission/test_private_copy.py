@@ -12,13 +12,17 @@ import pytest
 from grader import grading, scratch
 from grader.errors import SubmissionError
 from grader.exercise.loading import load_exercise
+from grader.run.opening import open_submission
 from grader.submission import private_copy
-from grader.submission.opening import Submission, open_submission
+from grader.submission.opening import Submission
 from grader.submission.private_copy import PrivateCopy
 from tests.files import lay
 
 NODE = "import rclpy\n\n\ndef main(args=None):\n    rclpy.init(args=args)\n\n\nmain()\n"
-SETUP = "setup(entry_points={'console_scripts': ['turtle_controller = spiral.node:main']})\n"
+SETUP = (
+    "from setuptools import setup\n"
+    "setup(entry_points={'console_scripts': ['turtle_controller = spiral.node:main']})\n"
+)
 PACKAGE = {"setup.py": SETUP, "spiral/__init__.py": "", "spiral/node.py": NODE}
 
 

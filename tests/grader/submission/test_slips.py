@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from grader.run.opening import open_submission
 from grader.submission import slips
-from grader.submission.opening import open_submission
 from grader.submission.start import Slip
 
 SETUP = """from setuptools import setup

@@ -8,17 +8,20 @@ import os
 import re
 import shutil
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from grader.scenes.package import strict
 from grader.scenes.package.examining import cmake, known, paths
 from grader.scenes.package.examining.packages import MANIFEST, Package
-from grader.scenes.package.examining.setup_call import Told, run_setup
-from grader.scenes.package.examining.steps import NONSENSE, Ended, attempt, step
+from grader.scenes.package.examining.setup_call import evaluate
+from grader.scenes.package.examining.steps import Ended, attempt
+from grader.scenes.package.inspection import Told
 from grader.scenes.package.trace import Problem, Script, Setup
 
+#: Set-ups that were evaluated already, by their folders.
+Known = Mapping[Path, tuple[Told, Problem | None]]
 MARKS = "share/ament_index/resource_index/packages"
 #: Folders whose files a description package is expected to install.
 _SHARED = (
@@ -55,10 +58,10 @@ class Installed:
         return ""
 
 
-def lay_out(package: Package, root: Path, prefix: Path) -> Installed:
+def lay_out(package: Package, root: Path, prefix: Path, known: Known) -> Installed:
     """Find out what a package installs, and copy that."""
     try:
-        return attempt(lambda: _laid_out(package, root, prefix))
+        return attempt(lambda: _laid_out(package, root, prefix, known))
     except Ended as ended:
         name = package.name or package.folder.name[:_LONGEST]
         return Installed(package, name, nothing(name, ended.problem))
@@ -69,8 +72,8 @@ def nothing(name: str, problem: Problem) -> Setup:
     return Setup(name, "", "", "", "", (), problem, (), (), (), "", (), (), ())
 
 
-def _laid_out(package: Package, root: Path, prefix: Path) -> Installed:
-    said, problem, absent, files, programs = _said(package)
+def _laid_out(package: Package, root: Path, prefix: Path, known: Known) -> Installed:
+    said, problem, absent, files, programs = _said(package, known)
     lines = said.scripts[:_MOST]
     scripts = [_script(line[:_LONGEST], package, said.packages) for line in lines]
     name = (package.name or said.name or package.folder.name)[:_LONGEST]
@@ -112,7 +115,7 @@ def _laid_out(package: Package, root: Path, prefix: Path) -> Installed:
 
 
 def _said(
-    package: Package,
+    package: Package, known: Known
 ) -> tuple[Told, Problem | None, list[str], list[tuple[str, str]], list[str]]:
     """What the set-up says, its problem, what is absent, (folder, file) of each, programs."""
     if package.is_cmake:
@@ -127,18 +130,9 @@ def _said(
     if not paths.is_file(package.folder / "setup.py"):
         return Told(), Problem("error", "there is no setup.py"), [], [], []
 
-    def own(path: str) -> str:
-        here = f"{package.folder}/"
-        return path.removeprefix(here) if path.startswith(here) else ""
-
-    try:
-        said = strict.from_json(Told, step(lambda: run_setup(package.folder), own))
-    except Ended as ended:
-        return Told(), ended.problem, [], [], []
-    except ValueError:
-        return Told(), Problem("limit", NONSENSE), [], [], []
+    said, problem = known.get(package.folder) or evaluate(package.folder)
     files = [(each.folder, name) for each in said.data_files for name in each.files]
-    return said, None, [], files, []
+    return said, problem, [], files, []
 
 
 def _copy(path: Path, prefix: Path, to: str) -> bool:

@@ -47,20 +47,18 @@ class Looking:
         self._descriptions: list[Description] = []
         self._commands: dict[int, list[str]] = {}
         self._files: dict[str, tuple[Installed, str]] = {}
+        #: launch files in which there is nothing but nodes
+        self.plain: list[str] = []
         #: why no launch file is evaluated any more; '' for nothing
         self._gone = ""
 
-    def trace(self) -> PackageTrace:
-        """All of it."""
+    def trace(self, *, is_whole: bool = True) -> PackageTrace:
+        """All of it, or what launch files would start."""
         place = self._place
         self._files = _launch_files(place)
         self._miss("a setup.py")
         found = [self._launch(told) for told in self._files]
-        if not any(each.text >= 0 for each in self._descriptions):
-            found += self._from_files(found)
-        varied = self._varied()
-        self._elsewhere(found)
-        self._read_meshes()
+        varied = self._besides(found) if is_whole else []
         return PackageTrace(
             setup=strict.from_json(trace.Setup, _cleaned(self._setup(), place)),
             others=tuple(each.name[:200] for each in place.all if each is not place.judged)[:100],
@@ -70,6 +68,15 @@ class Looking:
             texts=tuple(self._texts),
             surfaces=tuple(self._triangles),
         )
+
+    def _besides(self, found: list[Launch]) -> list[Varied]:
+        """What is looked at beside launch files; descriptions with other numbers."""
+        if not any(each.text >= 0 for each in self._descriptions):
+            found += self._from_files(found)
+        varied = self._varied()
+        self._elsewhere(found)
+        self._read_meshes()
+        return varied
 
     def _setup(self) -> dict[str, Any]:
         """The judged package's; with the dependencies of those whose launch files count."""
@@ -125,6 +132,8 @@ class Looking:
                 "remarks": [*said["remarks"], *_unwrapped(file, said["nodes"])],
             },
         )
+        if said["others"] == []:
+            self.plain.append(file)
         for node in launch.nodes:
             if "robot_state_publisher" in (node.executable, node.package):
                 for each in node.parameters:

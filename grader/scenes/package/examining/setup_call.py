@@ -12,14 +12,17 @@ import importlib.metadata
 import os
 import runpy
 import sys
+import tomllib
 import warnings
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 from grader.scenes.package import strict
 from grader.scenes.package.examining import paths
-from grader.scenes.package.examining.steps import in_folder
+from grader.scenes.package.examining.steps import NONSENSE, Ended, in_folder, step
+from grader.scenes.package.inspection import DataFiles, Told
+from grader.scenes.package.trace import Problem
 
 #: What a package may set for setuptools, which learns of these by entry points.
 _KEYWORDS: Final = (
@@ -31,37 +34,29 @@ _KEYWORDS: Final = (
 _OFFLINE: Final = ("VALIDATE_PYPROJECT_NO_NETWORK", "NO_NETWORK")
 
 
-@dataclass(frozen=True)
-class DataFiles:
-    """Files, and the folder that they come into."""
+def evaluate(folder: Path) -> tuple[Told, Problem | None]:
+    """What the set-up of a folder says; and what ended it, where it came to no end."""
 
-    folder: str
-    files: tuple[str, ...]
+    def own(path: str) -> str:
+        here = f"{folder}/"
+        return path.removeprefix(here) if path.startswith(here) else ""
 
-
-@dataclass(frozen=True)
-class Told:
-    """What a set-up says.
-
-    Attributes:
-        name: of the package; '' where it gives none.
-        data_files: what it installs beside Python's packages.
-        scripts: lines such as 'talker = pkg.talker:main'.
-        plain_scripts: files that are programs.
-        packages: Python's; None where nothing lists them.
-        scripts_folder: where programs are installed, without `$base/`; '' where nothing says so.
-    """
-
-    name: str = ""
-    data_files: tuple[DataFiles, ...] = ()
-    scripts: tuple[str, ...] = ()
-    plain_scripts: tuple[str, ...] = ()
-    packages: tuple[str, ...] | None = None
-    scripts_folder: str = ""
+    try:
+        return strict.from_json(Told, step(lambda: run_setup(folder), own)), None
+    except Ended as ended:
+        problem = ended.problem
+    except ValueError:
+        problem = Problem("limit", NONSENSE)
+    if not problem.file and not paths.is_file(folder / "setup.py"):
+        names = ("pyproject.toml", "setup.cfg")
+        problem = replace(problem, file=next(n for n in names if paths.is_file(folder / n)))
+    return Told(), problem
 
 
 def run_setup(folder: Path) -> Any:
     """In a copy of the process: evaluate a set-up in its folder; what it says (`Told`) as JSON.
+
+    Where there is no setup.py, it is that of a frontend: a plain call of setup().
 
     Raises:
         Exception: whatever the setup.py raises, or setuptools does of it.
@@ -93,10 +88,13 @@ def run_setup(folder: Path) -> Any:
     setuptools.setup = distutils.core.setup = setup
     in_folder(str(folder), [str(folder)], {})
     sys.argv = ["setup.py", "install"]
-    runpy.run_path(str(folder / "setup.py"), run_name="__main__")
+    if paths.is_file(folder / "setup.py"):
+        runpy.run_path(str(folder / "setup.py"), run_name="__main__")
+    else:
+        setup()
     if not made:
         raise RuntimeError("setup.py never calls setup()")
-    return strict.to_json(told(made[-1]))
+    return strict.to_json(_of_poetry(told(made[-1]), folder / "pyproject.toml"))
 
 
 def _no_entry_points(**_: object) -> Any:
@@ -116,7 +114,27 @@ def told(of: Any) -> Told:
         scripts=tuple(_scripts(of.entry_points)),
         plain_scripts=tuple(os.fspath(each) for each in of.scripts or []),
         packages=None if of.packages is None else tuple(map(str, of.packages)),
+        package_folders=tuple(f"{name}={at}" for name, at in (of.package_dir or {}).items()),
         scripts_folder=str(scripts_folder).strip().removeprefix("$base/"),
+        has_commands=bool(of.cmdclass),
+    )
+
+
+def _of_poetry(said: Told, file: Path) -> Told:
+    """What Poetry has in pyproject.toml, which setuptools passes over."""
+    if said.scripts or not paths.is_file(file):
+        return said
+    poetry = tomllib.loads(file.read_text("utf-8-sig")).get("tool", {}).get("poetry", {})
+    scripts = {}
+    for name, target in poetry.get("scripts", {}).items():
+        is_file = isinstance(target, dict) and target.get("type") == "file"
+        if not is_file:
+            scripts[name] = target.get("reference") if isinstance(target, dict) else target
+    lie_in = [each["from"] for each in poetry.get("packages", ()) if "from" in each]
+    return replace(
+        said,
+        scripts=tuple(f"{name} = {target}" for name, target in scripts.items()),
+        package_folders=(*said.package_folders, *(f"={at}" for at in lie_in)),
     )
 
 

@@ -42,6 +42,7 @@ class Taken:
                 "refused",
                 "borrowed",
                 "skipped",
+                "others",
             )
         }
         self.texts: list[str] = []
@@ -74,6 +75,11 @@ class Taken:
             "line": line if file else 0,
             "condition": told["condition"][:LONG],
         }
+
+    def visited(self, kind: str) -> None:
+        """An action of whatever kind."""
+        if kind not in ("LaunchDescription", "Node"):
+            self._add("others", kind[:LONG])
 
     def process(self, words: list[str]) -> None:
         """Another program that would start; a node, where it is plainly one."""

@@ -12,7 +12,7 @@ import pytest
 
 from grader.batch.find import class_archive
 from grader.errors import SubmissionError, UsageError
-from grader.submission.opening import open_submission
+from grader.run.opening import open_submission
 from tests.grader.batch.find.exports import NODE, Finder, content, noted, packed
 
 

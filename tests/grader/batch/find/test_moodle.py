@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.submission.opening import open_submission
+from grader.run.opening import open_submission
 from tests.grader.batch.find.exports import NODE, Finder, content, lay, noted, packed
 
 FOLDERS = {

@@ -112,10 +112,10 @@ def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time
     changed_rclpy: Callable[[str, str], None], side: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from grader.run import virtual_time
+    from grader.run.opening import open_submission
     from grader.run.plan import Plan
     from grader.run.processes import levels
     from grader.scenes.scene import Limits
-    from grader.submission.opening import open_submission
 
     submissions = Path(__file__).parents[3] / "submissions"
     changed_rclpy(side, "ClockType.STEADY_TIME")

@@ -15,7 +15,6 @@ import pytest
 
 from grader.scenes.package import strict
 from grader.scenes.package.examining import account, main, paths, steps, surfaces
-from grader.scenes.package.examining.setup_call import Told
 from grader.scenes.package.examining.steps import (
     NONSENSE,
     Ended,
@@ -24,6 +23,7 @@ from grader.scenes.package.examining.steps import (
     start_of,
     step,
 )
+from grader.scenes.package.inspection import Told
 from grader.scenes.package.trace import FAILED, PackageTrace, decode, encode
 from tests.submissions.packages import REFERENCE, looked_at, written
 
@@ -36,7 +36,9 @@ ANSWER = {
     "scripts": ["a = a:main"],
     "plain_scripts": [],
     "packages": None,
+    "package_folders": [],
     "scripts_folder": "lib/a",
+    "has_commands": False,
 }
 
 

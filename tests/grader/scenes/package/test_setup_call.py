@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from grader.scenes.package import strict
-from grader.scenes.package.examining.setup_call import DataFiles, Told, run_setup
+from grader.scenes.package.examining.setup_call import run_setup
 from grader.scenes.package.examining.steps import Ended, step
+from grader.scenes.package.inspection import DataFiles, Told
 
 SETUP = "from setuptools import setup\n"
 ONLY_CALLS = f"{SETUP}setup()\n"
@@ -99,7 +100,7 @@ class Other(Distribution):
 
 setup(name="walker", cmdclass={"build_py": Fails, "install": Fails}, distclass=Other)
 """
-    assert told(tmp_path, setup_py=text) == Told(name="walker")
+    assert told(tmp_path, setup_py=text) == Told(name="walker", has_commands=True)
 
 
 def test_nothing_is_fetched(tmp_path):

@@ -39,6 +39,8 @@ class Record:
 
     def process(self, words: list[str]) -> None: ...
 
+    def visited(self, kind: str) -> None: ...
+
     def include(self, path: str, arguments: dict[str, str]) -> bool:
         return False
 
@@ -231,4 +233,5 @@ def walk(entities: Any, context: LaunchContext, depth: int = 0) -> None:
             )
         if depth > 60:
             raise RecursionError("launch files or actions that lead to each other without end")
+        context.record.visited(type(entity).__name__)
         walk(entity.visit(context), context, depth + 1)

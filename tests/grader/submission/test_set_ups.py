@@ -1,0 +1,107 @@
+"""What an inspection says of set-up files is held against them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+
+from grader.errors import SubmissionError
+from grader.language.phrase import say
+from grader.submission.folder import HandedIn
+from grader.submission.set_ups import (
+    Inspected,
+    LaunchFile,
+    Node,
+    Package,
+    SetUp,
+    read_package,
+)
+from tests.files import lay
+
+
+def read(folder: Path, *scripts: str, package_folders: tuple[str, ...] = ()) -> Package:
+    lay(folder, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
+    said = SetUp(".", scripts=scripts, package_folders=package_folders)
+    return read_package(said, HandedIn("pkg", folder))
+
+
+@pytest.mark.parametrize(
+    ("line", "target"),
+    [
+        ("go = pkg.node:main", ("pkg.node", "main")),
+        ("go=pkg.node:main [extra]", ("pkg.node", "main")),
+        (" go  =  node : Node.main ", ("node", "Node.main")),
+    ],
+)
+def test_a_console_script_is_a_name_with_a_module_and_a_function(
+    tmp_path: Path, line: str, target: tuple[str, str]
+) -> None:
+    (script,) = read(tmp_path, line).scripts
+    assert (script.name, script.module, script.function) == ("go", *target)
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ("pkg.node:main", "'pkg.node:main'"),
+        ("go = pkg.node.main", "'go = pkg.node.main'"),
+        ("go = pkg.node:main()", "'go = pkg.node:main()'"),
+        ("go = my-pkg.node:main", "'go = my-pkg.node:main'"),
+        ("go = a:mainstop = b:main", "A comma seems to be missing"),
+    ],
+)
+def test_an_entry_that_no_tool_could_install_is_refused(
+    tmp_path: Path, entry: str, words: str
+) -> None:
+    with pytest.raises(SubmissionError) as error:
+        read(tmp_path, entry)
+    assert words in str(error.value)
+    assert "Expected 'name = package.module:function'" in str(error.value)
+
+
+@pytest.mark.parametrize("named", ["setup.cfg", "pyproject.toml", "setup.py"])
+def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path: Path, named: str) -> None:
+    lay(tmp_path, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
+    (tmp_path / named).write_text("go: pkg.node:main")
+    (script,) = read_package(
+        SetUp(".", scripts=("go = pkg.node:main",)), HandedIn("pkg", tmp_path)
+    ).scripts
+    assert script.file == tmp_path / named
+
+
+def test_a_script_whose_name_no_file_has_is_of_setup_py(tmp_path: Path) -> None:
+    (script,) = read(tmp_path, "computed = pkg.node:main").scripts
+    assert script.file == tmp_path / "setup.py"
+
+
+@pytest.mark.parametrize(
+    ("folders", "roots"),
+    [
+        ((), (".", "src")),
+        (("=lib",), ("lib",)),
+        (("pkg=lib/pkg",), ("lib", ".", "src")),
+        (("pkg=other",), (".", "src")),
+        (("=..",), (".",)),
+        (("=/etc",), (".",)),
+        (("=a\0b",), (".",)),
+    ],
+)
+def test_the_folders_to_import_from_lie_in_the_package(
+    tmp_path: Path, folders: tuple[str, ...], roots: tuple[str, ...]
+) -> None:
+    package = read(tmp_path, package_folders=folders)
+    assert package.roots("pkg.node") == [tmp_path / root for root in roots]
+
+
+def test_what_was_said_comes_to_the_process_that_reads_with_its_phrases() -> None:
+    problem = say("{file} ends with {error}{place}", file="setup.py", error="E", place="")
+    launch = LaunchFile(".", "a.launch.py", (Node("p", "e", ("--x",)),), is_plain=True)
+    said = Inspected((SetUp(".", problem, "pkg", packages=["pkg"]),), (launch,))
+    read = Inspected.from_json(json.loads(json.dumps(said.to_json())))
+    assert [asdict(each)["name"] for each in read.set_ups] == ["pkg"]
+    assert read.set_ups[0].problem == problem
+    assert getattr(read.set_ups[0].problem, "key", "") == problem.key
+    assert read.launches == [launch]
