@@ -179,8 +179,6 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
     missing = not_handed_in(submission.name, submission.copy, (*imports.surely, *imports.perhaps))
-    if nominal.looks_at_package:
-        submission = replace(submission, unlaunched=())  # looking tells more
     return [replace(nominal, flags=(*submission.remarks, *missing)), *varied]
 
 

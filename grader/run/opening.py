@@ -7,25 +7,21 @@ files say, so they are evaluated first, by one look in a process of the submissi
 
 from __future__ import annotations
 
-import json
 import math
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
+from grader.language.phrase import say
 from grader.run.budget import Budget
 from grader.submission import opening
 from grader.submission.folder import USUAL_NAME
-from grader.submission.opening import Seen, Submission
-from grader.submission.set_ups import SETUP_FILES, Inspected, LaunchFile, Node, SetUp
+from grader.submission.opening import EntryPoint, Seen, Submission
 
 if TYPE_CHECKING:
-    from grader.scenes.package import inspection, trace
-
-#: What ROS takes as a name, in the arguments of a program.
-_NAME: Final = re.compile(r"[A-Za-z_~/{}][\w~/{}.]*")
+    from grader.scenes.package.inspection import Inspection
 
 
 @contextmanager
@@ -56,86 +52,45 @@ def open_submission(
         OSError: something is wrong with the machine.
         GraderFailure: it could not be read or inspected, for a reason of ours.
     """
+    inspected: list[Inspection] = []
 
     def inspect(submission: Submission, folders: Sequence[str], program: str) -> Seen:
         from grader.run import static  # here: most submissions are a file
+        from grader.scenes.package.inspection import encode
 
         budget = Budget(cpu_s)
         said, remarks = static.inspect(submission, folders, program, budget, is_whole=is_whole)
-        told = {each.folder: each for each in said.set_ups}
-        set_ups = [_set_up(each, told.get(each)) for each in folders]
-        launches = [_launch_file(said, each) for each in said.trace.launches]
+        inspected.append(said)
         whole = said.trace if is_whole and said.trace.setup is not None else None
-        inspected = Inspected(set_ups, launches)
-        return Seen(inspected, remarks, budget.spent_s, said.package, whole)
+        return Seen(encode(said), remarks, budget.spent_s, said.package, whole)
 
     with opening.opened(
         path, executable, inspect, is_started=is_started, usual=usual
     ) as submission:
+        if inspected and not is_whole:  # a whole look is told of with the run
+            submission = replace(
+                submission, notes=(*submission.notes, *_unlike(submission, inspected[0]))
+            )
         yield submission
 
 
-def _set_up(folder: str, said: inspection.SetUp | None) -> SetUp:
-    from grader.scenes.package.said import how_it_ends
+def _unlike(submission: Submission, said: Inspection) -> Iterator[str]:
+    """In what the start of a program by itself differs from what launch files make of it."""
+    from grader.scenes.package.by_itself import unlike_launched
+    from grader.scenes.package.said import said as told
 
-    if said is None:
-        return SetUp(folder)
-    told, problem = said.told, ""
-    if said.problem is not None:
-        file = said.problem.file if said.problem.file in SETUP_FILES else "setup.py"
-        problem = how_it_ends(file, said.problem)
-    return SetUp(
-        folder,
-        problem=problem,
-        name=told.name,
-        scripts=told.scripts,
-        data_files=[(each.folder, name) for each in told.data_files for name in each.files],
-        packages=told.packages,
-        package_folders=told.package_folders,
-        scripts_folder=told.scripts_folder,
-        has_commands=told.has_commands,
-    )
-
-
-def _launch_file(of: inspection.Inspection, launch: trace.Launch) -> LaunchFile:
-    from grader.scenes.package.said import said
-
-    if launch.problem is not None:
-        return LaunchFile(of.package, launch.file, unread=said(launch.problem))
-    words = [_words(node) for node in launch.nodes]
-    is_plain = launch.file in of.plain and not any(node.condition for node in launch.nodes)
-    return LaunchFile(
-        of.package,
-        launch.file,
-        tuple(
-            Node(node.package, node.executable, ("",) if given is None else given)
-            for node, given in zip(launch.nodes, words, strict=True)
-        ),
-        is_plain=is_plain and None not in words and not launch.skipped,
-    )
-
-
-def _words(node: trace.Node) -> tuple[str, ...] | None:
-    """What `ros2 launch` gives a program; None where that is not known by what was taken down."""
-    name, space = node.name, node.namespace
-    space = space if space.startswith("/") or not space else f"/{space}"
-    rules = [f"{old}:={new}" for old, new in (("__node", name), ("__ns", space)) if new]
-    rules += node.remappings
-    names = [part for rule in rules for part in rule.split(":=")]
-    names += [each.name for each in node.parameters]
-    is_known = all(map(_NAME.fullmatch, names)) and all(e.text < 0 for e in node.parameters)
-    if not is_known or any("\0" in word for word in node.arguments):
-        return None
-    words = [word for rule in rules for word in ("-r", rule)]
-    for each in node.parameters:
-        words += ["-p", f"{each.name}:={_yaml(each.value)}"]
-    return (*node.arguments, *(["--ros-args", *words] if words else []))
-
-
-def _yaml(value: str) -> str:
-    """A value as it was written in JSON, or else a text."""
-    try:
-        json.loads(value)
-    except ValueError:
-        return json.dumps(value)
-    return value
+    start, setup = submission.start, said.trace.setup
+    if not isinstance(start, EntryPoint) or setup is None:
+        return
+    target = (start.module, start.function)
+    name = next((s.name for s in setup.scripts if (s.module, s.function) == target), "")
+    for launch in said.trace.launches:
+        if name and launch.problem is not None:
+            yield say(
+                "{file} was not run, and what it starts cannot be read ({unread}): "
+                "judged is {program} alone",
+                file=launch.file,
+                unread=told(launch.problem),
+                program=name,
+            )
+    yield from unlike_launched(said.trace, *target)

@@ -33,7 +33,7 @@ from grader.run.processes.watched import Watched
 from grader.scenes import load_scene
 from grader.scenes.package import inspection
 from grader.scenes.package.by_itself import unlike_launched
-from grader.scenes.package.inspection import Inspection
+from grader.scenes.package.inspection import Inspection, SetUp, Told
 from grader.scenes.package.trace import FAILED, PackageTrace, decode
 from grader.scenes.scene import Trace
 from grader.submission.opening import EntryPoint, Submission, Whole
@@ -98,7 +98,10 @@ def inspect(
     """
     words = {"set_ups": list(folders), "program": program, "is_whole": is_whole}
     looked = _look(submission, words, inspection.decode, budget)
-    return Inspection() if looked.found is None else looked.found, looked.flags
+    found = looked.found
+    if found is None or [each.folder for each in found.set_ups] != list(folders):
+        found = Inspection(tuple(SetUp(each, Told(), None) for each in folders))
+    return found, looked.flags
 
 
 def look_beside(submission: Submission, budget: Budget) -> tuple[Trace, tuple[str, ...]]:

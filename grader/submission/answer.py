@@ -71,14 +71,12 @@ def found(submission: Submission) -> bytes:
             "surely": _some(submission.imports.surely),
             "perhaps": _some(submission.imports.perhaps),
             "notes": [clip(note, _MAX_NOTE) for note in submission.notes[:_MAX_NOTES]],
-            "unlaunched": [clip(note, _MAX_NOTE) for note in submission.unlaunched[:_MAX_NOTES]],
             "slips": submission.slips,
             "added": [str(each) for each in submission.added],
             "in_package": str(submission.package) if submission.package else None,
         },
         submission.found,
         *submission.notes[:_MAX_NOTES],
-        *submission.unlaunched[:_MAX_NOTES],
     )
 
 
@@ -166,16 +164,14 @@ def decoded(said: dict[str, Any]) -> Submission:
             "surely": dict(surely),
             "perhaps": dict(perhaps),
             "notes": list(notes),
-            "unlaunched": list(unlaunched),
             "slips": list(slips),
             "added": list(added),
             "in_package": str() | None as package,
-        } if all(isinstance(note, str) for note in (*notes, *unlaunched, *added)):
+        } if all(isinstance(note, str) for note in (*notes, *added)):
             imports = Imports(_texts(surely), _texts(perhaps))
             return Submission(
                 *(name, Path(root), _start(start), _phrased(sentence, said), imports),
                 notes=_phrased(tuple(notes), said),
-                unlaunched=_phrased(tuple(unlaunched), said),
                 slips=tuple(map(_slip, slips)),
                 added=tuple(map(Path, added)),
                 package=Path(package) if package else None,

@@ -27,8 +27,8 @@ def shortcomings(
         script: what of it; None if its set-up files name nothing.
     """
     folder = package.folder
-    if package.said.problem:
-        yield _not_built(package.said.problem)
+    if problem := package.problem:
+        yield _not_built(problem)
     if (folder / "CMakeLists.txt").is_file():
         return  # ament_cmake_python, by other rules
     setup_py = folder / "setup.py"
@@ -80,9 +80,9 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
                 names=listed(missing),
             )
         )
-    if package.said.package_folders:
+    if package.told is None or package.told.package_folders:
         return  # not where their names say
-    packages = package.said.packages
+    packages = package.told.packages
     absent = [name for name in packages or () if not (package.folder / _path(name)).is_dir()]
     if absent:
         yield _not_built(
@@ -110,12 +110,14 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
 
 def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]:
     """Where the programs are installed, and where they are looked for."""
-    said = package.said
-    if said.has_commands or any(folder.startswith("lib") for folder, _ in said.data_files):
+    told = package.told
+    if told is None or told.has_commands:
+        return
+    if any(each.folder.startswith("lib") for each in told.data_files):
         return  # in a place of its own choice
     expected = f"$base/lib/{name}"
     setup_cfg = package.folder / "setup.cfg"
-    if not said.scripts_folder:
+    if not told.scripts_folder:
         lacking = say("install_scripts={expected} below [install]", expected=expected)
         if setup_cfg.is_file():
             file = handed_in.called(setup_cfg)
@@ -123,13 +125,13 @@ def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]
         else:
             why = _no("setup.cfg", handed_in, package.folder)
             yield _not_found(say("{none} with {lacking}", none=why, lacking=lacking))
-    elif said.scripts_folder.rstrip("/") != f"lib/{name}":
+    elif told.scripts_folder.rstrip("/") != f"lib/{name}":
         yield say(
             "ros2 run {name} would find nothing: {setup} installs programs in {place}, and "
             "{manifest} calls the package {name}: expected install_scripts={expected}",
             name=name,
             setup=handed_in.called(setup_cfg),
-            place=shown(f"$base/{said.scripts_folder}"),
+            place=shown(f"$base/{told.scripts_folder}"),
             manifest=FILE,
             expected=expected,
         )
@@ -149,7 +151,8 @@ def _not_started(why: str) -> str:
 
 def _installed(package: Package) -> list[str]:
     """The files that setup.py installs by `data_files`."""
-    return list(dict.fromkeys(file for _, file in package.said.data_files))
+    told = package.told
+    return list(dict.fromkeys(f for each in told.data_files for f in each.files)) if told else []
 
 
 def _may_be_there(folder: Path, name: str) -> bool:

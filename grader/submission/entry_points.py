@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from grader.errors import SubmissionError
 from grader.language.phrase import say
 from grader.submission.folder import USUAL_NAME, HandedIn, files_below, listed, near, shown
 from grader.submission.python_source import read_source
-from grader.submission.set_ups import ConsoleScript, Package, SetUp, read_package
+from grader.submission.set_ups import ConsoleScript, Package, read_package
+
+if TYPE_CHECKING:
+    from grader.scenes.package.inspection import SetUp
 
 Choice = tuple[Package, ConsoleScript]
 #: Of what there may be several that could be started.

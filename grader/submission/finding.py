@@ -23,7 +23,7 @@ import errno
 from dataclasses import replace
 from pathlib import Path
 from sys import stdlib_module_names
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError, UsageError
 from grader.language.phrase import Phrase, say
@@ -50,13 +50,16 @@ from grader.submission.folder import (
     shown,
     top_of,
 )
-from grader.submission.launching import find_launched, is_launch_file, launch_files, not_run
+from grader.submission.launching import find_launched, is_launch_file
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.python_source import Source, read_source
 from grader.submission.refusals import CPP, advice, missing, no_python, unreadable
-from grader.submission.set_ups import MOST, SETUP_FILES, Inspected, NotInspected, Package
+from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, Package
 from grader.submission.start import EntryPoint, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
+
+if TYPE_CHECKING:  # what only a package needs takes time to import
+    from grader.scenes.package.inspection import Inspection
 
 _UNREADABLE: Final = (
     *(errno.EACCES, errno.EPERM, errno.ENOENT),
@@ -69,7 +72,6 @@ def find(
     executable: str | None,
     scratch: Path,
     usual: str = USUAL_NAME,
-    inspected: Inspected | None = None,
 ) -> Submission:
     """Find what to start.
 
@@ -78,31 +80,28 @@ def find(
             .py file leaves no choice.
         scratch: an empty folder, for what has to be unpacked or mended.
         usual: is started where there are several and none is asked for.
-        inspected: what an inspection has said; None where none was made yet.
 
     Raises:
-        NotInspected: it is a package, and none was made.
+        NotInspected: it is a package; `find_inspected` goes on.
         SubmissionError: there is nothing to start, or no way to tell what.
         UsageError: there is no such path; or a choice is asked for where there is none.
         OSError: something is wrong with the machine.
     """
     try:
-        return _find(path, executable, scratch, usual, inspected)
+        return _find(path, executable, scratch, usual)
     except OSError as error:
         if error.errno not in _UNREADABLE:
             raise
         raise unreadable(path, error) from error
 
 
-def _find(
-    path: Path, executable: str | None, scratch: Path, usual: str, inspected: Inspected | None
-) -> Submission:
+def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Submission:
     name = shown(path.name or path.resolve().name)
     if not path.exists():
         raise missing(path)
     if path.is_dir():
         handed_in = HandedIn(name, path.resolve(), usual)
-        return _in_folder(handed_in, executable, Unpacking(scratch), inspected)
+        return _in_folder(handed_in, executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
@@ -130,16 +129,21 @@ def _find(
         return _from_file(HandedIn(name, folder, usual), folder / path.name)
     unpacking = Unpacking(scratch)
     handed_in = HandedIn(name, unpacking.unpack(path), usual)
-    return _in_folder(handed_in, executable, unpacking, None)
+    return _in_folder(handed_in, executable, unpacking)
 
 
 def find_inspected(
-    base: Path, name: str, executable: str | None, scratch: Path, usual: str, inspected: Inspected
+    base: Path,
+    name: str,
+    executable: str | None,
+    scratch: Path,
+    usual: str,
+    inspection: Inspection,
 ) -> Submission:
-    """The same of all that lies in a folder of ours, after an inspection; see `find`."""
+    """The same of all that lies in a folder, by what an inspection says of it; see `find`."""
     try:
         handed_in = HandedIn(shown(name), base, usual)
-        return _in_folder(handed_in, executable, Unpacking(scratch), inspected)
+        return _in_folder(handed_in, executable, Unpacking(scratch), inspection)
     except OSError as error:
         if error.errno not in _UNREADABLE:
             raise
@@ -150,7 +154,7 @@ def _in_folder(
     handed_in: HandedIn,
     executable: str | None,
     unpacking: Unpacking,
-    inspected: Inspected | None,
+    inspection: Inspection | None = None,
 ) -> Submission:
     top = top_of(handed_in.base)
     if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
@@ -161,25 +165,23 @@ def _in_folder(
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
         return _in_archive(handed_in, archives, executable, unpacking)
-    if inspected is None and (folders := _set_ups(handed_in, files)):
+    if inspection is None and (folders := _set_ups(handed_in, files)):
         raise NotInspected(handed_in.base, folders)
-    inspected = inspected or Inspected()
-    packages = find_packages(handed_in, inspected.set_ups)
-    launches = inspected.launches
-    if executable is None and (launched := find_launched(handed_in, packages, launches)):
-        found = _from_script(handed_in, packages, launched.first, unpacking.scratch)
-        return launched.start(handed_in, found)
+    packages = find_packages(handed_in, inspection.set_ups if inspection else ())
+    if inspection and executable is None:
+        launched = find_launched(handed_in, packages, inspection)
+        if launched is not None:
+            found = _from_script(handed_in, packages, launched.first, unpacking.scratch)
+            return launched.start(handed_in, found)
     if choice := packages.choose(executable):
-        found = _from_script(handed_in, packages, choice, unpacking.scratch)
-        of_package = launch_files(handed_in, choice[0], launches)
-        return replace(found, unlaunched=tuple(not_run(handed_in, of_package, *choice)))
+        return _from_script(handed_in, packages, choice, unpacking.scratch)
     candidates = [file for file in files if _may_be_node(file)]
     if not candidates:
         raise no_python(handed_in, files)
     starting = [file for file in candidates if _starts(read_source(file))] or candidates
     several = executable is None and len(_usual(handed_in, starting)) > 1
     if several and (package := packages.holding(starting[0])):
-        told = package.said.problem or _no_script(handed_in, package, starting)
+        told = package.problem or _no_script(handed_in, package, starting)
         raise SubmissionError(f"{told}.")
     chosen = _only(handed_in, starting, executable)
     handed_in.must_hold(chosen)
@@ -208,7 +210,7 @@ def _in_archive(
     handed_in.must_hold(archive)
     inside = replace(handed_in, base=unpacking.unpack(archive))
     try:
-        found = _in_folder(inside, executable, unpacking, None)
+        found = _in_folder(inside, executable, unpacking)
     except NotInspected as asks:
         asks.inside.append(handed_in.called(archive))
         raise
@@ -264,7 +266,7 @@ def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submis
     """Start a file of a package that names no console script, as one would that named it."""
     source = read_source(file)
     short = tuple(shortcomings(handed_in, package, None))
-    if not package.said.problem:
+    if not package.problem:
         short = (*short, _no_script(handed_in, package, [file]))
     inside = file.relative_to(package.folder).with_suffix("").parts
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:

@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import json
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
 from grader.language.phrase import say
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import Packages, find_module, not_started
-from grader.submission.folder import HandedIn, listed, shown
+from grader.submission.folder import HandedIn, listed
 from grader.submission.manifest import FILE, read_manifest
-from grader.submission.set_ups import ConsoleScript, LaunchFile, Node, Package
+from grader.submission.set_ups import ConsoleScript, Package
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 
-_ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
+if TYPE_CHECKING:  # what only a package needs takes time to import
+    from grader.scenes.package import trace
+    from grader.scenes.package.inspection import Inspection
+    from grader.scenes.package.trace import Node
+
+_ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
-_SIMULATOR = ("turtlesim", "turtlesim_node")
+_SIMULATOR: Final = ("turtlesim", "turtlesim_node")
+#: What ROS takes as a name, in the arguments of a program.
+_NAME: Final = re.compile(r"[A-Za-z_~/{}][\w~/{}.]*")
 
 
 @dataclass(frozen=True)
 class Launched:
     """A launch file that starts several programs of the package that it lies in."""
 
-    launch: LaunchFile
+    launch: trace.Launch
     package: Package
-    programs: tuple[tuple[ConsoleScript, Node], ...]
+    programs: tuple[tuple[ConsoleScript, tuple[str, ...]], ...]  # with their arguments
     others: tuple[Node, ...]  # of other packages, but for the simulator
 
     @property
@@ -36,10 +45,10 @@ class Launched:
 
     def start(self, handed_in: HandedIn, found: Submission) -> Submission:
         """A submission that would start the first program, with all of them."""
-        called = handed_in.called(handed_in.base / self.launch.folder / self.launch.file)
+        called = handed_in.called(self.package.folder / self.launch.file)
         programs = tuple(
-            Program(script.name, EntryPoint(script.module, script.function), node.arguments)
-            for script, node in self.programs
+            Program(script.name, EntryPoint(script.module, script.function), arguments)
+            for script, arguments in self.programs
         )
         started = {program.name for program in programs}
         left = [script.name for script in self.package.scripts if script.name not in started]
@@ -62,96 +71,48 @@ class Launched:
         )
 
 
-def find_launched(
-    handed_in: HandedIn, packages: Packages, launches: Sequence[LaunchFile]
-) -> Launched | None:
-    """The launch file by which several programs are started, if there is just one such package."""
-    each = (
-        several_programs(launch_files(handed_in, package, launches), package)
-        for package in packages.readable
-        if package.scripts
-    )
-    found = [launched for launched in each if launched]
-    if len(found) != 1:
-        return None
-    (launched,) = found
-    scripts = (script for script, _ in launched.programs)
-    try:
-        modules = {find_module(handed_in, launched.package, script) for script in scripts}
-    except SubmissionError:  # the one to start alone may be there
-        return None
-    return launched if len(modules) == 1 else None  # else they lie in several places
-
-
-def launch_files(
-    handed_in: HandedIn, package: Package, launches: Sequence[LaunchFile]
-) -> list[LaunchFile]:
-    """Those in a package."""
-    return [each for each in launches if handed_in.base / each.folder == package.folder]
-
-
 def is_launch_file(file: Path) -> bool:
     """Tell by its name whether `ros2 launch` would take a file: spiral_launch.py, a.launch.xml."""
     return file.name.endswith(_ENDINGS)
 
 
-def several_programs(launches: list[LaunchFile], package: Package) -> Launched | None:
-    """The launch file by which several programs of a package are started; None if none, or many."""
-    found = [launched for launch in launches if (launched := _launched(launch, package))]
-    return found[0] if len({launched.programs for launched in found}) == 1 else None
+def find_launched(
+    handed_in: HandedIn, packages: Packages, inspection: Inspection
+) -> Launched | None:
+    """The launch file by which several programs are started; None if there is none, or many."""
+    folder = handed_in.base / inspection.package
+    package = next((each for each in packages.readable if each.folder == folder), None)
+    if package is None or not package.scripts:
+        return None
+    plain = [each for each in inspection.trace.launches if each.file in inspection.plain]
+    found = [launched for launch in plain if (launched := _launched(launch, package))]
+    if len({launched.programs for launched in found}) != 1:
+        return None
+    scripts = (script for script, _ in found[0].programs)
+    try:
+        modules = {find_module(handed_in, package, script) for script in scripts}
+    except SubmissionError:  # the one to start alone may be there
+        return None
+    return found[0] if len(modules) == 1 else None  # else they lie in several places
 
 
-def not_run(
-    handed_in: HandedIn, launches: list[LaunchFile], package: Package, started: ConsoleScript
-) -> Iterator[str]:
-    """Notes on launch files that would have made a difference."""
-    names = _names(package)
-    for launch in launches:
-        called = handed_in.called(handed_in.base / launch.folder / launch.file)
-        if launch.unread:
-            yield (
-                say(
-                    "{file} was not run, and what it starts cannot be read ({unread}): "
-                    "judged is {program} alone",
-                    file=called,
-                    unread=launch.unread,
-                    program=shown(started.name),
-                )
-            )
-            continue
-        own = [node for node in launch.nodes if node.package in names]
-        others = [node.executable for node in own if node.executable != started.name]
-        if others:
-            yield (
-                say(
-                    "{file} was not run: judged is {program} alone, without {names}",
-                    file=called,
-                    program=shown(started.name),
-                    names=listed(dict.fromkeys(others)),
-                )
-            )
-        elif not all(node.is_as_by_itself for node in own):
-            yield (
-                say(
-                    "{file} was not run: {program} was started without its namespace, "
-                    "remappings or parameters",
-                    file=called,
-                    program=shown(started.name),
-                )
-            )
-
-
-def _launched(launch: LaunchFile, package: Package) -> Launched | None:
+def _launched(launch: trace.Launch, package: Package) -> Launched | None:
     names = _names(package)
     scripts = {script.name: script for script in package.scripts}
     own = [node for node in launch.nodes if node.package in names]
-    if not launch.is_plain or len(own) < 2 or any(node.executable not in scripts for node in own):
+    if len(own) < 2 or launch.problem or launch.skipped:
         return None
+    programs = []
+    for node in own:
+        arguments = None if node.condition else _arguments(node)
+        if node.executable not in scripts or arguments is None:
+            return None
+        programs.append((scripts[node.executable], arguments))
     others = [node for node in launch.nodes if node.package not in names]
     return Launched(
         launch,
         package,
-        tuple((scripts[node.executable], node) for node in own),
+        tuple(programs),
         tuple(node for node in others if (node.package, node.executable) != _SIMULATOR),
     )
 
@@ -161,4 +122,31 @@ def _names(package: Package) -> set[str]:
     manifest = None
     if (package.folder / FILE).is_file():
         manifest = read_manifest(package.folder / FILE)
-    return {package.said.name, manifest.name if manifest else ""} - {""}
+    told = package.told.name if package.told else ""
+    return {told, manifest.name if manifest else ""} - {""}
+
+
+def _arguments(node: Node) -> tuple[str, ...] | None:
+    """What `ros2 launch` gives a program; None where what was taken down does not tell."""
+    space = node.namespace
+    space = space if space.startswith("/") or not space else f"/{space}"
+    rules = [f"{old}:={new}" for old, new in (("__node", node.name), ("__ns", space)) if new]
+    rules += node.remappings
+    names = [part for rule in rules for part in rule.split(":=")]
+    names += [each.name for each in node.parameters]
+    is_told = all(map(_NAME.fullmatch, names)) and all(each.text < 0 for each in node.parameters)
+    if not is_told or any("\0" in word for word in node.arguments):
+        return None
+    words = [word for rule in rules for word in ("-r", rule)]
+    for each in node.parameters:
+        words += ["-p", f"{each.name}:={_yaml(each.value)}"]
+    return (*node.arguments, *(["--ros-args", *words] if words else []))
+
+
+def _yaml(value: str) -> str:
+    """A value as it was written in JSON, or else a text."""
+    try:
+        json.loads(value)
+    except ValueError:
+        return json.dumps(value)
+    return value

@@ -18,7 +18,7 @@ from grader.scratch import make_folder
 from grader.submission import reader
 from grader.submission.folder import USUAL_NAME
 from grader.submission.private_copy import PrivateCopy, copy_privately
-from grader.submission.set_ups import Inspected, NotInspected
+from grader.submission.set_ups import NotInspected
 from grader.submission.start import EntryPoint, Imports, Launch, Script, Submission, Whole
 
 __all__ = [
@@ -48,12 +48,13 @@ class Seen(NamedTuple):
     """What an inspection has said, and remarks on what kept it from saying more.
 
     Attributes:
+        answer: a `grader.scenes.package.inspection.Inspection` as JSON.
         cpu_s: the processor time that it took [s].
         package: the folder of the package that `whole` is of.
         whole: a trace of the scene package; None where no more was looked at than needed.
     """
 
-    said: Inspected
+    answer: bytes
     remarks: tuple[str, ...] = ()
     cpu_s: float = 0.0
     package: str = ""
@@ -96,7 +97,7 @@ def _inspected(
     copy = copy_privately(path, asked.base, scratch)
     whole = Submission(path.name, copy.of(asked.base), Whole(), "", copy=copy)
     seen = inspect(whole, asked.folders, executable or usual)
-    found = reader.read(path, executable, scratch, usual=usual, again=(asked, seen.said))
+    found = reader.read(path, executable, scratch, usual=usual, again=(asked, seen.answer))
     if found.package == asked.base / seen.package and not found.added:
         found = replace(found, seen=seen.whole)
     found = replace(found, notes=(*seen.remarks, *found.notes), spent_s=seen.cpu_s)

@@ -25,7 +25,7 @@ from grader.errors import GraderFailure, SubmissionError
 from grader.language.phrase import say
 from grader.submission import answer, limits
 from grader.submission.folder import USUAL_NAME, shown
-from grader.submission.set_ups import Inspected, NotInspected
+from grader.submission.set_ups import NotInspected
 from grader.submission.start import Submission
 
 #: No module but Python's own and ours, nothing from the environment, no start-up code of a venv.
@@ -74,12 +74,12 @@ def read(
     *,
     is_started: bool = True,
     usual: str = USUAL_NAME,
-    again: tuple[NotInspected, Inspected] | None = None,
+    again: tuple[NotInspected, bytes] | None = None,
 ) -> Submission:
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
     Args:
-        again: what the first reading asked for, and what the inspection has said.
+        again: what the first reading asked for, and what the inspection has answered.
 
     Raises:
         NotInspected: it is a package; read it again, with what an inspection says.
@@ -126,8 +126,8 @@ def read(
     )
 
 
-def _told(asked: NotInspected, said: Inspected) -> dict[str, object]:
-    return {"base": str(asked.base), "inside": asked.inside, "inspected": said.to_json()}
+def _told(asked: NotInspected, said: bytes) -> dict[str, object]:
+    return {"base": str(asked.base), "inside": asked.inside, "inspected": said.decode("ascii")}
 
 
 def _asked(request: dict[str, object]) -> tuple[str, bytes, str]:

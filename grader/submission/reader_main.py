@@ -19,7 +19,7 @@ from grader.submission import answer, encoding, limits, slips, unpacking, whole
 from grader.submission.finding import find, find_inspected, in_archive
 from grader.submission.folder import shown
 from grader.submission.imports import read_imports
-from grader.submission.set_ups import Inspected, NotInspected
+from grader.submission.set_ups import NotInspected
 from grader.submission.start import Submission, Whole
 
 _STDIN, _STDOUT, _STDERR = range(3)
@@ -112,9 +112,11 @@ def _found(request: dict[str, Any], path: Path, scratch: Path) -> Submission:
     executable, usual = request["executable"], request["usual"]
     if request["inspected"] is None:
         return find(path, executable, scratch, usual)
-    inspected = Inspected.from_json(request["inspected"])
+    from grader.scenes.package import inspection  # here: most submissions need none
+
+    said = inspection.decode(request["inspected"].encode("ascii"))
     name = path.name or path.resolve().name
-    found = find_inspected(Path(request["base"]), name, executable, scratch, usual, inspected)
+    found = find_inspected(Path(request["base"]), name, executable, scratch, usual, said)
     for archive in request["inside"]:
         found = in_archive(found, archive)
     return found

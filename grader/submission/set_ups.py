@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.language import stored
 from grader.language.phrase import say
 from grader.submission.folder import HandedIn, read_bounded, shown
+
+if TYPE_CHECKING:  # what only a package needs takes time to import
+    from grader.scenes.package.inspection import SetUp, Told
 
 SETUP_FILES: Final = ("pyproject.toml", "setup.py", "setup.cfg")  # the first to name a script wins
 #: So many folders with set-up files are asked about.
@@ -41,93 +43,6 @@ class NotInspected(Exception):
 
 
 @dataclass(frozen=True)
-class SetUp:
-    """What the set-up files of a folder say; see `grader.scenes.package.inspection.Told`.
-
-    Attributes:
-        folder: where they lie; '.' for the top of what was handed in.
-        problem: a sentence on what ended their evaluation; '' where it came to its end.
-        data_files: (folder, file) of each.
-    """
-
-    folder: str
-    problem: str = ""
-    name: str = ""
-    scripts: Sequence[str] = ()
-    data_files: Sequence[tuple[str, str]] = ()
-    packages: Sequence[str] | None = None
-    package_folders: Sequence[str] = ()
-    scripts_folder: str = ""
-    has_commands: bool = False
-
-
-@dataclass(frozen=True)
-class Node:
-    """One node that a launch file starts, and the arguments that its program gets."""
-
-    package: str
-    executable: str
-    arguments: tuple[str, ...] = ()
-
-    @property
-    def is_as_by_itself(self) -> bool:
-        """Whether its program does the same without these arguments, but for its name."""
-        return not self.arguments or (
-            len(self.arguments) == 3 and self.arguments[2].startswith("__node:=")
-        )
-
-
-@dataclass(frozen=True)
-class LaunchFile:
-    """A launch file, evaluated.
-
-    Attributes:
-        folder, file: of its package, and where it lies there.
-        unread: why nobody knows what it starts; '' where one does.
-        is_plain: whether it starts nothing but these nodes, whatever its arguments are.
-    """
-
-    folder: str
-    file: str
-    nodes: tuple[Node, ...] = ()
-    unread: str = ""
-    is_plain: bool = False
-
-
-@dataclass(frozen=True)
-class Inspected:
-    """What an inspection has said of the packages in what was handed in."""
-
-    set_ups: Sequence[SetUp] = ()
-    launches: Sequence[LaunchFile] = ()
-
-    def to_json(self) -> dict[str, Any]:
-        """As `from_json` takes it."""
-        return {**asdict(self), "phrases": stored.phrases_in(self)}
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """The same, in the process that reads."""
-
-        def text(told: str) -> str:
-            return stored.restored((told,), data["phrases"])[0]
-
-        launches = [
-            LaunchFile(
-                each["folder"],
-                each["file"],
-                tuple(Node(n["package"], n["executable"], tuple(n["arguments"])) for n in nodes),
-                text(each["unread"]),
-                each["is_plain"],
-            )
-            for each in data["launches"]
-            for nodes in [each["nodes"]]
-        ]
-        set_ups = [SetUp(**{**each, "problem": text(each["problem"])}) for each in data["set_ups"]]
-        return cls(set_ups, launches)
-
-
-@dataclass(frozen=True)
 class ConsoleScript:
     """`name = module:function`, as `file` says."""
 
@@ -139,11 +54,30 @@ class ConsoleScript:
 
 @dataclass(frozen=True)
 class Package:
-    """A folder with set-up files, and what they say."""
+    """A folder with set-up files, and what they say.
+
+    Attributes:
+        said: None of a folder without them.
+    """
 
     folder: Path
     scripts: tuple[ConsoleScript, ...] = ()
-    said: SetUp = field(default_factory=lambda: SetUp("."))
+    said: SetUp | None = None
+
+    @property
+    def told(self) -> Told | None:
+        """What its set-up says."""
+        return self.said.told if self.said else None
+
+    @property
+    def problem(self) -> str:
+        """A sentence on what ended its set-up; '' where that came to its end."""
+        from grader.scenes.package.said import how_it_ends
+
+        if self.said is None or self.said.problem is None:
+            return ""
+        file = self.said.problem.file
+        return how_it_ends(file if file in SETUP_FILES else "setup.py", self.said.problem)
 
     @property
     def has_setup_py(self) -> bool:
@@ -153,7 +87,9 @@ class Package:
     def roots(self, module: str) -> list[Path]:
         """List the folders to import `module` from, best first; none lies outside the package."""
         package = module.split(".")[0]
-        lie_in = dict(each.partition("=")[::2] for each in self.said.package_folders)
+        lie_in = dict(
+            each.partition("=")[::2] for each in (self.told.package_folders if self.told else ())
+        )
         lies_in = Path(lie_in.get(package, ""))
         single = [str(lies_in.parent)] if lies_in.name == package else []
         folder = self.folder.resolve()
@@ -172,7 +108,7 @@ def read_package(said: SetUp, handed_in: HandedIn) -> Package:
     """
     folder = handed_in.base / said.folder
     scripts: dict[str, ConsoleScript] = {}
-    for line in said.scripts:
+    for line in said.told.scripts:
         name, _, target = line.partition("=") if "=" in line else ("", "", line)
         script = _console_script(name.strip(), target.strip(), folder, handed_in)
         scripts.setdefault(script.name, script)

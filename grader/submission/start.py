@@ -99,8 +99,6 @@ class Submission:
     imports: Imports = field(default_factory=Imports, compare=False)
     #: for the result: what is wrong with it that a run does not show, and what was not started
     notes: tuple[str, ...] = field(default=(), compare=False)
-    #: the same of launch files that were read, and not run
-    unlaunched: tuple[str, ...] = field(default=(), compare=False)
     #: what its source shows that is seldom meant
     slips: tuple[Slip, ...] = field(default=(), compare=False)
     #: files that it lacked, and has been given, below `root`
@@ -117,7 +115,7 @@ class Submission:
     @property
     def remarks(self) -> tuple[str, ...]:
         """For the result: its notes, and what of it was left out."""
-        return (*self.notes, *self.unlaunched, *(self.copy.remarks if self.copy else ()))
+        return (*self.notes, *(self.copy.remarks if self.copy else ()))
 
     def again(self, place: Path) -> Submission:
         """The same for one run, which may write into it: copied below an empty folder."""

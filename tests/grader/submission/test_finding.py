@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
+from grader.scenes.package.inspection import Inspection, SetUp, Told
 from grader.submission.finding import find, find_inspected
-from grader.submission.set_ups import Inspected, NotInspected, SetUp
+from grader.submission.set_ups import NotInspected
 from tests.files import lay
 from tests.grader.submission.test_opening import NODE, PACKAGE
 
@@ -41,9 +42,9 @@ def test_an_unreadable_file_of_a_package_is_named(
         find(handed_in, None, scratch)
     assert asked.value.folders == ["."]
     forbid(monkeypatch, handed_in / "spiral/node.py")
-    said = SetUp(".", scripts=("turtle_controller = spiral.node:main",))
+    said = SetUp(".", Told(scripts=("turtle_controller = spiral.node:main",)), None)
     with pytest.raises(SubmissionError, match=r"^spiral/node\.py cannot be read: Permission"):
-        find_inspected(handed_in, "in", None, scratch, "a", Inspected((said,)))
+        find_inspected(handed_in, "in", None, scratch, "a", Inspection((said,)))
 
 
 def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:

@@ -97,8 +97,9 @@ def test_a_launch_file_that_does_more_than_start_nodes_settles_nothing(
     text = head + LIST.format(f"{DRIVE}, {PENS}, {more}")
     submission = opened(lay(tmp_path, TWO | {"launch/a.launch.py": text}))
     assert submission.start == EntryPoint("spiral.node", "main")
-    assert submission.unlaunched == (
-        "launch/a.launch.py was not run: judged is turtle_controller alone, without pen_node",
+    assert submission.notes[-1] == (
+        "launch/a.launch.py was evaluated and not run: turtle_controller was started by itself, "
+        "without pen_node"
     )
 
 
@@ -140,7 +141,8 @@ def test_who_asks_for_one_program_gets_that_alone(tmp_path: Path) -> None:
     submission = opened(lay(tmp_path, TWO | {"launch/both.launch.py": BOTH}), "pen_node")
     assert submission.start == EntryPoint("spiral.pens", "main")
     assert submission.remarks[-1] == (
-        "launch/both.launch.py was not run: judged is pen_node alone, without turtle_controller"
+        "launch/both.launch.py was evaluated and not run: pen_node was started by itself, "
+        "without turtle_controller"
     )
 
 
@@ -163,13 +165,9 @@ def test_the_simulator_is_there_already_and_other_programs_are_told(tmp_path: Pa
             "'nothing' is not defined): judged is turtle_controller alone",
         ),
         (
-            LIST.format(PENS.replace("pen_node", "pem_node") + ", " + DRIVE),
-            "launch/a.launch.py was not run: judged is turtle_controller alone, without pem_node",
-        ),
-        (
             LIST.format(DRIVE.replace(")", ", namespace='left')")),
-            "launch/a.launch.py was not run: turtle_controller was started without its namespace, "
-            "remappings or parameters",
+            "launch/a.launch.py was evaluated and not run: turtle_controller was started by "
+            "itself, without its namespace",
         ),
         (LIST.format(DRIVE.replace(")", ", name='me')")), "another console script"),
     ],

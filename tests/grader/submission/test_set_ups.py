@@ -2,30 +2,21 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say
+from grader.scenes.package.inspection import SetUp, Told
 from grader.submission.folder import HandedIn
-from grader.submission.set_ups import (
-    Inspected,
-    LaunchFile,
-    Node,
-    Package,
-    SetUp,
-    read_package,
-)
+from grader.submission.set_ups import Package, read_package
 from tests.files import lay
 
 
 def read(folder: Path, *scripts: str, package_folders: tuple[str, ...] = ()) -> Package:
     lay(folder, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
-    said = SetUp(".", scripts=scripts, package_folders=package_folders)
-    return read_package(said, HandedIn("pkg", folder))
+    told = Told(scripts=scripts, package_folders=package_folders)
+    return read_package(SetUp(".", told, None), HandedIn("pkg", folder))
 
 
 @pytest.mark.parametrize(
@@ -66,9 +57,8 @@ def test_an_entry_that_no_tool_could_install_is_refused(
 def test_a_script_is_told_by_the_file_that_has_its_name(tmp_path: Path, named: str) -> None:
     lay(tmp_path, {"setup.py": "", "setup.cfg": "", "pyproject.toml": ""})
     (tmp_path / named).write_text("go: pkg.node:main")
-    (script,) = read_package(
-        SetUp(".", scripts=("go = pkg.node:main",)), HandedIn("pkg", tmp_path)
-    ).scripts
+    told = Told(scripts=("go = pkg.node:main",))
+    (script,) = read_package(SetUp(".", told, None), HandedIn("pkg", tmp_path)).scripts
     assert script.file == tmp_path / named
 
 
@@ -94,14 +84,3 @@ def test_the_folders_to_import_from_lie_in_the_package(
 ) -> None:
     package = read(tmp_path, package_folders=folders)
     assert package.roots("pkg.node") == [tmp_path / root for root in roots]
-
-
-def test_what_was_said_comes_to_the_process_that_reads_with_its_phrases() -> None:
-    problem = say("{file} ends with {error}{place}", file="setup.py", error="E", place="")
-    launch = LaunchFile(".", "a.launch.py", (Node("p", "e", ("--x",)),), is_plain=True)
-    said = Inspected((SetUp(".", problem, "pkg", packages=["pkg"]),), (launch,))
-    read = Inspected.from_json(json.loads(json.dumps(said.to_json())))
-    assert [asdict(each)["name"] for each in read.set_ups] == ["pkg"]
-    assert read.set_ups[0].problem == problem
-    assert getattr(read.set_ups[0].problem, "key", "") == problem.key
-    assert read.launches == [launch]

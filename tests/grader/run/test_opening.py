@@ -1,0 +1,143 @@
+"""What is evaluated of a package before it is started can forge nothing but its own facts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.errors import SubmissionError
+from grader.run import static
+from grader.run.budget import Budget
+from grader.run.opening import open_submission
+from grader.scenes.package.inspection import Inspection, decode, encode
+from grader.submission.opening import EntryPoint, Script, Submission, Whole
+from tests.files import lay
+from tests.grader.run.test_static import FORGES
+from tests.grader.submission.test_entry_points import SETUP, package
+
+KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
+
+
+def found_in(path: Path, executable: str | None = None) -> Submission:
+    with open_submission(path, executable) as submission:
+        return submission
+
+
+def with_set_up(before: str, name: str = "spiral") -> dict[str, str]:
+    """A package whose set-up does something else before."""
+    files = package(name)
+    return files | {"setup.py": f"{before}\n{files['setup.py']}"}
+
+
+def two(folder: Path, before: str) -> Path:
+    """An honest package, beside one whose set-up is evaluated first."""
+    files = with_set_up(before, "first")
+    files["setup.py"] = files["setup.py"].replace("turtle_controller =", "other =")
+    for name, each in (("first", files), ("second", package("second"))):
+        lay(folder / "ws" / name, each)
+    return folder / "ws"
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        pytest.param(FORGES, id="writes wherever it can"),
+        pytest.param("import json\njson.loads = json.dumps = None", id="spoils the module json"),
+        pytest.param(
+            "from grader.scenes.package.examining import main, setup_call, steps\n"
+            "main.inspect = setup_call.evaluate = steps.step = lambda *_, **__: None",
+            id="spoils the inspection",
+        ),
+        pytest.param("import os\nos._exit(0)", id="ends without a word"),
+        pytest.param("import os\nos.fork()", id="answers twice"),
+    ],
+)
+def test_a_set_up_says_nothing_of_another_one(tmp_path: Path, before: str) -> None:
+    submission = found_in(two(tmp_path, before))
+    assert submission.start == EntryPoint("second.turtle_controller", "main")
+    assert submission.found == "console script turtle_controller in second/setup.py"
+
+
+def test_a_set_up_that_kills_who_inspects_is_found_by_its_files(tmp_path: Path) -> None:
+    submission = found_in(lay(tmp_path, with_set_up(KILLS)))
+    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.notes[0].startswith("the process that looked at the package left nothing")
+
+
+def test_a_set_up_that_never_ends_is_ended_and_told(tmp_path: Path) -> None:
+    submission = found_in(lay(tmp_path, with_set_up("import time\ntime.sleep(1e6)")))
+    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert submission.notes[0] == (
+        "colcon would not build this: setup.py waited for what did not come"
+    )
+
+
+@pytest.mark.parametrize(
+    "target", ["os:system", "json.tool:main", "..bob.node:main", "bob.node:main"]
+)
+def test_a_script_that_is_claimed_is_none_of_another_place(tmp_path: Path, target: str) -> None:
+    lay(tmp_path, {"bob/node.py": "def main():\n    pass\n"})
+    entries = repr(f"turtle_controller = {target}")
+    setup = SETUP.format(package="spiral", entries=entries).replace(
+        "name=", "package_dir={'': '..'}, name="
+    )
+    with pytest.raises(SubmissionError, match=r"but there is no file|has the console script"):
+        found_in(lay(tmp_path / "spiral", package("spiral") | {"setup.py": setup}))
+
+
+def test_a_launch_file_says_nothing_of_set_ups(tmp_path: Path) -> None:
+    files = package("spiral") | {"launch/a.launch.py": FORGES}
+    submission = found_in(lay(tmp_path, files))
+    assert submission.start == EntryPoint("spiral.turtle_controller", "main")
+    assert "a.launch.py was not run, and what it starts cannot be read" in submission.notes[-1]
+
+
+def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path: Path) -> None:
+    write = "import pathlib\npathlib.Path('spiral/turtle_controller.py').write_text('1 / 0')"
+    with open_submission(lay(tmp_path, with_set_up(write))) as submission:
+        read = (submission.root / "spiral/turtle_controller.py").read_text()
+        assert "1 / 0" not in read
+    assert "1 / 0" not in (tmp_path / "spiral/turtle_controller.py").read_text()
+
+
+def test_an_answer_about_other_folders_is_none(tmp_path: Path, monkeypatch) -> None:
+    with open_submission(lay(tmp_path, package("spiral"))) as found:
+        assert found.copy is not None
+        whole = Submission("a", found.copy.folder, Whole(), "", copy=found.copy)
+        asked = (whole, ["."], "turtle_controller", Budget())
+        said, _ = static.inspect(*asked, is_whole=False)
+        assert [each.told.name for each in said.set_ups] == ["spiral"]
+        monkeypatch.setattr(static.inspection, "decode", lambda _: Inspection())
+        said, _ = static.inspect(*asked, is_whole=False)
+        assert [(each.folder, each.told.name) for each in said.set_ups] == [(".", "")]
+
+
+def test_only_what_has_the_form_of_an_inspection_is_one() -> None:
+    assert decode(encode(Inspection())) == Inspection()
+    for forged in (b"{}", b"[]", b'{"set_ups": []}', encode(Inspection())[:-1]):
+        with pytest.raises(ValueError, match=r"."):
+            decode(forged)
+
+
+def test_a_single_file_is_not_inspected(tmp_path: Path, monkeypatch) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr(static, "inspect", fail)
+    lay(tmp_path, {"node.py": "print(1)\n", "setup.py": "1 / 0\n"})
+    start = found_in(tmp_path / "node.py").start
+    assert isinstance(start, Script)
+    assert start.path.name == "node.py"
+
+
+def test_one_look_serves_the_start_and_the_exercise(tmp_path: Path) -> None:
+    lay(tmp_path, package("spiral"))
+    with open_submission(tmp_path, is_whole=True) as submission:
+        assert submission.seen is not None
+        trace, remarks = static.look_beside(submission, Budget(0.0))
+        assert (trace, remarks) == (submission.seen, ())
+        again, _ = static.look_beside(Submission(**{**vars(submission), "seen": None}), Budget())
+        assert again == trace
+    with open_submission(tmp_path) as submission:
+        assert submission.seen is None
