@@ -13,7 +13,6 @@ from grader.language.phrase import say
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import Packages, find_module, not_started
 from grader.submission.folder import HandedIn, listed
-from grader.submission.manifest import FILE, read_manifest
 from grader.submission.set_ups import ConsoleScript, Package
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 
@@ -82,10 +81,12 @@ def find_launched(
     """The launch file by which several programs are started; None if there is none, or many."""
     folder = handed_in.base / inspection.package
     package = next((each for each in packages.readable if each.folder == folder), None)
-    if package is None or not package.scripts:
+    setup = inspection.trace.setup
+    if package is None or not package.scripts or setup is None:
         return None
+    names = {setup.name, setup.told}
     plain = [each for each in inspection.trace.launches if each.file in inspection.plain]
-    found = [launched for launch in plain if (launched := _launched(launch, package))]
+    found = [launched for launch in plain if (launched := _launched(launch, package, names))]
     if len({launched.programs for launched in found}) != 1:
         return None
     scripts = (script for script, _ in found[0].programs)
@@ -96,8 +97,7 @@ def find_launched(
     return found[0] if len(modules) == 1 else None  # else they lie in several places
 
 
-def _launched(launch: trace.Launch, package: Package) -> Launched | None:
-    names = _names(package)
+def _launched(launch: trace.Launch, package: Package, names: set[str]) -> Launched | None:
     scripts = {script.name: script for script in package.scripts}
     own = [node for node in launch.nodes if node.package in names]
     if len(own) < 2 or launch.problem or launch.skipped:
@@ -115,15 +115,6 @@ def _launched(launch: trace.Launch, package: Package) -> Launched | None:
         tuple(programs),
         tuple(node for node in others if (node.package, node.executable) != _SIMULATOR),
     )
-
-
-def _names(package: Package) -> set[str]:
-    """What the package is called."""
-    manifest = None
-    if (package.folder / FILE).is_file():
-        manifest = read_manifest(package.folder / FILE)
-    told = package.told.name if package.told else ""
-    return {told, manifest.name if manifest else ""} - {""}
 
 
 def _arguments(node: Node) -> tuple[str, ...] | None:

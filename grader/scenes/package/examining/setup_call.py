@@ -64,8 +64,6 @@ def run_setup(folder: Path) -> Any:
     warnings.simplefilter("ignore")  # of setuptools, and for whoever builds the package
     importlib.metadata.entry_points = _no_entry_points
     os.environ.update(dict.fromkeys(_OFFLINE, "1"))
-    import distutils.core
-
     import setuptools
 
     class Read(setuptools.Distribution):
@@ -85,7 +83,7 @@ def run_setup(folder: Path) -> Any:
         made[-1].parse_config_files()
         return made[-1]
 
-    setuptools.setup = distutils.core.setup = setup
+    setuptools.setup = setuptools.distutils.core.setup = setup  # it may bring its own distutils
     in_folder(str(folder), [str(folder)], {})
     sys.argv = ["setup.py", "install"]
     if paths.is_file(folder / "setup.py"):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.scenes.package import strict
-from grader.scenes.package.examining.setup_call import run_setup
+from grader.scenes.package.examining.setup_call import evaluate, run_setup
 from grader.scenes.package.examining.steps import Ended, step
 from grader.scenes.package.inspection import DataFiles, Told
 
@@ -151,3 +151,44 @@ def test_a_set_up_that_spoils_setuptools_answers_for_itself_alone(tmp_path):
     with pytest.raises(Ended):
         told(other, setup_py=text)
     assert told(tmp_path, setup_py=f"{SETUP}setup(name='walker')").name == "walker"
+
+
+def test_where_there_is_no_setup_py_the_other_files_are_read(tmp_path):
+    project = """
+[project]
+name = "pkg"
+version = "0.1.0"
+scripts = {go = "pkg.node:Node.main"}
+[tool.setuptools.packages.find]
+where = ["src"]
+"""
+    (tmp_path / "src" / "pkg").mkdir(parents=True)
+    (tmp_path / "src" / "pkg" / "__init__.py").touch()
+    found = told(tmp_path, pyproject_toml=project)
+    assert (found.scripts, found.packages) == (("go = pkg.node:Node.main",), ("pkg",))
+    assert found.package_folders == ("=src",)
+
+
+def test_poetry_has_a_table_of_its_own(tmp_path):
+    project = """
+[tool.poetry]
+packages = [{include = "pkg", from = "lib"}]
+[tool.poetry.scripts]
+a = "pkg.node:main"
+b = {reference = "pkg.node:main", type = "console"}
+c = {reference = "c.sh", type = "file"}
+"""
+    found = told(tmp_path, pyproject_toml=project)
+    assert found.scripts == ("a = pkg.node:main", "b = pkg.node:main")
+    assert found.package_folders == ("=lib",)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("pyproject.toml", "[project\n"), ("setup.cfg", "no section\n")]
+)
+def test_a_file_that_is_not_written_in_its_language_is_named(name, text, tmp_path):
+    (tmp_path / name).write_text(text)
+    found, problem = evaluate(tmp_path)
+    assert found == Told()
+    assert problem is not None
+    assert problem.file == name
