@@ -197,12 +197,12 @@ class _Copy:
         found = bytearray(size)
         rest = memoryview(found)
         while rest:
-            left_s = deadline - time.monotonic()
-            if left_s <= 0:
-                raise Slow(
-                    say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
-                )
+            left_s = max(0.0, deadline - time.monotonic())
             if not waiting.poll(min(left_s, _LOOK_S) * 1000):
+                if not left_s:
+                    raise Slow(
+                        say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
+                    )
                 if is_stalled():
                     raise Stalled(say("waited for what did not come"))
                 continue

@@ -135,6 +135,8 @@ def _run(
         finding = function(recordings, tolerances)
     except NotOver:
         return {"say": "not over"}
+    except KeyboardInterrupt:  # a key's, where there is no copy, which is deaf to it
+        raise
     except MemoryError:
         return {"say": "limit", "text": limited.TOO_MUCH}
     except RecursionError:

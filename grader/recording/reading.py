@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -55,7 +55,7 @@ SIZES = {
 }
 #: An exercise has no more.
 MOST_VARIED_RUNS = 100
-#: Of reading the bags of a recording.
+#: Of reading one bag.
 READING = Limits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
 #: What begins an answer of the process that reads bags if it is no trace, but says why.
 _ERROR = b"!"
@@ -234,7 +234,7 @@ def _told(folder: Path) -> _Told:
 def _loaded(found: Sequence[_Told]) -> list[Recording]:
     """Recordings with what is in their bags, of which nobody knows how much they unpack to.
 
-    One copy of this process reads them all, within the limits.
+    One copy of this process reads them all, within the limits of so many.
     """
     bags = bag()
 
@@ -247,8 +247,10 @@ def _loaded(found: Sequence[_Told]) -> list[Recording]:
                 yield _ERROR + error.message.encode("utf-8", "backslashreplace")
 
     made: list[Recording] = []
+    many = len(found)
+    limits = replace(READING, cpu_s=many * READING.cpu_s, wall_s=many * READING.wall_s)
     try:
-        with closing(limited.stream(answers, READING)) as read:
+        with closing(limited.stream(answers, limits)) as read:
             for told, answer in zip(found, read, strict=False):  # asks for no more than that
                 if answer.startswith(_ERROR):
                     raise RecordingError(answer.removeprefix(_ERROR).decode())

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from grader import system
 from grader.errors import CheckFailed
 from grader.exercise import asking
 from grader.exercise.check import Checks, judge
@@ -283,3 +284,20 @@ def test_checks_are_limited_in_every_thread(monkeypatch):
     with ThreadPoolExecutor(3) as pool:
         tasks = [pool.submit(verdicts, checks, {"endless": 1}) for _ in range(3)]
         assert {task.result()["endless"].status for task in tasks} == {"not_judged"}
+
+
+def test_a_key_on_the_keyboard_is_not_the_check_s_where_there_is_no_copy(monkeypatch):
+    monkeypatch.setattr(system, "runs_submissions", lambda: False)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    checks = Checks()
+
+    @checks()
+    def interrupted(recordings, tolerances):
+        """A key is pressed while it runs."""
+        signal.raise_signal(signal.SIGINT)
+
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            verdicts(checks, {"interrupted": 1})
+    finally:
+        signal.signal(signal.SIGINT, before)

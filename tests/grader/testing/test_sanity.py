@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from grader.exercise import asking
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
+from grader.limited import Limits
 from grader.recording.recording import Recordings
 from grader.testing import drive
 from grader.testing.oddities import odd_recordings
@@ -72,6 +74,16 @@ def test_a_mistake_is_named(tmp_path, result, words):
     found = faults(tmp_path, result)
     assert len(found) == 1
     assert words in found[0]
+
+
+def test_a_check_without_an_end_is_named_and_no_other_is_blamed(tmp_path, monkeypatch):
+    monkeypatch.setattr(asking, "LIMITS", Limits(cpu_s=0.3, wall_s=30.0))
+    endless = "\n\n@checks()\ndef endless(recordings, tolerances):\n    while True:\n        pass\n"
+    checks = ONE.format(result="Finding(1, 'seen')") + endless
+    points = {"only": 1, "endless": 1}
+    exercise = load_exercise(exercises.write(tmp_path, checks, points=points))
+    _, found = examine(exercise, Recordings(drive(lambda *_: None, ticks=5)))
+    assert [fault.check for fault in found] == ["endless"]
 
 
 @pytest.mark.parametrize("name", names())
