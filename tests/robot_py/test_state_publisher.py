@@ -148,8 +148,12 @@ def test_its_publishers_and_its_subscription_have_the_original_s_quality(graph, 
         "/robot_description": (reliable, latched),
     }
     assert HistoryPolicy.KEEP_ALL not in {one.history for one in quality.values()}
-    heard = {
-        one.node_name: one.qos_profile.reliability
-        for one in node.get_subscriptions_info_by_topic("/joint_states")
-    }
-    assert heard["robot_state_publisher"] == best_effort
+
+    def heard():
+        return {
+            one.node_name: one.qos_profile.reliability
+            for one in node.get_subscriptions_info_by_topic("/joint_states")
+        }
+
+    graph.until(lambda: "robot_state_publisher" in heard(), "its subscription")
+    assert heard()["robot_state_publisher"] == best_effort

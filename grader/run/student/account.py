@@ -9,10 +9,10 @@ what may stand there.
 
 from __future__ import annotations
 
+import binascii
 import fcntl
 import json
 import os
-import zlib
 from _thread import allocate_lock
 from collections.abc import Callable
 from contextlib import suppress
@@ -109,7 +109,7 @@ def _identity(descriptor: int) -> tuple[int, int]:
 
 
 def _checksum(number: int, data: bytes) -> int:
-    return zlib.crc32(data, number & 0xFFFFFFFF)
+    return binascii.crc32(data, number & 0xFFFFFFFF)
 
 
 def _fitting(account: dict[str, Any]) -> bytes:
