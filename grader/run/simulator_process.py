@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from grader.errors import GraderFailure
@@ -135,8 +136,10 @@ def start_simulator(
         words = [line.word, stage.recording_path, plan.to_json(), *map(str, links), *more]
         command = [sys.executable, "-m", module, *words, seat.word]
         env = simulator_environment(stage.env)
-        fds = (*line.fds, *links, stage.recording, *seat.fds)
-        process = Watched(command, env, stage.folder, fds, stage.entry, warm)
+        folder = stage.simulator_folder
+        fds = (*line.fds, *links, stage.recording, folder, *seat.fds)
+        here = Path(f"/proc/self/fd/{folder}")
+        process = Watched(command, env, here, fds, stage.entry, warm)
         try:
             yield Simulator(process, line.connect())
         finally:

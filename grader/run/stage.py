@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,7 +60,9 @@ class Stage:
     """What a run stands on while it lasts.
 
     Attributes:
-        folder: the current folder of the simulator.
+        folder: where the files of the run are, as far as its processes know.
+        simulator_folder: the same as the current folder of the simulator: an open folder, which
+            stays one where a submission that may do so takes it away.
         recording: where the simulator leaves the recording: an open file without a name. The
             submission does not get it.
         recording_path: what opens it in the simulator's process.
@@ -74,6 +76,7 @@ class Stage:
     """
 
     folder: Path
+    simulator_folder: int
     recording: int
     recording_path: str
     isolation: str
@@ -138,14 +141,15 @@ def open_stage(budget: Budget | None = None) -> Iterator[Stage]:
         level = levels.best(isolated)
         isolation_name = ", ".join(filter(None, [level.name(), isolated.name]))
         env = environment(folder, isolated.env)
-        recording, path = _make_recording()
-        try:
+        with ExitStack() as stack:
+            simulator_folder = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+            stack.callback(os.close, simulator_folder)
+            recording, path = _make_recording()
+            stack.callback(os.close, recording)
             yield Stage(
-                *(folder, recording, path, isolation_name, env),
+                *(folder, simulator_folder, recording, path, isolation_name, env),
                 *(isolated.entry, isolated.namespaces, level, budget or Budget()),
             )
-        finally:
-            os.close(recording)
 
 
 def _make_recording() -> tuple[int, str]:

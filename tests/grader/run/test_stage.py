@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,7 @@ from grader.run.lost import SimulatorLost
 from grader.run.opening import open_submission
 from grader.run.plan import Plan
 from grader.run.processes import domain, levels
+from grader.run.stage import Stage
 from grader.scenes.scene import Limits
 from grader.submission.opening import Submission
 from turtlesim_py.world.events import CmdVel
@@ -143,6 +145,7 @@ def test_files_in_the_user_s_folder_do_not_replace_the_simulator(tmp_path: Path,
     )
     code = f"""
 import sys
+import time
 sys.path.insert(0, {str(ROOT)!r})
 from pathlib import Path
 from grader.run import {time}_time
@@ -309,6 +312,34 @@ def test_nothing_is_left_of_the_folder_of_a_run(
             assert recording.run.exit_code == 0, recording.output
             assert not Path(recording.output.strip()).parent.exists()
     assert Path("/").is_dir()
+
+
+TAKES_ITS_RUN_AWAY = """
+import os, shutil
+shutil.rmtree(os.path.dirname(os.environ["HOME"]))
+"""
+
+
+def test_a_run_goes_on_when_the_submission_has_taken_its_folder_away_before_the_simulator_came(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    start = virtual_time.start_simulator
+
+    def start_when_it_is_gone(module: str, stage: Stage, *more: Any, **options: Any) -> Any:
+        deadline = time.monotonic() + 60
+        while stage.folder.exists():
+            assert time.monotonic() < deadline, "the folder stays"
+            time.sleep(0.01)
+        return start(module, stage, *more, **options)
+
+    monkeypatch.setattr(virtual_time, "start_simulator", start_when_it_is_gone)
+    # elsewhere it cannot
+    monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
+    script = tmp_path / "takes.py"
+    script.write_text(TAKES_ITS_RUN_AWAY)
+    with open_submission(script) as submission:
+        run = virtual_time.run(submission, Plan(Limits(0.2, 0.2, 1))).run
+    assert (run.time, run.outcome, run.exit_code, run.flags) == ("virtual", "exited", 0, ())
 
 
 KEEPS_ALL_LOCKS = """
