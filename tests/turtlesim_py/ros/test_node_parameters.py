@@ -163,16 +163,6 @@ def test_a_value_of_a_type_that_ros_does_not_have_is_refused(graph: Graph) -> No
     assert get(graph, "background_r") == [69]
 
 
-@pytest.mark.parametrize("rate", [5e-324, 1e-300])
-def test_the_rarest_pictures_come_once(graph: Graph, rate: float) -> None:
-    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=rate)
-    assert set_each(graph, image_rate=value) == [(True, "")]
-    # a tick later it still answers
-    assert get(graph, "background_r") == [69]
-    usual = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=10.0)
-    assert set_each(graph, image_rate=usual) == [(True, "")]
-
-
 def test_several_parameters_of_one_call_are_judged_each_alone(graph: Graph) -> None:
     results = set_each(
         graph, background_r=integer(1), foo=BOOL, background_g=integer(300), background_b=integer(2)

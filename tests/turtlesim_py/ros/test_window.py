@@ -17,11 +17,21 @@ from sensor_msgs.msg import CompressedImage, Image
 from turtlesim.srv import TeleportAbsolute
 
 from tests.graph import Graph
+from tests.programs import Program
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import TICK_NS
 
 PEN = [179, 184, 255]
+
+
+@pytest.fixture(scope="module")
+def watched(session_graph: Graph) -> Iterator[str]:
+    """The namespace of a simulator that nobody else draws on or sets parameters of."""
+    with Program("turtlesim_py.ros.node", "--ros-args", "-r", "__ns:=/watched") as program:
+        session_graph.meet("watched.turtlesim")
+        yield "/watched"
+        assert program.stop() == 0
 
 
 def raw(image: Image) -> npt.NDArray[np.uint8]:
@@ -40,22 +50,22 @@ def compressed(image: CompressedImage) -> npt.NDArray[np.uint8]:
         (CompressedImage, "image/compressed", compressed, ReliabilityPolicy.BEST_EFFORT),
     ],
 )
-@pytest.mark.usefixtures("simulator")
 def test_a_subscriber_sees_the_window(
     graph: Graph,
-    turtle: str,
+    watched: str,
     kind: type,
     topic: str,
     decoded: Callable[[Any], npt.NDArray[np.uint8]],
     reliability: ReliabilityPolicy,
 ) -> None:
     qos = QoSProfile(depth=1, reliability=reliability)
-    images = graph.listen(kind, f"/turtlesim/{topic}", qos)
-    graph.call(TeleportAbsolute, f"/{turtle}/teleport_absolute", x=2.0, y=10.0)
+    images = graph.listen(kind, f"{watched}/turtlesim/{topic}", qos)
+    graph.call(TeleportAbsolute, f"{watched}/turtle1/teleport_absolute", x=2.0, y=10.0)
     # half way between (5.5, 5.5) and (2, 10)
     row, column = 499 - round(7.75 * 45), round(3.75 * 45)
+    graph.until(lambda: images, "a picture")
     graph.until(
-        lambda: images and decoded(images[-1])[row, column].tolist() == PEN,
+        lambda: decoded(images[-1])[row, column].tolist() == PEN,
         "the line that the turtle has drawn",
     )
     pixels = decoded(images[-1])
@@ -123,3 +133,14 @@ def test_a_rate_of_zero_means_no_pictures(rate: Rate, renderings: list[None]) ->
     rate.node.set_parameters([Parameter("image_rate", value=62.5)])
     rate.tick(5)
     assert len(renderings) == 5
+
+
+@pytest.mark.parametrize("rare_hz", [5e-324, 1e-300])
+def test_the_rarest_pictures_come_once(rate: Rate, renderings: list[None], rare_hz: float) -> None:
+    rate.graph.listen(Image, "/filmed/turtlesim/image")
+    rate.node.set_parameters([Parameter("image_rate", value=rare_hz)])
+    rate.tick(20)
+    assert len(renderings) == 1
+    rate.node.set_parameters([Parameter("image_rate", value=62.5)])
+    rate.tick(5)
+    assert len(renderings) == 6
