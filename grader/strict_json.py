@@ -1,17 +1,69 @@
-"""JSON as it is defined: without NaN and infinite numbers, which Python takes and others do not."""
+"""JSON as it is defined, and dataclasses as JSON and back; strictly, for it may be a stranger's.
+
+A dataclass says by its annotations what is taken: `str`, `int`, `float`, `bool`, `datetime` (with
+its zone), `Path`, `Literal`, `tuple[T, ...]`, `tuple[T, T]`, `Mapping[str, T]`, `T | None`,
+dataclasses (of several, the one that has such keys), and `Annotated`: with `Bounds`, and with
+functions that get a value and return what is taken of it, or raise ValueError.
+"""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
-from typing import Any, NoReturn, TypeVar
+import types
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, Field, fields, is_dataclass
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    NamedTuple,
+    NoReturn,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 _Number = TypeVar("_Number", int, float)
+Made = TypeVar("Made")
+
+#: As metadata of a field: it is not written where it has its default; it is never written.
+SPARSE, UNSTORED = {"is_sparse": True}, {"is_stored": False}
+
+
+class Bounds(NamedTuple):
+    """What is taken of a value and all within it.
+
+    Attributes:
+        characters, entries: how long a text, or a list, may be.
+        number: what a whole number has to be below, but for its sign.
+        clean: what is taken of a text; None takes it as it is.
+        may_lack: whether a field that has a default may be absent.
+    """
+
+    characters: float = 2000
+    entries: float = 5000
+    number: float = 2**53
+    clean: Callable[[str], str] | None = None
+    may_lack: bool = False
+
+
+_IN_WORDS = {
+    **{int: "a whole number", float: "a number", str: "a text", bool: "true or false"},
+    dict: "an object",
+}
+STRANGERS = Bounds()
+#: Of a file of ours, which is bounded as a whole.
+OURS = Bounds(math.inf, math.inf, math.inf, may_lack=True)
 
 
 def loads(text: str) -> Any:
-    """What a text in JSON says.
+    """What a text in JSON says; without NaN and infinite numbers, which Python takes.
 
     Raises:
         ValueError: it is no JSON, or a number in it is none that can be computed with.
@@ -20,6 +72,192 @@ def loads(text: str) -> Any:
     return json.loads(
         text, parse_constant=_refuse, parse_float=_finite(float), parse_int=_finite(int)
     )
+
+
+def to_json(value: Any, bounds: Bounds = STRANGERS) -> Any:
+    """As `from_json` takes it: what is longer than that is cut."""
+    if is_dataclass(value):
+        return {
+            name: to_json(found, part.bounds or bounds)
+            for name, part in _parts(value.__class__).items()
+            if not part.is_left_out(found := getattr(value, name))
+        }
+    if isinstance(value, tuple | list):
+        return [to_json(each, bounds) for each in _first(value, bounds.entries)]
+    if isinstance(value, Mapping):
+        return {name: to_json(each, bounds) for name, each in value.items()}
+    if isinstance(value, datetime):
+        return value.isoformat()
+    if isinstance(value, Path):
+        return str(value)
+    return _first(value, bounds.characters) if isinstance(value, str) else value
+
+
+def from_json(kind: type[Made], data: Any, bounds: Bounds = STRANGERS) -> Made:
+    """The dataclass that data means.
+
+    Raises:
+        ValueError: it has another form, or something in it is longer than it may be; the text says
+            what and where.
+    """
+    made: Made = _value(kind, data, bounds)
+    return made
+
+
+def not_negative(number: Any) -> Any:
+    """For `Annotated`: a count, or a time [s].
+
+    Raises:
+        ValueError: it is below 0.
+    """
+    if not 0 <= number < math.inf:
+        raise ValueError(f"expected 0 or more, found {number!r:.80}")
+    return number
+
+
+def not_empty(entries: Any) -> Any:
+    """For `Annotated`: a list.
+
+    Raises:
+        ValueError: there is nothing in it.
+    """
+    if not entries:
+        raise ValueError("expected one or more, found none")
+    return entries
+
+
+def _value(kind: Any, data: Any, bounds: Bounds) -> Any:
+    origin, args = get_origin(kind), get_args(kind)
+    if origin is Annotated:
+        made = _value(args[0], data, _bounds(kind) or bounds)
+        for check in filter(callable, args[1:]):
+            made = check(made)
+        return made
+    if origin in (Union, types.UnionType):
+        if data is None and type(None) in args:
+            return None
+        wanted = [each for each in args if each is not type(None)]
+        fitting = (
+            [each for each in wanted if _takes(each, data, bounds)] if len(wanted) > 1 else wanted
+        )
+        if len(fitting) != 1:
+            raise ValueError(f"expected one of {len(wanted)} objects, found {data!r:.80}")
+        return _value(fitting[0], data, bounds)
+    if origin is Literal:
+        if type(data) is not str or data not in args:
+            raise ValueError(f"expected one of {', '.join(args)}, found {data!r:.80}")
+        return data
+    if origin is tuple:
+        return _list(args, data, bounds)
+    if origin in (Mapping, dict):
+        texts = _is(data, dict)
+        return {_value(args[0], n, bounds): _value(args[1], d, bounds) for n, d in texts.items()}
+    if is_dataclass(kind):
+        return _object(kind, data, bounds)
+    return _scalar(kind, data, bounds)
+
+
+def _scalar(kind: Any, data: Any, bounds: Bounds) -> Any:
+    if kind is float and type(data) is int:
+        return data
+    if kind is int and type(data) is float and data.is_integer():  # a whole number, in JSON
+        data = int(data)
+    if kind is Path:
+        return Path(_scalar(str, data, bounds))
+    if kind is datetime:
+        made = datetime.fromisoformat(_scalar(str, data, bounds))
+        if made.utcoffset() is None:
+            raise ValueError(f"expected a time with its zone, found {data!r:.80}")
+        return made
+    _is(data, kind)
+    if kind is str and len(data) > bounds.characters:
+        raise ValueError(f"expected {bounds.characters} characters at most, found {len(data)}")
+    if kind is int and abs(data) >= bounds.number:
+        raise ValueError(f"expected a number below {bounds.number}, found {data!r:.80}")
+    return bounds.clean(data) if kind is str and bounds.clean else data
+
+
+def _list(args: tuple[Any, ...], data: Any, bounds: Bounds) -> tuple[Any, ...]:
+    if not isinstance(data, list | tuple) or len(data) > bounds.entries:
+        raise ValueError(f"expected a list of {bounds.entries} at most, found {data!r:.80}")
+    kinds = args[:1] * len(data) if args[-1] is ... else args
+    if len(kinds) != len(data):
+        raise ValueError(f"expected a list of {len(kinds)}, found {data!r:.80}")
+    return tuple(_value(kind, each, bounds) for kind, each in zip(kinds, data, strict=True))
+
+
+def _object(kind: Any, data: Any, bounds: Bounds) -> Any:
+    parts = _parts(kind)
+    if not _takes(kind, data, bounds):
+        unknown = sorted(data.keys() - parts.keys()) if isinstance(data, dict) else data
+        raise ValueError(f"expected an object of {', '.join(parts)}, found {unknown or data!r:.80}")
+    made = {}
+    for name in data:
+        try:
+            made[name] = _value(parts[name].kind, data[name], bounds)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
+    return kind(**made)
+
+
+def _takes(kind: Any, data: Any, bounds: Bounds) -> bool:
+    """Whether an object of a dataclass has keys like these."""
+    parts = {name: part for name, part in _parts(kind).items() if part.is_stored}
+    lacks = bounds.may_lack
+    needed = {name for name, part in parts.items() if part.default is MISSING or not lacks}
+    return isinstance(data, dict) and needed <= data.keys() <= parts.keys()
+
+
+class _Part(NamedTuple):
+    """What a dataclass says of a field."""
+
+    kind: Any
+    default: Any
+    bounds: Bounds | None
+    is_sparse: bool
+    is_stored: bool
+
+    def is_left_out(self, value: object) -> bool:
+        return not self.is_stored or (self.is_sparse and value == self.default)
+
+
+@cache
+def _parts(kind: Any) -> dict[str, _Part]:
+    hints = get_type_hints(kind, include_extras=True)
+    return {
+        each.name: _Part(
+            *(hints[each.name], _default(each), _bounds(hints[each.name])),
+            *(each.metadata.get("is_sparse", False), each.metadata.get("is_stored", True)),
+        )
+        for each in fields(kind)
+    }
+
+
+def _default(field: Field[Any]) -> Any:
+    return field.default if field.default_factory is MISSING else field.default_factory()
+
+
+def _bounds(kind: Any) -> Bounds | None:
+    return next(_all_bounds(kind), None)
+
+
+def _all_bounds(kind: Any) -> Iterator[Bounds]:
+    for each in get_args(kind):
+        if isinstance(each, Bounds):
+            yield each
+        else:
+            yield from _all_bounds(each)
+
+
+def _first(value: Any, most: float) -> Any:
+    return value if len(value) <= most else value[: int(most)]
+
+
+def _is(data: Any, kind: type[Any]) -> Any:
+    # a phrase is a text as well
+    if type(data) is not kind and not (kind is str and isinstance(data, str)):
+        raise ValueError(f"expected {_IN_WORDS.get(kind, kind.__name__)}, found {data!r:.80}")
+    return data
 
 
 def _finite(make: Callable[[str], _Number]) -> Callable[[str], _Number]:

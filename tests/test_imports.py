@@ -94,11 +94,10 @@ MAY_IMPORT: dict[str, set[str]] = {
     "grader.scenes.robot_parts": GROUND | {"grader.scenes", "robot_py"},
     "grader.scenes.package": GROUND | {"grader.scenes", "robot_py"},
     # a package is looked at in the submission's process, which sees little of ours
-    "grader.scenes.package.strict": set(),
-    "grader.scenes.package.trace": {"grader.scenes.package.strict"},
-    "grader.scenes.package.inspection": below("grader.scenes.package", "strict", "trace"),
-    "grader.scenes.package.examining": below("grader", "limited")
-    | below("grader.scenes.package", "strict", "trace", "inspection", "__init__"),
+    "grader.scenes.package.trace": {"grader.strict_json"},
+    "grader.scenes.package.inspection": {"grader.strict_json", "grader.scenes.package.trace"},
+    "grader.scenes.package.examining": below("grader", "limited", "strict_json")
+    | below("grader.scenes.package", "trace", "inspection", "__init__"),
     "grader.scenes.package.examining.doubles": {"grader.scenes.package.examining"},
     "grader.recording": GROUND | {"grader.scenes"},
     "grader.run": GROUND | below("grader", "submission", "recording", "scenes", "run"),
@@ -110,7 +109,7 @@ MAY_IMPORT: dict[str, set[str]] = {
         "grader.run", "lockstep", "processes.__init__", "processes.cores", "processes.forking"
     ),
     # what the grader's process and the simulator's have to agree on
-    "grader.run.plan": below("grader", "scenes", "run.budget"),
+    "grader.run.plan": below("grader", "scenes", "run.budget", "strict_json"),
     "grader.run.handover": GROUND | below("grader", "recording", "scenes"),
     "grader.run.simulator": GROUND
     | below("grader", "recording", "scenes", "run.lockstep", "run.processes")

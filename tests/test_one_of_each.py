@@ -13,6 +13,7 @@ ONE = {
     "a file that cannot be written is told": (r'say\(\s*"cannot write', "files.py"),
     "a trace is serialised between processes": (r"np\.savez|np\.load\(", ""),
     "work is done in a limited copy": (r"setitimer\(signal\.ITIMER_PROF", "limited.py"),
+    "data of others becomes a dataclass": (r"get_type_hints\(", "strict_json.py"),
 }
 
 

@@ -125,11 +125,7 @@ class ClassFile:
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             raise ValueError(say("is no class: expected the schema {schema}", schema=SCHEMA))
-        try:
-            found = cls(**{name: value for name, value in data.items() if name != "schema"})
-        except TypeError as error:
-            raise ValueError(say("is damaged: {why}", why=str(error))) from None
-        json_file.typed(found)
+        found = json_file.typed(cls, {n: value for n, value in data.items() if n != "schema"})
         if found.isolation not in ("", *LEVELS):
             told = f"{found.isolation!r}"
             raise ValueError(say("is damaged: its isolation is {told}", told=told))

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from grader import files
+from grader import files, strict_json
 from grader.batch.hand_in import HandIn
 from grader.errors import UsageError
 from grader.language import stored
@@ -25,8 +25,6 @@ from grader.result.result import RESULT, ROUNDING, Result
 SCHEMA = "turtlesim-grader/entry/v1"
 ENTRY = "entry.json"
 SUBMISSIONS = "submissions"
-#: What entry.json holds besides the hand-in.
-OWN = ("state", "max_score", "key", "message", "exercise_sha256")
 
 #: judged: there is a result. unusable: the submission cannot be started, which is the student's
 #: doing and worth 0 points. nothing: nobody handed anything in. failed: the grader's own failure.
@@ -54,8 +52,8 @@ class Entry:
     key: str = ""
     message: str = ""
     exercise_sha256: str = ""
-    result: Result | None = None
-    folder: Path = Path()
+    result: Result | None = field(default=None, metadata=strict_json.UNSTORED)
+    folder: Path = field(default=Path(), metadata=strict_json.UNSTORED)
 
     @property
     def id(self) -> str:
@@ -75,8 +73,7 @@ class Entry:
         Raises:
             UsageError: it cannot be written.
         """
-        own = {name: getattr(self, name) for name in OWN}
-        data = {"schema": SCHEMA, **own, "hand_in": self.hand_in.to_json()}
+        data = {"schema": SCHEMA, **strict_json.to_json(self, strict_json.OURS)}
         if phrases := stored.phrases_in((self.message, self.hand_in.problem)):
             data["phrases"] = phrases
         files.put(self.folder / ENTRY, json_file.text(data).encode("utf-8"))
@@ -119,16 +116,16 @@ class Entry:
                 say("is no entry of a class: expected the schema {schema}", schema=SCHEMA)
             )
         try:
-            own = {name: data[name] for name in OWN}
-            hand_in = HandIn.from_json(data["hand_in"])
-            told = (own["message"], hand_in.problem)
-            own["message"], problem = stored.restored(told, data.get("phrases", {}))
-            entry = json_file.typed(cls(hand_in=replace(hand_in, problem=problem), **own))
+            entry = json_file.typed(
+                cls, {name: data[name] for name in data if name not in ("schema", "phrases")}
+            )
+            told = (entry.message, entry.hand_in.problem)
+            message, problem = stored.restored(told, data.get("phrases", {}))
         except (KeyError, TypeError, AttributeError) as error:
             raise ValueError(say("is damaged: {why}", why=str(error))) from None
         if not re.fullmatch("[0-9a-f]*", entry.key):  # it names a folder
             raise ValueError(say("is damaged: its {name} is {value}", name="key", value=entry.key))
-        return entry
+        return replace(entry, message=message, hand_in=replace(entry.hand_in, problem=problem))
 
 
 def entries(out: Path) -> list[Entry]:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Self
 
-from grader.language.phrase import say
-from grader.result import json_file
+from grader.strict_json import UNSTORED
 
 
 @dataclass(frozen=True)
@@ -36,7 +34,8 @@ class HandIn:
         id: names its folder in the output: made of letters, digits and `._@+-` alone, unique within
             a class whatever the file system does with capital letters.
         people: who gets its points; one, or the members of a group.
-        path: the file or the folder that is graded; None where nothing can be.
+        path: the file or the folder that is graded; None where nothing can be. It is that of one
+            machine, and in no file.
         filename: what it was called before the export gave it another name.
         attempt: counts from 1.
         at: when it was handed in, with its time zone; None where the export does not tell.
@@ -45,7 +44,7 @@ class HandIn:
 
     id: str
     people: tuple[Person, ...]
-    path: Path | None = None
+    path: Path | None = field(default=None, metadata=UNSTORED)
     filename: str = ""
     attempt: int = 1
     at: datetime | None = None
@@ -55,29 +54,3 @@ class HandIn:
     def name(self) -> str:
         """For people: the names, else the ids."""
         return ", ".join(person.name or person.id for person in self.people)
-
-    def to_json(self) -> dict[str, Any]:
-        """As files hold it; without its path, which is that of one machine."""
-        return {
-            "id": self.id,
-            "people": [asdict(person) for person in self.people],
-            "filename": self.filename,
-            "attempt": self.attempt,
-            "at": None if self.at is None else self.at.isoformat(),
-            "problem": self.problem,
-        }
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What `to_json` has written.
-
-        Raises:
-            ValueError: it is something else; so may be KeyError, TypeError and AttributeError.
-        """
-        at = data["at"]
-        when = None if at is None else datetime.fromisoformat(at)
-        people = tuple(json_file.typed(Person(**person)) for person in data["people"])
-        found = json_file.typed(cls(**{**data, "people": people, "at": when}))
-        if when is not None and when.utcoffset() is None:
-            raise ValueError(say("is damaged: its {name} is {value}", name="at", value=str(at)))
-        return found

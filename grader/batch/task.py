@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 from grader import strict_json
 from grader.batch.hand_in import HandIn
@@ -51,32 +50,12 @@ class Task:
 
     def to_line(self) -> bytes:
         """As it is sent."""
-        data: dict[str, Any] = {
-            **{name: getattr(self, name) for name in ("key", "filename", "exercise", "time")},
-            "seed": self.seed,
-            "judge_only": self.judge_only,
-            "isolation": self.isolation,
-            "language": self.language,
-            "path": _text(self.path),
-            "run": _text(self.run),
-            "into": str(self.into),
-            "hand_ins": [each.to_json() for each in self.hand_ins],
-        }
-        return json.dumps(data).encode() + b"\n"
+        return json.dumps(strict_json.to_json(self, strict_json.OURS)).encode() + b"\n"
 
     @classmethod
     def from_line(cls, line: bytes) -> Self:
         """What was sent."""
-        data: Mapping[str, Any] = strict_json.loads(line.decode())
-        return cls(
-            **{
-                **data,
-                "path": _path(data["path"]),
-                "run": _path(data["run"]),
-                "into": Path(data["into"]),
-                "hand_ins": tuple(map(HandIn.from_json, data["hand_ins"])),
-            }
-        )
+        return json_file.typed(cls, strict_json.loads(line.decode()))
 
 
 @dataclass(frozen=True)
@@ -117,14 +96,6 @@ class Answer:
         try:
             data = strict_json.loads(line.decode())
             phrases = data.pop("phrases", {})
-            return stored.restored(json_file.typed(cls(**data)), phrases)
+            return stored.restored(json_file.typed(cls, data), phrases)
         except (TypeError, AttributeError, UnicodeDecodeError) as error:
             raise ValueError(say("is no answer: {why}", why=str(error))) from None
-
-
-def _text(path: Path | None) -> str | None:
-    return None if path is None else str(path)
-
-
-def _path(text: str | None) -> Path | None:
-    return None if text is None else Path(text)

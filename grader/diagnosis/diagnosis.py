@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any, Self
+from dataclasses import dataclass, field
 
 from grader.recording.conduct import Place
+from grader.strict_json import SPARSE
 
 #: The key of a diagnosis that repeats the finding of a check.
 CHECK = "check"
@@ -30,20 +29,6 @@ class Diagnosis:
     cause: str
     help: str
     run: int = 0
-    time_s: float | None = None
-    place: Place | None = None
-    check: str = ""
-
-    def to_json(self) -> dict[str, Any]:
-        """The diagnosis as the result file holds it: what is not known is left out."""
-        left_out = {name for name in ("time_s", "place", "check") if not getattr(self, name)}
-        if self.time_s is not None:
-            left_out.discard("time_s")
-        return {name: value for name, value in asdict(self).items() if name not in left_out}
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """The diagnosis that a result file holds; it follows the schema."""
-        place = data.get("place")
-        made = Place(**{**place, "line": int(place["line"])}) if place is not None else None
-        return cls(**{**data, "run": int(data["run"]), "place": made})
+    time_s: float | None = field(default=None, metadata=SPARSE)
+    place: Place | None = field(default=None, metadata=SPARSE)
+    check: str = field(default="", metadata=SPARSE)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader import limited, strict_json
-from grader.exercise.verdict import Evidence, Expected, Finding, wrong_with
+from grader.exercise.verdict import Finding, wrong_with
 from grader.language import stored
 from grader.limited import LimitHit, Limits
 from grader.recording.recording import NominalAlone, NotOver, Recordings
@@ -60,10 +60,7 @@ class Answers:
         words = self._answers.get(name, {"say": "nothing"})
         match words["say"]:
             case "finding":
-                found = words["finding"]
-                evidence = tuple(Evidence(**item) for item in found["evidence"])
-                expected = tuple(Expected.from_json(item) for item in found["expected"])
-                made = Finding(**{**found, "evidence": evidence, "expected": expected})
+                made = strict_json.from_json(Finding, words["finding"], strict_json.OURS)
                 return stored.restored(made, words["phrases"])
             case "not over":
                 raise NotOver

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Real
-from typing import Any, Literal, Self
+from typing import Literal
+
+from grader.strict_json import SPARSE
 
 Status = Literal["passed", "failed", "not_judged"]
 #: What students see of a check: all of it; all of it, when the exercise is over, and until then
@@ -38,16 +39,6 @@ class Evidence:
         """Whether it was anywhere: a position can be not a number."""
         return math.isfinite(self.x) and math.isfinite(self.y)
 
-    def to_json(self) -> dict[str, Any]:
-        """The evidence as the result file holds it."""
-        return dict(vars(self))
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """The evidence that a result file holds; it follows the schema."""
-        whole = {key: int(data[key]) for key in ("tick", "run") if key in data}
-        return cls(**{**data, **whole})
-
 
 @dataclass(frozen=True)
 class Expected:
@@ -62,24 +53,8 @@ class Expected:
 
     curve: str
     text: str
-    within: tuple[float, float] | None = None
-    beyond: tuple[float, float] | None = None
-
-    def to_json(self) -> dict[str, Any]:
-        """As the result file holds it."""
-        pairs = {"within": self.within, "beyond": self.beyond}
-        there = {name: list(pair) for name, pair in pairs.items() if pair is not None}
-        return {"curve": self.curve, "text": self.text, **there}
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What a result file holds; it follows the schema."""
-        pairs = {name: (float(low), float(high)) for name, (low, high) in _pairs(data)}
-        return cls(data["curve"], data["text"], **pairs)
-
-
-def _pairs(data: Mapping[str, Any]) -> list[tuple[str, Any]]:
-    return [(name, data[name]) for name in ("within", "beyond") if data.get(name) is not None]
+    within: tuple[float, float] | None = field(default=None, metadata=SPARSE)
+    beyond: tuple[float, float] | None = field(default=None, metadata=SPARSE)
 
 
 @dataclass(frozen=True)
@@ -126,34 +101,8 @@ class Verdict:
     help: str = ""
     evidence: tuple[Evidence, ...] = ()
     depends_on: tuple[str, ...] = ()
-    visible: Visible = "now"
-    expected: tuple[Expected, ...] = ()
-
-    def to_json(self) -> dict[str, Any]:
-        """The verdict as the result file holds it."""
-        more: dict[str, Any] = {} if self.visible == "now" else {"visible": self.visible}
-        if self.expected:
-            more["expected"] = [item.to_json() for item in self.expected]
-        return {
-            "check": self.check,
-            "title": self.title,
-            "status": self.status,
-            "score": self.score,
-            "max_score": self.max_score,
-            "rationale": self.rationale,
-            "help": self.help,
-            "evidence": [item.to_json() for item in self.evidence],
-            "depends_on": list(self.depends_on),
-            **more,
-        }
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """The verdict that a result file holds; it follows the schema."""
-        evidence = tuple(Evidence.from_json(item) for item in data["evidence"])
-        expected = tuple(Expected.from_json(item) for item in data.get("expected", ()))
-        lists = {"depends_on": tuple(data["depends_on"]), "expected": expected}
-        return cls(**{**data, "evidence": evidence, **lists})
+    visible: Visible = field(default="now", metadata=SPARSE)
+    expected: tuple[Expected, ...] = field(default=(), metadata=SPARSE)
 
     @property
     def passed(self) -> bool:

@@ -8,19 +8,33 @@ Times are those of the clock that the run lived by [s], from the start of the su
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from typing import Any, Literal, Self, get_args
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any, Literal, Self
 
+from grader.strict_json import Bounds, from_json, not_negative
 from grader.text import one_line, without_controls
 
-#: So many of a kind are kept; what comes later is not.
-MOST = 100
+
+def _in_one_line(text: str) -> str:
+    """Without what a terminal, a log or XML would stumble over."""
+    return without_controls(one_line(text), "?")
+
+
+#: So many characters of a text and entries of a kind are kept; what comes later is not.
+STRANGERS = Bounds(300, 100, clean=_in_one_line)
 #: So many times of one end the line changes that it is used at.
 MOST_SENT = 200
-#: So many characters of a text.
-LONGEST = 300
+
+
+def _own(file: str) -> str:
+    if file.startswith("/") or ".." in file.split("/"):
+        raise ValueError(f"expected a file of the submission's own, found {file!r:.80}")
+    return file
+
+
+File = Annotated[str, _own]
+Count = Annotated[int, not_negative]
+Seconds = Annotated[float, not_negative]
 
 EndKind = Literal["subscription", "publisher", "client", "action_client"]
 StopKind = Literal["callback", "call", "loop", "init", "spin", "going"]
@@ -48,8 +62,8 @@ class Place:
         text: the line as it stands there, without the blanks round it.
     """
 
-    file: str
-    line: int
+    file: File
+    line: Count
     function: str = ""
     text: str = ""
 
@@ -63,8 +77,8 @@ class Sent:
         times: how many.
     """
 
-    line: int
-    times: int
+    line: Count
+    times: Count
 
 
 @dataclass(frozen=True)
@@ -88,11 +102,11 @@ class End:
     name: str
     type: str
     is_met: bool
-    used: int
+    used: Count
     place: Place | None = None
     used_at: Place | None = None
     lines: tuple[Place, ...] = ()
-    sent: tuple[Sent, ...] = ()
+    sent: Annotated[tuple[Sent, ...], STRANGERS._replace(entries=MOST_SENT)] = ()
 
 
 @dataclass(frozen=True)
@@ -106,8 +120,8 @@ class Wait:
 
     name: str
     type: str
-    since_s: float
-    lasted_s: float | None
+    since_s: Seconds
+    lasted_s: Seconds | None
     place: Place | None = None
 
 
@@ -121,8 +135,8 @@ class Slow:
     """
 
     place: Place
-    longest_s: float
-    times: int
+    longest_s: Seconds
+    times: Count
 
 
 @dataclass(frozen=True)
@@ -135,8 +149,8 @@ class Timer:
     """
 
     place: Place
-    period_s: float
-    times: int
+    period_s: Seconds
+    times: Count
 
 
 @dataclass(frozen=True)
@@ -153,8 +167,8 @@ class Caught:
 
     type: str
     text: str
-    time_s: float
-    times: int
+    time_s: Seconds
+    times: Count
     place: Place
     by: Place | None = None
 
@@ -194,7 +208,7 @@ class Stop:
     """
 
     kind: StopKind
-    time_s: float
+    time_s: Seconds
     call: str = ""
     place: Place | None = None
 
@@ -210,7 +224,7 @@ class Raised:
 
     type: str
     text: str
-    time_s: float
+    time_s: Seconds
     place: Place | None = None
 
 
@@ -234,7 +248,7 @@ class Conduct:
 
     is_told: bool = False
     ends: tuple[End, ...] = ()
-    spun_s: float | None = None
+    spun_s: Seconds | None = None
     waits: tuple[Wait, ...] = ()
     slow: tuple[Slow, ...] = ()
     timers: tuple[Timer, ...] = ()
@@ -242,7 +256,7 @@ class Conduct:
     slips: tuple[Slip, ...] = ()
     stop: Stop | None = None
     raised: Raised | None = None
-    returned_s: float | None = None
+    returned_s: Seconds | None = None
 
     def to_json(self) -> dict[str, Any]:
         """As `from_json` takes it."""
@@ -255,145 +269,8 @@ class Conduct:
         Raises:
             ValueError: it has another form, or is longer than it may be.
         """
-        data = _object(data, cls)
-        return cls(
-            _is(data["is_told"], bool),
-            tuple(_end(each) for each in _list(data["ends"])),
-            _perhaps_time(data["spun_s"]),
-            tuple(_wait(each) for each in _list(data["waits"])),
-            tuple(_slow(each) for each in _list(data["slow"])),
-            tuple(_timer(each) for each in _list(data["timers"])),
-            tuple(_caught(each) for each in _list(data["caught"])),
-            tuple(_slip(each) for each in _list(data["slips"])),
-            None if data["stop"] is None else _stop(data["stop"]),
-            None if data["raised"] is None else _raised(data["raised"]),
-            _perhaps_time(data["returned_s"]),
-        )
-
-
-def _end(data: Any) -> End:
-    data = _object(data, End)
-    lines = tuple(map(_place, _list(data["lines"])))
-    return End(
-        _one_of(data["kind"], EndKind),
-        _text(data["name"]),
-        _text(data["type"]),
-        _is(data["is_met"], bool),
-        _count(data["used"]),
-        _perhaps_place(data["place"]),
-        _perhaps_place(data["used_at"]),
-        lines,
-        tuple(_sent(each, len(lines)) for each in _list(data["sent"], MOST_SENT)),
-    )
-
-
-def _sent(data: Any, lines: int) -> Sent:
-    data = _object(data, Sent)
-    line = _count(data["line"])
-    if line >= lines:
-        raise ValueError(f"expected one of {lines} lines, found {line!r:.80}")
-    return Sent(line, _count(data["times"]))
-
-
-def _wait(data: Any) -> Wait:
-    data = _object(data, Wait)
-    lasted_s, place = _perhaps_time(data["lasted_s"]), _perhaps_place(data["place"])
-    return Wait(_text(data["name"]), _text(data["type"]), _time(data["since_s"]), lasted_s, place)
-
-
-def _slow(data: Any) -> Slow:
-    data = _object(data, Slow)
-    return Slow(_place(data["place"]), _time(data["longest_s"]), _count(data["times"]))
-
-
-def _timer(data: Any) -> Timer:
-    data = _object(data, Timer)
-    return Timer(_place(data["place"]), _time(data["period_s"]), _count(data["times"]))
-
-
-def _caught(data: Any) -> Caught:
-    data = _object(data, Caught)
-    place, by = _place(data["place"]), _perhaps_place(data["by"])
-    time_s, times = _time(data["time_s"]), _count(data["times"])
-    return Caught(_text(data["type"]), _text(data["text"]), time_s, times, place, by)
-
-
-def _slip(data: Any) -> Slip:
-    data = _object(data, Slip)
-    kind = _one_of(data["kind"], SlipKind)
-    return Slip(kind, _text(data["name"]), _text(data["near"]), _place(data["place"]))
-
-
-def _stop(data: Any) -> Stop:
-    data = _object(data, Stop)
-    kind, place = _one_of(data["kind"], StopKind), _perhaps_place(data["place"])
-    return Stop(kind, _time(data["time_s"]), _text(data["call"]), place)
-
-
-def _raised(data: Any) -> Raised:
-    data = _object(data, Raised)
-    place = _perhaps_place(data["place"])
-    return Raised(_text(data["type"]), _text(data["text"]), _time(data["time_s"]), place)
-
-
-def _perhaps_place(data: Any) -> Place | None:
-    return None if data is None else _place(data)
-
-
-def _place(data: Any) -> Place:
-    data = _object(data, Place)
-    line, function = _count(data["line"]), _text(data["function"])
-    file = _text(data["file"])
-    if file.startswith("/") or ".." in file.split("/"):
-        raise ValueError(f"expected a file of the submission's own, found {file!r:.80}")
-    return Place(file, line, function, _text(data["text"]))
-
-
-def _object(data: Any, kind: type[Any]) -> Mapping[str, Any]:
-    wanted = {field.name for field in fields(kind)}
-    if not isinstance(data, dict) or data.keys() != wanted:
-        raise ValueError(f"expected an object of {', '.join(sorted(wanted))}, found {data!r:.80}")
-    return data
-
-
-def _list(data: Any, most: int = MOST) -> list[Any]:
-    if not isinstance(data, list) or len(data) > most:
-        raise ValueError(f"expected a list of {most} at most, found {data!r:.80}")
-    return data
-
-
-def _text(data: Any) -> str:
-    """In one line, and without what a terminal, a log or XML would stumble over."""
-    text: str = _is(data, str)
-    if len(text) > LONGEST:
-        raise ValueError(f"expected {LONGEST} characters at most, found {len(text)}")
-    return without_controls(one_line(text), "?")
-
-
-def _one_of(data: Any, kinds: Any) -> Any:
-    if data not in get_args(kinds):
-        raise ValueError(f"expected one of {', '.join(get_args(kinds))}, found {data!r:.80}")
-    return data
-
-
-def _count(data: Any) -> int:
-    number: int = _is(data, int)
-    if not 0 <= number < 2**53:
-        raise ValueError(f"expected a count, found {number!r:.80}")
-    return number
-
-
-def _perhaps_time(data: Any) -> float | None:
-    return None if data is None else _time(data)
-
-
-def _time(data: Any) -> float:
-    if type(data) not in (int, float) or not 0 <= data < math.inf:
-        raise ValueError(f"expected seconds, found {data!r:.80}")
-    return float(data)
-
-
-def _is(data: Any, kind: type[Any]) -> Any:
-    if type(data) is not kind:
-        raise ValueError(f"expected {kind.__name__}, found {data!r:.80}")
-    return data
+        conduct = from_json(cls, data, STRANGERS)
+        for end in conduct.ends:
+            if any(each.line >= len(end.lines) for each in end.sent):
+                raise ValueError(f"expected one of {len(end.lines)} lines in {end.sent!r:.80}")
+        return conduct

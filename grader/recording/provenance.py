@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from typing import Any, Self
 
 
 @dataclass(frozen=True)
@@ -35,16 +34,6 @@ class Provenance:
     exercise_sha256: str = ""
     seed: int | None = None
     conditions: Mapping[str, float] = field(default_factory=dict)
-
-    def to_json(self) -> dict[str, Any]:
-        """As files hold it."""
-        return asdict(self) | {"conditions": dict(self.conditions)}
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What a file holds; it follows the schema."""
-        seed = data.get("seed")
-        return cls(**{**data, "seed": None if seed is None else int(seed)})
 
 
 def now() -> str:

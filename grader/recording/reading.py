@@ -277,10 +277,14 @@ def _recording(told: _Told, trace: Trace) -> Recording:
         output=told.output,
         start=Start(**facts["start"]) if facts["start"] else None,
         scene=told.scene.name,
-        provenance=Provenance.from_json(facts[PROVENANCE]) if facts[PROVENANCE] else None,
+        provenance=_provenance(facts[PROVENANCE]),
         conduct=_conduct(told.folder / CONDUCT),
         package=_package(told.folder / PACKAGE),
     )
+
+
+def _provenance(told: object) -> Provenance | None:
+    return strict_json.from_json(Provenance, told, strict_json.OURS) if told else None
 
 
 def _package(path: Path) -> Trace | None:

@@ -17,6 +17,7 @@ from grader.recording.provenance import Provenance
 from grader.scenes import load_scene
 from grader.scenes.scene import Start, Trace
 from grader.scenes.view import Pictures, Pixels
+from grader.strict_json import SPARSE
 
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed", "not_run"]
 Clock = Literal["virtual", "real"]
@@ -52,7 +53,7 @@ class Run:
     isolation: str = ""
     flags: tuple[str, ...] = ()
     seed: int | None = None
-    interfaces: str = ""
+    interfaces: str = field(default="", metadata=SPARSE)
 
     def __post_init__(self) -> None:
         """Its remarks can be said in any language, wherever they were made."""

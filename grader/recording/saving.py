@@ -35,6 +35,7 @@ from grader.recording.folder import (
 from grader.recording.recording import Recording, Recordings
 from grader.scenes import load_scene
 from grader.scenes.package.trace import PackageTrace, encode
+from grader.strict_json import OURS, to_json
 
 #: Where the files are written before they come into the folder.
 UNFINISHED = ".unfinished"
@@ -161,14 +162,12 @@ def _withdraw(folder: Path) -> None:
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
     scene = load_scene(recording.scene)
     mcap = bag().write(recording.trace, scene, folder)
-    run = asdict(recording.run)
+    run = to_json(recording.run, OURS)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
     if phrases := stored.phrases_in(_unknown(recording.run.flags)):
         circumstances[PHRASES] = phrases
     if recording.provenance is not None:
-        circumstances[PROVENANCE] = recording.provenance.to_json()
-    if not recording.run.interfaces:
-        del run["interfaces"]
+        circumstances[PROVENANCE] = to_json(recording.provenance, OURS)
     facts = {
         "schema": SCHEMA,
         "bag_sha256": sha256_of(mcap),

@@ -5,7 +5,7 @@ Its JSON Schema is `error.schema.json` beside this module.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Self
 
@@ -45,9 +45,7 @@ class ErrorResult:
         phrases = stored.phrases_in(self)
         return {
             "schema": SCHEMA,
-            "whose": self.whose,
-            "message": self.message,
-            "max_score": self.max_score,
+            **asdict(self),
             **({"phrases": phrases} if phrases else {}),
         }
 
@@ -59,7 +57,8 @@ class ErrorResult:
             ValueError: it does not follow the schema.
         """
         json_file.validate(data, "error", SCHEMA)
-        found = cls(data["whose"], data["message"], data["max_score"])
+        told = {name: data[name] for name in ("whose", "message", "max_score")}
+        found = json_file.typed(cls, told)
         return stored.restored(found, data.get("phrases", {}))
 
     def write(self, path: Path) -> None:

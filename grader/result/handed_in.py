@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import datetime
-from typing import Any, Self
+from typing import Annotated, Self
 
 from grader.exercise.late import Late, LatePolicy
+
+
+def _with_zone(time: str) -> str:
+    try:
+        is_one = datetime.fromisoformat(time).utcoffset() is not None
+    except ValueError:
+        is_one = False
+    if not is_one:
+        raise ValueError(f"expected a time with its zone, found {time!r:.60}")
+    return time
 
 
 @dataclass(frozen=True)
@@ -24,7 +33,7 @@ class HandedIn:
     id: str
     name: str = ""
     attempt: int = 1
-    at: str | None = None
+    at: Annotated[str, _with_zone] | None = None
     late_s: float = 0.0
     days: int = 0
     deducted: float = 0.0
@@ -46,27 +55,3 @@ class HandedIn:
         """The same hand-in by what another exercise, or another state of it, says."""
         at = None if self.at is None else datetime.fromisoformat(self.at)
         return type(self).of(self.id, self.name, self.attempt, at, policy)
-
-    def to_json(self) -> dict[str, Any]:
-        """As the result file holds it."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What a result file holds; it follows the schema.
-
-        Raises:
-            ValueError: its time is none, or has no zone.
-        """
-        at = data["at"]
-        if at is not None and not _is_a_time(at):
-            raise ValueError(f"is damaged: its handed_in.at is no time with a zone: {at:.60}")
-        whole = {key: int(data[key]) for key in ("attempt", "days")}
-        return cls(**{**data, **whole})
-
-
-def _is_a_time(text: str) -> bool:
-    try:
-        return datetime.fromisoformat(text).utcoffset() is not None
-    except ValueError:
-        return False

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any
 
 from grader import strict_json
 from grader.errors import UsageError
 from grader.files import read_own
 from grader.language.phrase import joined, reason, say
+from grader.strict_json import Made
 
 if TYPE_CHECKING:
     import jsonschema
 
-Made = TypeVar("Made")
 #: No file of ours is longer [bytes].
 MOST_BYTES = 2**26
 
@@ -72,34 +72,16 @@ def read(path: Path, *, is_ours: bool = False) -> Any:
         raise UsageError(say("{path} is not JSON: {why}", path=path, why=str(error))) from None
 
 
-def typed(found: Made) -> Made:
-    """A dataclass that was filled with a file's data, if all in it is of its fields' types.
+def typed(kind: type[Made], data: Any) -> Made:
+    """A dataclass filled with a file's data.
 
     Raises:
-        ValueError: something is not.
+        ValueError: something in it is not of its field's type.
     """
-    for name, hint in get_type_hints(type(found)).items():
-        if not _is(value := getattr(found, name), hint):
-            shown = f"{value!r:.40}"
-            raise ValueError(say("is damaged: its {name} is {value}", name=name, value=shown))
-    return found
-
-
-def _is(value: object, hint: Any) -> bool:
-    kind, args = get_origin(hint), get_args(hint)
-    if kind is Literal:
-        return isinstance(value, str) and value in args
-    if kind is tuple:
-        return isinstance(value, tuple) and all(_is(each, args[0]) for each in value)
-    if kind is Mapping:
-        return isinstance(value, dict) and all(
-            _is(each, part) for pair in value.items() for each, part in zip(pair, args, strict=True)
-        )
-    if kind is not None:
-        return any(_is(value, each) for each in args)
-    if isinstance(value, bool):  # which Python takes for a number
-        return hint is bool
-    return isinstance(value, (int, float) if hint is float else hint)
+    try:
+        return strict_json.from_json(kind, data, strict_json.OURS)
+    except ValueError as error:
+        raise ValueError(say("is damaged: {why}", why=str(error))) from None
 
 
 def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:

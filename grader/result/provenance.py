@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any, Self
+from dataclasses import dataclass, field
+from typing import Self
 
 from grader import versions
 from grader.exercise.exercise import Exercise
 from grader.recording.provenance import Provenance, now
 from grader.recording.recording import Recordings
+from grader.strict_json import SPARSE
 
 
 @dataclass(frozen=True)
@@ -36,25 +36,10 @@ class Origin:
     """
 
     judged: Judged
-    recorded: Provenance | None = None
+    recorded: Provenance | None = field(default=None, metadata=SPARSE)
 
     @classmethod
     def of(cls, recordings: Recordings, exercise: Exercise) -> Self:
         """Of recordings that are being judged."""
         judged = Judged(now(), versions.grader(), exercise.sha256)
         return cls(judged, recordings.nominal.provenance)
-
-    def to_json(self) -> dict[str, Any]:
-        """As the result file holds it."""
-        found: dict[str, Any] = {"judged": asdict(self.judged)}
-        if self.recorded is not None:
-            found["recorded"] = self.recorded.to_json()
-        return found
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What a result file holds; it follows the schema."""
-        recorded = data.get("recorded")
-        return cls(
-            Judged(**data["judged"]), None if recorded is None else Provenance.from_json(recorded)
-        )

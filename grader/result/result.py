@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Self
 
-from grader import files
+from grader import files, strict_json
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.exercise import Exercise
 from grader.exercise.sentences import not_followed, remarks
@@ -22,6 +22,7 @@ from grader.result import json_file
 from grader.result.handed_in import HandedIn
 from grader.result.provenance import Origin
 from grader.scenes.scene import Start
+from grader.strict_json import SPARSE
 
 #: What the schemas of all versions begin with.
 FAMILY = "turtlesim-grader/result/"
@@ -30,6 +31,11 @@ SCHEMA = f"{FAMILY}v1"
 ARTIFACTS = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}
 #: Our names of the result file, and of the page beside it.
 RESULT, PAGE = "result.json", "report.html"
+#: Its parts as a reader wants them: what was found before how.
+IN_ORDER = (
+    *("exercise", "submission", "score", "max_score", "handed_in", "not_shown", "diagnosis"),
+    *("verdicts", "run", "varied_runs", "artifacts", "provenance"),
+)
 #: A total is rounded to hundredths, its parts need not be [points].
 ROUNDING = 0.01 + 1e-9
 
@@ -42,7 +48,7 @@ class RunSummary(Run):
         start: where it started; None for the usual place.
     """
 
-    start: Start | None = None
+    start: Start | None = field(default=None, metadata=SPARSE)
 
     @classmethod
     def of(cls, recording: Recording, all_passed: bool = False) -> Self:
@@ -50,26 +56,6 @@ class RunSummary(Run):
         run = {field.name: getattr(recording.run, field.name) for field in fields(Run)}
         flags = (*recording.run.flags, *remarks(recording, all_passed))
         return cls(**{**run, "flags": flags}, start=recording.start)
-
-    def to_json(self) -> dict[str, Any]:
-        """The run as the result file holds it."""
-        run = asdict(self) | {"flags": list(self.flags)}
-        if self.start is None:
-            del run["start"]
-        if not self.interfaces:
-            del run["interfaces"]
-        return run
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """The run that a result file holds; it follows the schema."""
-        run = {**data, "flags": tuple(data["flags"])}
-        for key in ("exit_code", "ticks", "seed"):
-            if run.get(key) is not None:
-                run[key] = int(run[key])
-        if "start" in run:
-            run["start"] = Start(**run["start"])
-        return cls(**run)
 
 
 @dataclass(frozen=True)
@@ -85,11 +71,6 @@ class NotShown:
     checks: int
     max_score: float
     until_due: int = 0
-
-    @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """What a result file holds; it follows the schema."""
-        return cls(int(data["checks"]), data["max_score"], int(data["until_due"]))
 
 
 @dataclass(frozen=True)
@@ -118,10 +99,10 @@ class Result:
     run: RunSummary
     varied_runs: tuple[RunSummary, ...] = ()
     artifacts: Mapping[str, str] = field(default_factory=dict)
-    provenance: Origin | None = field(default=None, compare=False)
-    diagnosis: Diagnosis | None = None
-    handed_in: HandedIn | None = None
-    not_shown: NotShown | None = None
+    provenance: Origin | None = field(default=None, compare=False, metadata=SPARSE)
+    diagnosis: Diagnosis | None = field(default=None, metadata=SPARSE)
+    handed_in: HandedIn | None = field(default=None, metadata=SPARSE)
+    not_shown: NotShown | None = field(default=None, metadata=SPARSE)
 
     @property
     def final(self) -> float:
@@ -131,25 +112,11 @@ class Result:
 
     def to_json(self) -> dict[str, Any]:
         """The result as its file holds it."""
-        origin = {} if self.provenance is None else {"provenance": self.provenance.to_json()}
-        diagnosis = {} if self.diagnosis is None else {"diagnosis": self.diagnosis.to_json()}
-        handed_in = {} if self.handed_in is None else {"handed_in": self.handed_in.to_json()}
-        not_shown = {} if self.not_shown is None else {"not_shown": asdict(self.not_shown)}
+        told = strict_json.to_json(self, strict_json.OURS)
         phrases = stored.phrases_in(self)
         return {
             "schema": SCHEMA,
-            "exercise": self.exercise,
-            "submission": self.submission,
-            "score": self.score,
-            "max_score": self.max_score,
-            **handed_in,
-            **not_shown,
-            **diagnosis,
-            "verdicts": [verdict.to_json() for verdict in self.verdicts],
-            "run": self.run.to_json(),
-            "varied_runs": [run.to_json() for run in self.varied_runs],
-            "artifacts": dict(self.artifacts),
-            **origin,
+            **{name: told[name] for name in IN_ORDER if name in told},
             **({"phrases": phrases} if phrases else {}),
         }
 
@@ -161,21 +128,8 @@ class Result:
             ValueError: it does not follow the schema.
         """
         json_file.validate(data, "result", SCHEMA)
-        diagnosis, handed_in, not_shown = map(data.get, ("diagnosis", "handed_in", "not_shown"))
-        result = cls(
-            data["exercise"],
-            data["submission"],
-            data["score"],
-            data["max_score"],
-            tuple(Verdict.from_json(verdict) for verdict in data["verdicts"]),
-            RunSummary.from_json(data["run"]),
-            tuple(RunSummary.from_json(run) for run in data.get("varied_runs", ())),
-            data["artifacts"],
-            provenance=Origin.from_json(data["provenance"]) if "provenance" in data else None,
-            diagnosis=None if diagnosis is None else Diagnosis.from_json(diagnosis),
-            handed_in=None if handed_in is None else HandedIn.from_json(handed_in),
-            not_shown=None if not_shown is None else NotShown.from_json(not_shown),
-        )
+        told = {name: data[name] for name in IN_ORDER if name in data}
+        result = json_file.typed(cls, told)
         return stored.restored(result, data.get("phrases", {}))
 
     @classmethod

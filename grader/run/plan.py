@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Self
 
+from grader import strict_json
 from grader.run.budget import Budget
 from grader.scenes.scene import Limits, Start
 
@@ -35,21 +36,17 @@ class Plan:
     interfaces: str = ""
     setting: str = ""
     looks_at_package: bool = False
-    budget: Budget = field(default_factory=Budget, compare=False)
+    budget: Budget = field(default_factory=Budget, compare=False, metadata=strict_json.UNSTORED)
 
     def to_json(self) -> str:
         """As an argument of the simulator's process."""
-        words = {key: value for key, value in vars(self).items() if key != "budget"}
-        return json.dumps(words, default=asdict)
+        return json.dumps(strict_json.to_json(self, strict_json.OURS))
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """The plan that `to_json` has written."""
-        words = json.loads(text)
-        start = words.pop("start")
-        return cls(
-            limits=Limits(**words.pop("limits")),
-            start=Start(**start) if start else None,
-            flags=tuple(words.pop("flags")),
-            **words,
-        )
+        """The plan that `to_json` has written.
+
+        Raises:
+            ValueError: it has written none such.
+        """
+        return strict_json.from_json(cls, json.loads(text), strict_json.OURS)

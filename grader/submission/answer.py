@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import signal
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -15,16 +16,7 @@ from grader import strict_json
 from grader.errors import GraderError, GraderFailure, SubmissionError, UsageError
 from grader.language import stored
 from grader.submission.set_ups import NotInspected
-from grader.submission.start import (
-    EntryPoint,
-    Imports,
-    Launch,
-    Program,
-    Script,
-    Slip,
-    Submission,
-    Whole,
-)
+from grader.submission.start import Imports, Submission
 from grader.text import clip
 
 #: How a line begins that tells where the process is; a string in JSON follows.
@@ -62,38 +54,10 @@ def end(code: int) -> str:
 
 def found(submission: Submission) -> bytes:
     """The answer of one who has found what to start."""
-    return _line(
-        {
-            "name": submission.name,
-            "root": str(submission.root),
-            "start": _told(submission.start),
-            "found": submission.found,
-            "surely": _some(submission.imports.surely),
-            "perhaps": _some(submission.imports.perhaps),
-            "notes": [clip(note, _MAX_NOTE) for note in submission.notes[:_MAX_NOTES]],
-            "slips": submission.slips,
-            "added": [str(each) for each in submission.added],
-            "in_package": str(submission.package) if submission.package else None,
-        },
-        submission.found,
-        *submission.notes[:_MAX_NOTES],
-    )
-
-
-def _told(start: EntryPoint | Script | Launch | Whole) -> dict[str, object]:
-    match start:
-        case EntryPoint(module, function):
-            return {"module": module, "function": function}
-        case Script(path, function):
-            return {"path": str(path), "function": function}
-        case Whole(package):
-            return {"package": package}
-    return {
-        "programs": [
-            {"name": each.name, "entry": _told(each.entry), "arguments": list(each.arguments)}
-            for each in start.programs
-        ]
-    }
+    notes = submission.notes[:_MAX_NOTES]
+    imports = Imports(_some(submission.imports.surely), _some(submission.imports.perhaps))
+    told = replace(submission, notes=tuple(clip(n, _MAX_NOTE) for n in notes), imports=imports)
+    return _line(strict_json.to_json(told, strict_json.OURS), submission.found, *notes)
 
 
 def asks(for_: NotInspected) -> bytes:
@@ -156,62 +120,13 @@ def decoded(said: dict[str, Any]) -> Submission:
             raise asked
         case {"failed": str(what)}:
             raise GraderFailure(f"the submission could not be read: {what}")
-        case {
-            "name": str(name),
-            "root": str(root),
-            "start": dict(start),
-            "found": str(sentence),
-            "surely": dict(surely),
-            "perhaps": dict(perhaps),
-            "notes": list(notes),
-            "slips": list(slips),
-            "added": list(added),
-            "in_package": str() | None as package,
-        } if all(isinstance(note, str) for note in (*notes, *added)):
-            imports = Imports(_texts(surely), _texts(perhaps))
-            return Submission(
-                *(name, Path(root), _start(start), _phrased(sentence, said), imports),
-                notes=_phrased(tuple(notes), said),
-                slips=tuple(map(_slip, slips)),
-                added=tuple(map(Path, added)),
-                package=Path(package) if package else None,
-            )
-    raise _nonsense()
-
-
-def _start(said: dict[str, Any]) -> EntryPoint | Script | Launch | Whole:
-    match said:
-        case {"programs": list(programs)} if programs:
-            return Launch(tuple(map(_program, programs)))
-        case {"module": str(module), "function": str(function)}:
-            return EntryPoint(module, function)
-        case {"path": str(path), "function": str() | None as function}:
-            return Script(Path(path), function)
-        case {"package": str(package)}:
-            return Whole(package)
-    raise _nonsense()
-
-
-def _program(said: object) -> Program:
-    match said:
-        case {"name": str(name), "entry": dict(entry), "arguments": list(arguments)}:
-            start = _start(entry)
-            if isinstance(start, EntryPoint) and all(isinstance(each, str) for each in arguments):
-                return Program(name, start, tuple(arguments))
-    raise _nonsense()
-
-
-def _slip(said: object) -> Slip:
-    match said:
-        case [str(kind), str(name), str(near), str(file), int(line), str(text)]:
-            return Slip(kind, name, near, file, line, text)
-    raise _nonsense()
-
-
-def _texts(said: dict[str, Any]) -> dict[str, str]:
-    if not all(isinstance(text, str) for text in said.values()):
-        raise _nonsense()
-    return said
+    try:
+        made = strict_json.from_json(
+            Submission, {n: told for n, told in said.items() if n != "phrases"}, strict_json.OURS
+        )
+    except ValueError:
+        raise _nonsense() from None
+    return replace(made, found=_phrased(made.found, said), notes=_phrased(made.notes, said))
 
 
 def _nonsense() -> GraderFailure:

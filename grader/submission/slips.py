@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import SequenceMatcher
 from pathlib import Path
 
@@ -86,7 +86,8 @@ def look(root: Path, files: Iterable[Path]) -> tuple[Slip, ...]:
     except (OSError, RecursionError, MemoryError):
         return ()
     return tuple(
-        each._replace(
+        replace(
+            each,
             name=each.name[:LONGEST],
             near=each.near[:LONGEST],
             text=lines[each.file][each.line - 1].strip()[:LONGEST],

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated
 
+from grader.strict_json import UNSTORED, not_empty
 from grader.submission.private_copy import PrivateCopy
 
 
@@ -42,7 +43,7 @@ class Program:
 class Launch:
     """Start several programs of a package, each in a process of its own, as a launch file does."""
 
-    programs: tuple[Program, ...]
+    programs: Annotated[tuple[Program, ...], not_empty]
 
 
 @dataclass(frozen=True)
@@ -70,10 +71,11 @@ class Imports:
 
     surely: dict[str, str] = field(default_factory=dict)
     perhaps: dict[str, str] = field(default_factory=dict)
-    files: tuple[Path, ...] = field(default=(), compare=False)
+    files: tuple[Path, ...] = field(default=(), compare=False, metadata=UNSTORED)
 
 
-class Slip(NamedTuple):
+@dataclass(frozen=True)
+class Slip:
     """What a look at the source shows; see `grader.recording.conduct.Slip`.
 
     Attributes:
@@ -106,11 +108,11 @@ class Submission:
     #: the folder of the package that its program is in, absolute; None where it is in none
     package: Path | None = field(default=None, compare=False)
     #: a trace of the scene package, where an inspection has seen its package as a whole
-    seen: object = field(default=None, compare=False)
+    seen: object = field(default=None, compare=False, metadata=UNSTORED)
     #: the processor time that the inspection took [s]
-    spent_s: float = field(default=0.0, compare=False)
+    spent_s: float = field(default=0.0, compare=False, metadata=UNSTORED)
     #: where its runs find it; None where it lies in place
-    copy: PrivateCopy | None = field(default=None, compare=False)
+    copy: PrivateCopy | None = field(default=None, compare=False, metadata=UNSTORED)
 
     @property
     def remarks(self) -> tuple[str, ...]:

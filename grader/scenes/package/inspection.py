@@ -10,8 +10,8 @@ import json
 from dataclasses import dataclass, field
 
 from grader.scenes.package import trace
-from grader.scenes.package.strict import to_json
 from grader.scenes.package.trace import PackageTrace, Problem
+from grader.strict_json import to_json
 
 
 @dataclass(frozen=True)

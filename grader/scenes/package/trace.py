@@ -10,9 +10,9 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass
-from typing import Self
+from typing import Annotated, Self
 
-from grader.scenes.package.strict import Made, from_json, longest, to_json
+from grader.strict_json import STRANGERS, Made, from_json, to_json
 
 #: A description may have so many characters; all of a trace so many bytes.
 LONGEST_TEXT = 2_000_000
@@ -287,8 +287,8 @@ class PackageTrace:
     launches: tuple[Launch, ...] = ()
     descriptions: tuple[Description, ...] = ()
     varied: tuple[Varied, ...] = ()
-    texts: tuple[str, ...] = longest(LONGEST_TEXT)
-    surfaces: tuple[str, ...] = longest(LONGEST_SURFACE)
+    texts: Annotated[tuple[str, ...], STRANGERS._replace(characters=LONGEST_TEXT)] = ()
+    surfaces: Annotated[tuple[str, ...], STRANGERS._replace(characters=LONGEST_SURFACE)] = ()
 
     @classmethod
     def of(cls, trace: object) -> Self:

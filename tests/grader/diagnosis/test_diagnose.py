@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
-from typing import get_args
+from typing import Literal, get_args, get_origin, get_type_hints
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 from grader.diagnosis.diagnose import diagnose
 from grader.diagnosis.diagnosis import CHECK
 from grader.exercise.verdict import Evidence, Verdict
-from grader.recording.conduct import Conduct, Place, Raised, SlipKind, Slow, Stop
+from grader.recording.conduct import Conduct, Place, Raised, Slow, Stop, StopKind
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.saving import save_all
@@ -72,31 +71,29 @@ HARD += ["The '' field", "SyntaxError", "AttributeError", "has no attribute", "/
 TEXTS = st.text(max_size=20) | st.sampled_from(HARD)
 PLACES = st.builds(Place, TEXTS, st.integers(0, 2**53), TEXTS, TEXTS)
 FORMS = {
-    "Place | None": st.none() | PLACES,
-    "Place": PLACES,
-    "str": TEXTS | st.sampled_from(["/turtle1/cmd_vel", "/pose", "a/msg/B", "turtlesim/msg/Pose"]),
-    "int": st.integers(0, 100),
-    "bool": st.booleans(),
-    "float": st.floats(0, 1e9),
-    "float | None": st.none() | st.floats(0, 1e9),
-    "EndKind": st.sampled_from(["subscription", "publisher", "client", "action_client"]),
-    "SlipKind": st.sampled_from(get_args(SlipKind)),
-    "StopKind": st.sampled_from(["callback", "call", "loop"]),
+    Place: PLACES,
+    str: TEXTS | st.sampled_from(["/turtle1/cmd_vel", "/pose", "a/msg/B", "turtlesim/msg/Pose"]),
+    int: st.integers(0, 100),
+    bool: st.booleans(),
+    float: st.floats(0, 1e9),
+    StopKind: st.sampled_from(["callback", "call", "loop"]),
 }
 
 
 def anything(kind):
-    return st.builds(kind, **{field.name: form(field.type) for field in fields(kind)})
+    return st.builds(kind, **{name: form(hint) for name, hint in get_type_hints(kind).items()})
 
 
-def form(name):
-    from grader.recording import conduct
-
-    if name.startswith("tuple["):
-        return st.lists(anything(getattr(conduct, name[6:-6])), max_size=3).map(tuple)
-    if name in FORMS:
-        return FORMS[name]
-    return st.none() | anything(getattr(conduct, name.removesuffix(" | None")))
+def form(hint):
+    if hint in FORMS:
+        return FORMS[hint]
+    if get_origin(hint) is Literal:
+        return st.sampled_from(get_args(hint))
+    if get_origin(hint) is tuple:
+        return st.lists(form(get_args(hint)[0]), max_size=3).map(tuple)
+    if get_args(hint):
+        return st.one_of(map(form, get_args(hint)))
+    return st.none() if hint is type(None) else anything(hint)
 
 
 @given(

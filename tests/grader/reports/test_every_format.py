@@ -67,6 +67,7 @@ TEXTS = st.one_of(
     st.text(st.characters(codec=None), max_size=40),
     st.lists(st.sampled_from(NASTY), max_size=3).map("".join),
 )
+OWN_FILES = TEXTS.filter(lambda text: not text.startswith("/") and ".." not in text.split("/"))
 PLACES = st.one_of(st.floats(-1, 12), st.just(float("nan")), st.just(float("inf")))
 EVIDENCE = st.fixed_dictionaries(
     {
@@ -137,7 +138,12 @@ def diagnoses(draw):
     if draw(st.booleans()):
         found["time_s"] = draw(st.floats(0, 1000))
     if draw(st.booleans()):
-        place = {"file": draw(TEXTS), "line": 39, "function": draw(TEXTS), "text": draw(TEXTS)}
+        place = {
+            "file": draw(OWN_FILES),
+            "line": 39,
+            "function": draw(TEXTS),
+            "text": draw(TEXTS),
+        }
         found["place"] = place
     if check := draw(TEXTS):
         found["check"] = check

@@ -16,6 +16,7 @@ from grader.reports import FORMATS, Report, render
 from grader.reports.wording import duration
 from grader.result.handed_in import HandedIn
 from grader.result.result import Result
+from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.readers import READERS
@@ -187,7 +188,7 @@ def test_where_nothing_is_hidden_everybody_reads_the_same(tmp_path, name):
 
 def late(folder, *verdicts):
     listed = verdicts or (samples.verdict("draws", "failed", 87.5, max_score=100),)
-    return samples.graded(folder, drive(Spiral(), ticks=400), *listed, handed_in=LATE.to_json())
+    return samples.graded(folder, drive(Spiral(), ticks=400), *listed, handed_in=to_json(LATE))
 
 
 @pytest.mark.parametrize("name", ["terminal", "html", "markdown", "prairielearn", "moodle-vpl"])
@@ -221,8 +222,8 @@ def test_what_lateness_costs_does_not_tell_what_hidden_checks_gave(tmp_path):
     ],
 )
 def test_who_was_in_time_is_told_so(hand_in, words):
-    made = Result.from_json(samples.result() | {"handed_in": hand_in.to_json()})
-    report = samples.report(handed_in=hand_in.to_json())
+    made = Result.from_json(samples.result() | {"handed_in": to_json(hand_in)})
+    report = samples.report(handed_in=to_json(hand_in))
     assert (report.score, report.deducted) == (made.score, 0)
     assert all(word in " ".join(report.handed_in) for word in words)
 

@@ -9,6 +9,7 @@ import pytest
 from grader.exercise.late import LatePolicy
 from grader.result.handed_in import HandedIn
 from grader.result.result import Result
+from grader.strict_json import to_json
 from tests.grader.reports import samples
 
 DUE = datetime(2026, 11, 30, 22, 59, tzinfo=UTC)
@@ -17,7 +18,7 @@ LATE = HandedIn.of("4711", "Zoë Müller", 2, DUE + timedelta(days=1, hours=3), 
 
 
 def with_it(handed_in, **more):
-    return Result.from_json(samples.result(**more) | {"handed_in": handed_in.to_json()})
+    return Result.from_json(samples.result(**more) | {"handed_in": to_json(handed_in)})
 
 
 def test_a_result_keeps_whose_it_is():
@@ -31,7 +32,7 @@ def test_a_result_keeps_whose_it_is():
 @pytest.mark.parametrize(("score", "final"), [(87.5, 67.5), (20, 0), (3.25, 0)])
 def test_the_final_score_is_what_lateness_leaves_and_never_below_nothing(score, final):
     listed = [samples.verdict("a", "failed", score, max_score=100)]
-    result = Result.from_json(samples.result(*listed) | {"handed_in": LATE.to_json()})
+    result = Result.from_json(samples.result(*listed) | {"handed_in": to_json(LATE)})
     assert (result.score, result.final) == (score, final)
 
 
@@ -48,6 +49,6 @@ def test_it_costs_what_the_exercise_says_now():
 
 @pytest.mark.parametrize("at", ["2026-12-02T01:59:00", "soon"])
 def test_a_time_without_a_zone_is_no_time(at):
-    data = samples.result() | {"handed_in": LATE.to_json() | {"at": at}}
+    data = samples.result() | {"handed_in": to_json(LATE) | {"at": at}}
     with pytest.raises(ValueError, match=at):
         Result.from_json(data)

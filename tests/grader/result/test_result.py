@@ -16,6 +16,7 @@ from grader.recording.provenance import Provenance
 from grader.recording.recording import Recordings, Run, Start
 from grader.result.provenance import Judged, Origin
 from grader.result.result import Result, RunSummary, build
+from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.test_every_format import any_results
@@ -174,5 +175,5 @@ def test_a_result_adds_up_its_verdicts_and_remarks_on_its_runs():
     assert result.run.flags == ("The node ended with an error: exit code 1.",)
     assert isinstance(result.run, Run)
     assert result.varied_runs[0].start == Start(1.0, 2.0, 0.5)
-    assert "start" not in result.run.to_json()
+    assert "start" not in to_json(result.run)
     assert result.provenance.judged.exercise_sha256 == exercise.sha256

@@ -16,6 +16,7 @@ from grader.judging import judge
 from grader.recording.recording import Recordings
 from grader.result.result import NotShown, Result, RunSummary
 from grader.result.visible import as_seen, student_view
+from grader.strict_json import OURS, from_json
 from grader.testing import drive, twist
 from tests.grader.reports import samples
 from tests.grader.testing import exercises
@@ -24,7 +25,7 @@ from tests.grader.testing import exercises
 def verdict(check, status="passed", visible="now", score=None, **more):
     earned = {"passed": 10.0}.get(status, 0.0) if score is None else score
     made = samples.verdict(check, status, earned, **more)
-    return replace(Verdict.from_json(made), visible=visible)
+    return replace(from_json(Verdict, made, OURS), visible=visible)
 
 
 def result_of(*verdicts, diagnosis="costliest"):
@@ -36,7 +37,7 @@ def result_of(*verdicts, diagnosis="costliest"):
         round(sum(v.score for v in verdicts), 2),
         round(sum(v.max_score for v in verdicts), 2),
         tuple(verdicts),
-        RunSummary.from_json(samples.run()),
+        from_json(RunSummary, samples.run(), OURS),
         diagnosis=found if any(not v.passed for v in verdicts) else None,
     )
 

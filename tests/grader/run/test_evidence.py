@@ -123,7 +123,8 @@ def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
     read = replace(submission, slips=(slip,))
     (found,) = told(read, say()).slips
     assert (found.kind, found.name, found.near) == ("unread", "stoped", "stopped")
-    assert (found.place.file, found.place.line, found.place.text) == slip[3:]
+    assert (found.place.file, found.place.line) == (slip.file, slip.line)
+    assert found.place.text == slip.text
     assert told(read) == Conduct()
     forged = {"kind": "unread", "name": "a", "near": "b", "place": PLACE}
     assert told(read, say(slips=[forged])).slips == (found,)

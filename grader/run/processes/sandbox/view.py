@@ -33,6 +33,7 @@ HOST = (
     *("grader/run/processes/__init__.py", "grader/run/processes/cores.py"),
     # of a package that is looked at
     *("grader/limited.py", "grader/scenes/__init__.py", "grader/scenes/package"),
+    "grader/strict_json.py",
     # ... and what says how far it may be
     *("grader/language/__init__.py", "grader/language/phrase.py"),
 )

@@ -10,7 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from grader.scenes.package import strict, trace
+from grader import strict_json
+from grader.scenes.package import trace
 from grader.scenes.package.examining import descriptions, launches, paths, surfaces
 from grader.scenes.package.examining.layout import Installed
 from grader.scenes.package.examining.place import Place
@@ -60,7 +61,7 @@ class Looking:
         found = [self._launch(told) for told in self._files]
         varied = self._besides(found) if is_whole else []
         return PackageTrace(
-            setup=strict.from_json(trace.Setup, _cleaned(self._setup(), place)),
+            setup=strict_json.from_json(trace.Setup, _cleaned(self._setup(), place)),
             others=tuple(each.name[:200] for each in place.all if each is not place.judged)[:100],
             launches=tuple(found),
             descriptions=tuple(self._descriptions),
@@ -82,7 +83,10 @@ class Looking:
         """The judged package's; with the dependencies of those whose launch files count."""
         setups = [of.setup for of, _ in self._files.values()]
         names = [n for each in (self._place.judged.setup, *setups) for n in each.depends]
-        return {**strict.to_json(self._place.judged.setup), "depends": list(dict.fromkeys(names))}
+        return {
+            **strict_json.to_json(self._place.judged.setup),
+            "depends": list(dict.fromkeys(names)),
+        }
 
     def _launch(self, file: str) -> Launch:
         try:
@@ -119,7 +123,7 @@ class Looking:
         lacking = [{**each, "by": each["by"] or file} for each in said["lacking"]]
         lacking += [{"kind": "package", "name": n, "source": "", "by": file} for n in missing]
         lacking = [{**each, "line": self._line(file, each["name"])} for each in lacking]
-        launch = strict.from_json(
+        launch = strict_json.from_json(
             Launch,
             {
                 "file": file,
@@ -190,7 +194,7 @@ class Looking:
             is_launched=launched,
             source=next((each for each in map(self._own, sources) if each), ""),
             problem=Problem("error", refused) if refused else None,
-            meshes=tuple(strict.from_json(Mesh, each) for each in named or ()),
+            meshes=tuple(strict_json.from_json(Mesh, each) for each in named or ()),
             is_xml=named is not None,
         )
         if sources and sources[0].startswith((f"{trace.PREFIX}/", "/source/")):

@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from grader.scenes.package import strict
+from grader import strict_json
 from grader.scenes.package.examining import paths
 from grader.scenes.package.examining.steps import NONSENSE, Ended, in_folder, step
 from grader.scenes.package.inspection import DataFiles, Told
@@ -42,7 +42,7 @@ def evaluate(folder: Path) -> tuple[Told, Problem | None]:
         return path.removeprefix(here) if path.startswith(here) else ""
 
     try:
-        return strict.from_json(Told, step(lambda: run_setup(folder), own)), None
+        return strict_json.from_json(Told, step(lambda: run_setup(folder), own)), None
     except Ended as ended:
         problem = ended.problem
     except ValueError:
@@ -92,7 +92,7 @@ def run_setup(folder: Path) -> Any:
         setup()
     if not made:
         raise RuntimeError("setup.py never calls setup()")
-    return strict.to_json(_of_poetry(told(made[-1]), folder / "pyproject.toml"))
+    return strict_json.to_json(_of_poetry(told(made[-1]), folder / "pyproject.toml"))
 
 
 def _no_entry_points(**_: object) -> Any:

@@ -11,8 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from grader import limited
-from grader.scenes.package import strict
+from grader import limited, strict_json
 from grader.scenes.package.examining import leftovers
 from grader.scenes.package.examining.account import CPU_S, Account, Watch
 from grader.scenes.package.trace import Problem
@@ -130,7 +129,7 @@ def _read(answer: bytes) -> Problem | tuple[Any]:
     if not isinstance(said, dict) or said.keys() not in ({"made"}, {"problem"}):
         raise ValueError(NONSENSE)
     if "problem" in said:
-        return strict.from_json(Problem, said["problem"])
+        return strict_json.from_json(Problem, said["problem"])
     return (said["made"],)
 
 

@@ -12,6 +12,7 @@ from grader.batch.entry import Entry
 from grader.batch.hand_in import HandIn, Person
 from grader.result.handed_in import HandedIn
 from grader.result.result import Result
+from grader.strict_json import to_json
 from tests.grader.reports import samples
 
 MAXIMUM = 40.0
@@ -79,7 +80,7 @@ def judged(folder: Path, *people: Person, deducted: float = 0.0, **more: Any) ->
     result = Result.from_json(samples.result(submission=hand_in.name, artifacts=artifacts, **more))
     if deducted:
         late = HandedIn(people[0].id, deducted=deducted)
-        result = Result.from_json(result.to_json() | {"handed_in": late.to_json()})
+        result = Result.from_json(result.to_json() | {"handed_in": to_json(late)})
     return Entry(hand_in, "judged", MAXIMUM, result=result, folder=own)
 
 

@@ -9,6 +9,7 @@ import pytest
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings
+from grader.strict_json import to_json
 from grader.testing import drive, pen, twist
 from tests.grader.driving import CENTRE, RED, WHITE, Spiral
 from tests.grader.language.known import unknown
@@ -188,7 +189,7 @@ def test_a_velocity_that_is_no_number_is_named_and_leaves_finite_evidence():
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     stop = next(verdict for verdict in verdicts if verdict.check == "edge_stop")
     assert "not a number" in stop.rationale
-    json.dumps([verdict.to_json() for verdict in verdicts], allow_nan=False)
+    json.dumps([to_json(verdict) for verdict in verdicts], allow_nan=False)
 
 
 def test_a_turtle_that_is_never_anywhere_is_judged_without_a_fault():

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-from grader.scenes.package import strict
 from grader.scenes.package.examining import account, main, paths, steps, surfaces
 from grader.scenes.package.examining.steps import (
     NONSENSE,
@@ -25,6 +24,7 @@ from grader.scenes.package.examining.steps import (
 )
 from grader.scenes.package.inspection import Told
 from grader.scenes.package.trace import FAILED, PackageTrace, decode, encode
+from grader.strict_json import from_json
 from tests.submissions.packages import REFERENCE, looked_at, written
 
 DISPLAY, SPAWN = "launch/display.launch.py", "launch/spawn.launch.py"
@@ -220,10 +220,10 @@ def test_what_a_step_forks_does_not_answer_for_it():
     ],
 )
 def test_only_what_has_the_form_of_an_answer_is_one(key, value):
-    assert strict.from_json(Told, ANSWER).scripts == ("a = a:main",)
+    assert from_json(Told, ANSWER).scripts == ("a = a:main",)
     for forged in ({**ANSWER, key: value}, []):
         with pytest.raises(ValueError, match="expected"):
-            strict.from_json(Told, forged)
+            from_json(Told, forged)
 
 
 def test_texts_that_are_cut_have_no_part_of_a_path_and_no_address():

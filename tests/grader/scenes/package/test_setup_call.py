@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.scenes.package import strict
 from grader.scenes.package.examining.setup_call import evaluate, run_setup
 from grader.scenes.package.examining.steps import Ended, step
 from grader.scenes.package.inspection import DataFiles, Told
+from grader.strict_json import from_json
 
 SETUP = "from setuptools import setup\n"
 ONLY_CALLS = f"{SETUP}setup()\n"
@@ -23,7 +23,7 @@ def told(folder: Path, **files: str) -> Told:
     def own(path: str) -> str:
         return path.removeprefix(f"{folder}/") if path.startswith(f"{folder}/") else ""
 
-    return strict.from_json(Told, step(lambda: run_setup(folder), own))
+    return from_json(Told, step(lambda: run_setup(folder), own))
 
 
 def test_what_setup_cfg_lists_is_installed(tmp_path):
