@@ -46,8 +46,9 @@ def test_two_nodes_in_two_namespaces_do_not_hear_each_other(graph: Graph) -> Non
         sideways = Twist(linear=Vector3(y=1.0))
         graph.publisher(Twist, "/second/turtle1/cmd_vel").publish(sideways)
         graph.until(lambda: others[-1].y > 5.6, "a way to the left")
-        services = dict(graph.node.get_service_names_and_types())
-        assert "/second/painter/set_parameters" in services
+        services = graph.node.get_service_names_and_types
+        name = "/second/painter/set_parameters"
+        graph.until(lambda: name in dict(services()), "its parameters")
         assert first.stop() == second.stop() == 0
 
 
