@@ -53,6 +53,7 @@ class Graph:
         )
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self.node)
+        self._is_closed = False
         self._clients: dict[tuple[str, str], Any] = {}
         self._actions: dict[tuple[str, str], ActionClient] = {}
         self._thread = threading.Thread(target=self._spin, name="live graph", daemon=True)
@@ -60,12 +61,23 @@ class Graph:
 
     def _spin(self) -> None:
         with suppress(ExternalShutdownException):
-            self._executor.spin()
+            while rclpy.ok() and not self._is_closed:
+                self._executor.spin_once()
 
     def close(self) -> None:
-        """Leave the graph."""
-        self._executor.shutdown(timeout_sec=1.0)
+        """Leave the graph, when what the thread is at has come to its end.
+
+        rclpy's shutdown takes from an executor what a callback in another thread still works with.
+        """
+
+        def end() -> None:
+            self._is_closed = True
+
+        self._executor.create_task(end)
         self._thread.join(1.0)
+        if self._thread.is_alive():
+            return
+        self._executor.shutdown(timeout_sec=1.0)
         if rclpy.ok():
             self.node.destroy_node()
 

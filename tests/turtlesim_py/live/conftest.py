@@ -71,5 +71,5 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
         cwd=tmp_path_factory.mktemp("page"),
     ) as program:
         yield Page(program)
-        assert program.stop() == 0
+        assert program.stop() == 0, program.text()
         assert "Traceback" not in program.text()
