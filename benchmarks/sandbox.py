@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))  # this checkout, whatever is installed
 from grader import scratch
 from grader.run.processes import isolation, levels
 from grader.run.processes.family import Student
-from grader.run.processes.zygote import Warm, Zygote
+from grader.run.processes.zygote import Zygote
 
 #: A program that ends at once, started or forked; what a zygote is told comes after its code.
 ENDS = f"""
@@ -64,8 +64,9 @@ def measure(
                 level, submission, submission, folder, is_apart=bool(isolated.namespaces)
             )
             student = Student(
-                *(COMMAND, {**env, **place.env}, submission, (), isolated.entry),
-                None if warm is None else Warm(warm, isolated.namespaces),
+                *(COMMAND, {**env, **place.env}, submission, ()),
+                isolated.namespaces,
+                warm,
                 place.order,
             )
             code = student.wait(30.0)

@@ -12,7 +12,6 @@ the work is done in this process: then only what Python itself notices is a limi
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import os
 import select
@@ -38,7 +37,6 @@ _ANSWER, _HIT, _END = b"=", b"!", b"."
 _GRACE_S = 10.0
 #: So often it is asked whether it has stalled [s].
 _LOOK_S = 0.5
-_PR_SET_PDEATHSIG = 1
 _ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIGPIPE")
 
 
@@ -281,12 +279,13 @@ def _confine(limits: Limits, kept: int) -> None:
     """Nothing of what this copy does reaches further than itself, or lasts."""
     import resource  # here: Windows has none
 
+    from grader import linux
+
     for name in _ENDING:
         signal.signal(getattr(signal, name), signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is told to the one who asks, too
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM, signal.SIGPROF})
-    with suppress(AttributeError, OSError):
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    linux.signal_at_parents_death(signal.SIGKILL)
     # Whoever waits for the other end of one of our sockets is not to wait for this copy.
     for path in list((system.PROC / "self" / "fd").iterdir()):
         if int(path.name) > 2 and int(path.name) != kept:

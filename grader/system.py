@@ -20,15 +20,6 @@ def runs_submissions() -> bool:
     return sys.platform == "linux" and (PROC / "self" / "stat").exists()
 
 
-def has_pidfd() -> bool:
-    """Whether there are descriptors that stand for processes; some containers refuse them."""
-    try:
-        os.close(os.pidfd_open(os.getpid()))
-    except OSError:
-        return False
-    return True
-
-
 def user() -> str:
     """What tells this user's files from those of others."""
     return str(os.getuid()) if hasattr(os, "getuid") else os.environ.get("USERNAME", "user")

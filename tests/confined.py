@@ -33,7 +33,8 @@ def main(wanted: str, folder: str, *words: str) -> None:
         )
         command = [sys.executable, "-I", "-S", *words]
         student = Student(
-            *(command, {**env, **place.env}, Path(folder), (), isolated.entry, None, place.order)
+            *(command, {**env, **place.env}, Path(folder), (), isolated.namespaces),
+            confinement=place.order,
         )
         student.wait(60.0)
         student.end()

@@ -36,7 +36,7 @@ def below(package: str, *names: str) -> set[str]:
 #: What every station of the grader may import.
 GROUND = below(
     "grader",
-    *("errors", "text", "files", "locks", "scratch", "removal", "system"),
+    *("errors", "text", "files", "locks", "scratch", "removal", "system", "linux", "usage"),
     *("requirements", "strict_json", "limited", "versions", "content", "language"),
 )
 STATIONS = below(
@@ -96,7 +96,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     # a package is looked at in the submission's process, which sees little of ours
     "grader.scenes.package.trace": {"grader.strict_json"},
     "grader.scenes.package.inspection": {"grader.strict_json", "grader.scenes.package.trace"},
-    "grader.scenes.package.examining": below("grader", "limited", "strict_json")
+    "grader.scenes.package.examining": below("grader", "limited", "linux", "strict_json", "usage")
     | below("grader.scenes.package", "trace", "inspection", "__init__"),
     "grader.scenes.package.examining.doubles": {"grader.scenes.package.examining"},
     "grader.recording": GROUND | {"grader.scenes"},

@@ -14,6 +14,8 @@ ONE = {
     "a trace is serialised between processes": (r"np\.savez|np\.load\(", ""),
     "work is done in a limited copy": (r"setitimer\(signal\.ITIMER_PROF", "limited.py"),
     "data of others becomes a dataclass": (r"get_type_hints\(", "strict_json.py"),
+    "what a process uses is looked up": (r"/proc/[^ ]*/stat\"", "usage.py"),
+    "a process of a run is begun": (r"os\.execvpe?\(", "run/processes/forking.py"),
 }
 
 

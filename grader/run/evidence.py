@@ -14,10 +14,9 @@ from contextlib import contextmanager, suppress
 from itertools import chain
 from typing import Any
 
-from grader import strict_json
+from grader import strict_json, usage
 from grader.recording.conduct import Conduct
 from grader.run import dumps
-from grader.run.processes import usage
 from grader.run.student import account
 from grader.run.student.telling import asking_signal
 from grader.submission.opening import Submission

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable
 
+from grader import usage
 from grader.errors import GraderFailure, NotNow
 from grader.recording.recording import Outcome, Recording
 from grader.run import evidence, handover, stage
@@ -14,7 +15,6 @@ from grader.run.audience import Audience, seats
 from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
-from grader.run.processes import usage
 from grader.run.processes.watched import Watched
 from grader.run.simulator_process import Message, Simulator, start_simulator
 from grader.scenes import load_scene

@@ -19,7 +19,7 @@ from grader.run.environment import simulator_environment
 from grader.run.plan import Plan
 from grader.run.processes.line import Line
 from grader.run.processes.watched import Watched
-from grader.run.processes.zygote import Warm
+from grader.run.processes.zygote import Zygote
 from grader.run.stage import Stage
 
 #: How long the simulator may take to come up, and to save the recording [s].
@@ -120,7 +120,7 @@ def start_simulator(
     plan: Plan,
     link: socket.socket | None = None,
     *more: str,
-    warm: Warm | None = None,
+    zygote: Zygote | None = None,
     seat: Seat = NOBODY,
 ) -> Iterator[Simulator]:
     """Start `module` as the simulator's process.
@@ -129,7 +129,7 @@ def start_simulator(
         link: inherited as well; its number follows the first three arguments.
         more: further arguments.
         seat: how it is told that somebody looks on; the last argument.
-        warm: where it is to be forked instead, if that can be.
+        zygote: what it is forked from, if that can be.
     """
     with Line() as line:
         links = [link.fileno()] if link else []
@@ -139,7 +139,7 @@ def start_simulator(
         folder = stage.simulator_folder
         fds = (*line.fds, *links, stage.recording, folder, *seat.fds)
         here = Path(f"/proc/self/fd/{folder}")
-        process = Watched(command, env, here, fds, stage.entry, warm)
+        process = Watched(command, env, here, fds, stage.namespaces, zygote)
         try:
             yield Simulator(process, line.connect())
         finally:

@@ -17,7 +17,7 @@ from grader.run.processes import isolation, levels
 from grader.run.processes.family import Student
 from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
-from grader.run.processes.zygote import Warm
+from grader.run.processes.zygote import Zygote
 from grader.run.student import main as student_main
 from grader.submission.opening import EntryPoint, Launch, Submission, Whole
 
@@ -69,8 +69,7 @@ class Stage:
         isolation: for the result: how the submission's process is confined, and what keeps the
             run apart from others.
         env: environment variables of both processes.
-        entry: stands before the command of each.
-        namespaces: what a process that is forked enters instead: kind -> descriptor.
+        namespaces: which both processes are in: kind -> descriptor.
         level: how the submission's process is confined.
         budget: what the submission's process and all that it starts spend of.
     """
@@ -81,7 +80,6 @@ class Stage:
     recording_path: str
     isolation: str
     env: Mapping[str, str]
-    entry: tuple[str, ...]
     namespaces: Mapping[str, int]
     level: levels.Level
     budget: Budget
@@ -107,8 +105,8 @@ class Stage:
         self, command: Sequence[str], submission: Submission, pass_fds: tuple[int, ...]
     ) -> Watched:
         """The same for virtual time: forked, unless that would make a difference."""
-        warm = zygotes.for_student(submission.root, self.namespaces)
-        return self._start(command, virtual_environment({}), submission, pass_fds, warm)
+        zygote = zygotes.for_student(submission.root)
+        return self._start(command, virtual_environment({}), submission, pass_fds, zygote)
 
     def _start(
         self,
@@ -116,14 +114,15 @@ class Stage:
         env: Mapping[str, str],
         submission: Submission,
         pass_fds: tuple[int, ...],
-        warm: Warm | None = None,
+        zygote: Zygote | None = None,
     ) -> Watched:
         root, is_apart = submission.root, bool(self.namespaces)
         own = submission.copy.folder if submission.copy else root
         place = levels.prepare(self.level, root, own, self.folder, is_apart=is_apart)
         env = {**self.env, **env, **place.env}
         return Student(
-            *(command, env, root, pass_fds, self.entry, warm, place.order), budget=self.budget
+            *(command, env, root, pass_fds, self.namespaces, zygote, place.order),
+            budget=self.budget,
         )
 
 
@@ -148,7 +147,7 @@ def open_stage(budget: Budget | None = None) -> Iterator[Stage]:
             stack.callback(os.close, recording)
             yield Stage(
                 *(folder, simulator_folder, recording, path, isolation_name, env),
-                *(isolated.entry, isolated.namespaces, level, budget or Budget()),
+                *(isolated.namespaces, level, budget or Budget()),
             )
 
 

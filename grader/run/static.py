@@ -13,14 +13,11 @@ import json
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
-import psutil
-
-from grader import scratch
+from grader import scratch, usage
 from grader.errors import GraderFailure
 from grader.language.phrase import say
 from grader.recording.recording import Outcome, Recording
@@ -192,17 +189,11 @@ def _wait(student: Watched) -> tuple[int | None, str]:
         exit_code = student.wait(min(EVERY_S, left_s))
         if exit_code is not None:
             return exit_code, ""
-        stopped = stopped + 1 if _is_stopped(student.pid) else 0
+        stopped = stopped + 1 if usage.look(student.pid).is_stopped else 0
         if stopped >= STOPPED_LOOKS:
             return None, STOPPED
     seconds = f"{PATIENCE_S:.0f}"
     raise GraderFailure(say("looking at the package took more than {seconds} s", seconds=seconds))
-
-
-def _is_stopped(process: int) -> bool:
-    with suppress(psutil.Error):
-        return bool(psutil.Process(process).status() == psutil.STATUS_STOPPED)
-    return False
 
 
 def _failure(output: str) -> str:

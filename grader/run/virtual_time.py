@@ -11,6 +11,7 @@ import socket
 import time
 from dataclasses import asdict, replace
 
+from grader import usage
 from grader.errors import GraderFailure
 from grader.language.phrase import say
 from grader.recording.recording import Outcome, Recording
@@ -20,7 +21,7 @@ from grader.run.budget import Budget
 from grader.run.finish import Ending, limits_struck, outcome, record
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
-from grader.run.processes import cores, usage
+from grader.run.processes import cores
 from grader.run.real_time import Progress
 from grader.run.simulator.link import Patience
 from grader.run.simulator_process import SIMULATOR_PATIENCE_S, Message, Simulator, start_simulator
@@ -114,9 +115,9 @@ def _try(
         try:
             try:
                 more = (str(student.pid), str(core_id), json.dumps(asdict(patience)))
-                warm = zygotes.for_simulator(place.namespaces)
+                zygote = zygotes.zygote(zygotes.SIMULATOR)
                 with start_simulator(
-                    MODULE, place, plan, theirs, *more, warm=warm, seat=seat
+                    MODULE, place, plan, theirs, *more, zygote=zygote, seat=seat
                 ) as simulator:
                     theirs.close()
                     seat.taken()

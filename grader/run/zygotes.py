@@ -16,16 +16,14 @@ import os
 import sys
 import threading
 from collections import Counter
-from collections.abc import Mapping
 from pathlib import Path
 
-from grader import system
 from grader.run.environment import (
     lasting_environment,
     simulator_environment,
     virtual_environment,
 )
-from grader.run.processes.zygote import Warm, Zygote, ZygoteLost, shadows
+from grader.run.processes.zygote import Zygote, ZygoteLost, shadows
 from grader.scenes import MESSAGES, NAMES
 
 #: What runs as the simulator's process in virtual time.
@@ -49,21 +47,15 @@ def warm() -> None:
     zygote(STUDENT)
 
 
-def for_student(root: Path, namespaces: Mapping[str, int]) -> Warm | None:
-    """How to fork the process of a submission; None where it has to start from nothing."""
+def for_student(root: Path) -> Zygote | None:
+    """What the process of a submission is forked from; None where it has to start from nothing."""
     found = zygote(STUDENT)
     try:
         if found is None or shadows(root, found.preloaded()):
             return None
     except ZygoteLost:
         return None
-    return Warm(found, namespaces)
-
-
-def for_simulator(namespaces: Mapping[str, int]) -> Warm | None:
-    """How to fork the simulator's process; None where it has to start from nothing."""
-    found = zygote(SIMULATOR)
-    return None if found is None else Warm(found, namespaces)
+    return found
 
 
 def command(side: str) -> list[str]:
@@ -75,8 +67,6 @@ def command(side: str) -> list[str]:
 
 def zygote(side: str) -> Zygote | None:
     """That of a side; started if there is none that is as it would be now. None: there is none."""
-    if not system.has_pidfd():
-        return None
     words = command(side)
     if side == STUDENT:
         env, needs = virtual_environment(lasting_environment()), json.dumps(MESSAGES)

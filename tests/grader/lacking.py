@@ -14,7 +14,6 @@ import builtins
 import ctypes
 import os
 import runpy
-import shutil
 import signal
 import socket
 import sys
@@ -51,7 +50,7 @@ def like_macos() -> None:
     """No Linux: no /proc, no namespaces, nothing that only its kernel does; rcl is no librcl.so."""
     for name in OF_LINUX:
         vars(os).pop(name, None)
-    original, which, pair = ctypes.CDLL, shutil.which, socket.socketpair
+    original, pair = ctypes.CDLL, socket.socketpair
 
     def load(name: str | None, *args: Any, **more: Any) -> Any:
         if name in ("librcl.so", "librcl_action.so"):
@@ -65,7 +64,6 @@ def like_macos() -> None:
         return pair(family, kind, *more)
 
     ctypes.CDLL = load  # type: ignore[assignment,misc]
-    shutil.which = lambda name, *more: None if name == "nsenter" else which(name, *more)  # type: ignore[assignment]
     socket.socketpair = connected  # type: ignore[assignment]
 
 

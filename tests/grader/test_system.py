@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from grader import system
-from grader.run.processes import isolation, linux
+from grader import linux, system
+from grader.run.processes import isolation
 
 
 def test_submissions_are_run_where_linux_shows_its_processes(monkeypatch, tmp_path: Path) -> None:

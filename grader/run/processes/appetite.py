@@ -15,11 +15,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import NamedTuple
 
+from grader import usage
 from grader.run.budget import Budget
 from grader.run.processes.sandbox.limits import LIMITS, MIB, Limits, size
+from grader.usage import Usage
 
-TICKS_PER_S = os.sysconf("SC_CLK_TCK")
-PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
 #: How often it is looked [s].
 EVERY_S = 0.2
 #: Memory that has gone since the last close look, wherever to, and makes the next one due.
@@ -29,7 +29,7 @@ HURRY_BYTES = 256 * MIB
 NEAR = 12
 
 
-class Usage(NamedTuple):
+class Taken(NamedTuple):
     """What a family of processes uses at once.
 
     Attributes:
@@ -103,7 +103,7 @@ class Appetite:
         """Whether it is too much."""
         limits = self._limits
         found = self._family.look()
-        self._budget.spend(max(0, found.ticks - self._seen_ticks) / TICKS_PER_S)
+        self._budget.spend(max(0, found.ticks - self._seen_ticks) / usage.TICKS_PER_S)
         self._seen_ticks = max(self._seen_ticks, found.ticks)
         if self._budget.is_spent:
             self.remark = self._budget.remark
@@ -157,23 +157,23 @@ class Family:
         #: Processes that were there and are none of them; they will not become any.
         self._others: set[int] = set()
 
-    def look(self) -> Usage:
+    def look(self) -> Taken:
         """What they use now, without the ancestor, by what is told quickly."""
         members = self._members()
         memory = sum(member.memory_bytes for member in members.values())
         tasks = sum(member.tasks for member in members.values())
-        ticks = sum(member.ticks for member in members.values())
-        return Usage(memory, tasks, sum(map(_open_files, members)), ticks)
+        ticks = sum(member.ticks + member.waited_ticks for member in members.values())
+        return Taken(memory, tasks, sum(map(_open_files, members)), ticks)
 
     def own_memory_bytes(self) -> int:
         """Their memory that is no file's; pages that several share count once [bytes]."""
         return sum(_own_memory(pid, member) for pid, member in self._members().items())
 
-    def _members(self) -> dict[int, _Process]:
+    def _members(self) -> dict[int, Usage]:
         there = {int(name) for name in os.listdir("/proc") if name.isdigit()}  # noqa: PTH208
         self._others &= there
-        found = {pid: seen for pid in there - self._others if (seen := _see(pid))}
-        members: dict[int, _Process] = {}
+        found = {pid: seen for pid in there - self._others if (seen := usage.look(pid)).state}
+        members: dict[int, Usage] = {}
         above = {self._ancestor}
         while children := {pid for pid, seen in found.items() if seen.parent in above} - above:
             members.update((pid, found[pid]) for pid in children - members.keys())
@@ -190,23 +190,6 @@ class Family:
         return members
 
 
-class _Process(NamedTuple):
-    parent: int
-    tasks: int
-    memory_bytes: int
-    ticks: int
-
-
-def _see(pid: int) -> _Process | None:
-    """What /proc/PID/stat tells; see proc_pid_stat(5)."""
-    try:
-        fields = _read(pid, "stat").rpartition(b")")[2].split()
-        ticks = sum(map(int, fields[11:15]))
-        return _Process(int(fields[1]), int(fields[17]), int(fields[21]) * PAGE_BYTES, ticks)
-    except (OSError, IndexError):
-        return None
-
-
 def _open_files(pid: int) -> int:
     """How many descriptors a process has open; 0 where that is not told."""
     try:
@@ -215,7 +198,7 @@ def _open_files(pid: int) -> int:
         return 0
 
 
-def _own_memory(pid: int, seen: _Process) -> int:
+def _own_memory(pid: int, seen: Usage) -> int:
     """A process's part of memory that is no file's [bytes]; where nobody may know, all it has."""
     try:
         lines = _read(pid, "smaps_rollup").splitlines()

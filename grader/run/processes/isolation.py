@@ -12,7 +12,6 @@ from __future__ import annotations
 import errno
 import os
 import select
-import shutil
 import subprocess
 import sys
 import threading
@@ -22,9 +21,10 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
+from grader import linux
 from grader.errors import NotNow
 from grader.language.phrase import say
-from grader.run.processes import domain, linux, supervisor
+from grader.run.processes import domain, hold
 from grader.run.processes.refusal import TRIES, Refusal, insist
 
 #: Fast DDS would use shared memory for discovery range LOCALHOST, whatever its settings say.
@@ -58,13 +58,11 @@ class Isolation:
     Attributes:
         name: for the result: "private network", "ROS domain 87".
         env: environment variables of both processes.
-        entry: stands before a command that is to run inside.
-        namespaces: what a process that is forked has to enter instead: kind -> descriptor.
+        namespaces: what they have to enter: kind -> descriptor.
     """
 
     name: str
     env: Mapping[str, str]
-    entry: tuple[str, ...] = ()
     namespaces: Mapping[str, int] = field(default_factory=dict)
 
 
@@ -73,11 +71,6 @@ class Namespaces:
     """Open namespaces: kind -> file descriptor. They live as long as these or their processes."""
 
     fds: dict[str, int] = field(default_factory=dict)
-
-    def entry(self) -> tuple[str, ...]:
-        """The words before a command that is to run inside."""
-        options = [f"--{kind}=/proc/{os.getpid()}/fd/{fd}" for kind, fd in self.fds.items()]
-        return ("nsenter", "--preserve-credentials", *options, "--")
 
     def close(self) -> None:
         """Let them go."""
@@ -100,7 +93,7 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
         try:
             env = {**RANGE, "ROS_DOMAIN_ID": "0", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
             name = "private network"
-            yield Isolation(name, env, namespaces.entry(), namespaces.fds)
+            yield Isolation(name, env, namespaces.fds)
         finally:
             namespaces.close()
         return
@@ -125,8 +118,6 @@ def private_network() -> Namespaces | None:
     Raises:
         NotNow: what kept it from being made may pass; it was tried `refusal.TRIES` times.
     """
-    if shutil.which("nsenter") is None:
-        return None
     found: list[Namespaces] = []
     last: Refusal | None = None
     for way in (_as_root, _as_user):
@@ -180,13 +171,13 @@ def _as_root() -> Namespaces:
 
 def _as_user() -> Namespaces:
     # Only a process with a single thread may make a user namespace, so another one does.
-    command = [sys.executable, "-I", "-S", supervisor.__file__, "hold"]
+    command = [sys.executable, "-I", "-S", hold.__file__]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     ) as holder:
         answer = _first_line(holder)
         if answer != "ready":
-            refusal = Refusal.from_line(answer.removeprefix(supervisor.REFUSED).strip())
+            refusal = Refusal.from_line(answer.removeprefix(hold.REFUSED).strip())
             raise OSError(refusal.number, refusal.words, refusal.step)
         spaces = Namespaces()
         try:

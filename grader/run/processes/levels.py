@@ -30,7 +30,7 @@ from typing import Any
 from grader import scratch
 from grader.errors import GraderError, GraderFailure, NotNow, NotOffered, UsageError
 from grader.language.phrase import say
-from grader.run.processes import family, isolation
+from grader.run.processes import family, isolation, watched
 from grader.run.processes.isolation import Isolation
 from grader.run.processes.refusal import TRIES, Refusal, insist
 from grader.run.processes.sandbox import landlock, view
@@ -318,8 +318,8 @@ def _try(level: Level, isolated: Isolation) -> Refusal | None:
             (folder / "tmp").mkdir()
             tried.mkdir()
             place = prepare(level, tried, tried, folder, is_apart=is_apart)
-            return _start(place, folder, isolated.entry)
-    except family.NotConfined as error:
+            return _start(place, folder, isolated.namespaces)
+    except watched.NotConfined as error:
         return error.refusal
     except GraderError as error:
         return Refusal(0, "", error.message)
@@ -327,7 +327,7 @@ def _try(level: Level, isolated: Isolation) -> Refusal | None:
         return Refusal.of(error)
 
 
-def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> Refusal | None:
+def _start(place: Place, folder: Path, namespaces: Mapping[str, int]) -> Refusal | None:
     needed = [os.__file__, str(view.ROOT / view.HOST[0])]
     rclpy, package = importlib.util.find_spec("rclpy"), ""
     if rclpy and rclpy.origin:
@@ -336,7 +336,7 @@ def _start(place: Place, folder: Path, entry: tuple[str, ...]) -> Refusal | None
     written = place.env.get("TMPDIR", str(folder / "tmp"))
     words = [sys.executable, "-I", "-S", "-c", TRIAL, written, package, *needed]
     env = {**os.environ, **place.env}
-    process = family.Student(words, env, folder / "tried", (), entry, None, place.order)
+    process = family.Student(words, env, folder / "tried", (), namespaces, None, place.order)
     try:
         ended = process.wait(PATIENCE_S)
     finally:

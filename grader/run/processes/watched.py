@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import threading
@@ -15,11 +16,12 @@ from typing import Any
 
 import psutil
 
-from grader import system
-from grader.run.processes import linux
+from grader import linux, system
+from grader.errors import NotNow
+from grader.language.phrase import say
 from grader.run.processes.forking import MARK
-from grader.run.processes.process import Process, Spawned
-from grader.run.processes.zygote import Warm, ZygoteLost
+from grader.run.processes.refusal import Refusal
+from grader.run.processes.zygote import Child, Zygote, ZygoteLost, await_readable, cold
 
 #: How much of a process's output is kept: this many bytes of its start and as many of its end.
 KEEP_BYTES = 32_768
@@ -98,6 +100,16 @@ def _runs(process: psutil.Process) -> bool:
     return False
 
 
+class NotConfined(NotNow):
+    """A process could not be confined or started, which was to be had before."""
+
+    def __init__(self, refusal: Refusal) -> None:
+        super().__init__(
+            say("the submission's process could not be started: {why}", why=refusal.why)
+        )
+        self.refusal = refusal
+
+
 class Watched:
     """A process in a session of its own whose output is read as it comes.
 
@@ -115,33 +127,37 @@ class Watched:
         env: Mapping[str, str],
         cwd: Path | None = None,
         pass_fds: tuple[int, ...] = (),
-        entry: Sequence[str] = (),
-        warm: Warm | None = None,
-        report: int = -1,
-        order: int = -1,
+        namespaces: Mapping[str, int] | None = None,
+        zygote: Zygote | None = None,
         confinement: Mapping[str, Any] | None = None,
     ) -> None:
         """Start it.
 
         Args:
-            entry: stands before the command, where that is started; see `.isolation`.
-            warm: where it is to be forked instead, if that can be.
-            report: the descriptor of a supervisor that stands between, if one does.
-            order: a file from which that reads, where it is started, how it confines the command.
-            confinement: the same where it is forked.
+            namespaces: which it is in: kind -> descriptor.
+            zygote: what it is forked from, if that can be; None: it starts from nothing.
+            confinement: how it is confined; see `.sandbox.confinement`.
         """
         self._mark = uuid.uuid4().hex
-        env = {**env, MARK: self._mark}
-        process: Process | None = None
-        if warm is not None:
+        self._told: dict[str, Any] = {}
+        self._lines, self._is_silent = b"", False
+        #: the server that was started for this process alone
+        self._cold: Zygote | None = None
+        marked = {**env, MARK: self._mark}
+        words = (command, marked, cwd, pass_fds, namespaces, confinement)
+        child: Child | None = None
+        if zygote is not None:
             with suppress(ZygoteLost):
-                process = warm.zygote.fork(
-                    *(command, env, cwd, pass_fds, warm.namespaces, report, confinement)
-                )
-        if process is None:
-            inherited = [fd for fd in (*pass_fds, report, order) if fd >= 0]
-            process = Spawned([*entry, *command], env, cwd, tuple(inherited))
-        self._process = process
+                child = zygote.fork(*words, supervised=not self.IS_OURS)
+        if child is None:
+            self._cold = cold(env)
+            try:
+                child = self._cold.fork(*words, supervised=not self.IS_OURS)
+            except ZygoteLost as lost:
+                raise NotConfined(lost.refusal) from None
+            finally:
+                self._cold.retire()
+        self._child = child
         self._head = bytearray()
         self._tail = bytearray()
         self._dropped = 0
@@ -155,20 +171,48 @@ class Watched:
     @property
     def pid(self) -> int:
         """The process id."""
-        return self._process.pid
+        return self._child.pid
 
     def poll(self) -> int | None:
         """The exit code, negative for a signal, or None while it runs."""
-        return self._process.poll()
+        return self.wait(0.0)
 
     def wait(self, timeout_s: float) -> int | None:
-        """Wait for its end; None if it still runs then."""
-        return self._process.wait(timeout_s)
+        """Wait for its end; None if it still runs then.
+
+        Raises:
+            NotConfined: it could not be confined, or started.
+        """
+        code = self._await_end(timeout_s)
+        if code is not None and "refused" in self._told:
+            raise NotConfined(Refusal.from_line(str(self._told["refused"])))
+        return code
+
+    def _await_end(self, timeout_s: float) -> int | None:
+        if not self._hear("exit", timeout_s):
+            return None
+        # a supervisor ends without a word on its command only if somebody has killed one of them
+        default = self._told.get("over", -signal.SIGKILL) if self.IS_OURS else -signal.SIGKILL
+        return int(self._told.get("exit", default))
+
+    def _hear(self, what: str, timeout_s: float) -> bool:
+        """Whether its report has told that, or come to its end."""
+        deadline = time.monotonic() + timeout_s
+        report = self._child.report
+        while not (report < 0 or self._is_silent or self._told.keys() & {what, "over"}):
+            if not await_readable(report, max(0.0, deadline - time.monotonic())):
+                return False
+            news = os.read(report, 4096)
+            *lines, self._lines = (self._lines + news).split(b"\n")
+            for line in lines:
+                self._told.update(json.loads(line))
+            self._is_silent = not news
+        return True
 
     @property
     def was_lost(self) -> bool:
         """Whether it ended because a process of ours did, which is no doing of its own."""
-        return self._process.was_lost
+        return self._is_silent and "over" not in self._told and self._cold is None
 
     def ends_for_excess(self) -> bool:
         """A last look: whether it is ended for taking too much, now or before."""
@@ -194,28 +238,36 @@ class Watched:
 
     def kill(self) -> None:
         """End it now, and do not wait."""
-        if self._process.poll() is None:
-            self._process.kill()
+        self._signal(signal.SIGKILL)
 
     def end(self, patience_s: float = 2.0, *, gently: bool = True) -> None:
         """Ask it to end as Ctrl-C would, then insist; its descendants go with it."""
-        is_through = self.poll() == 0
+        is_through = self._await_end(0.0) == 0
         for sent in INSISTING if gently else INSISTING[-1:]:
-            if self.poll() is None:
-                self._send(sent)
-                self.wait(patience_s)
-        self.forget()
-        if not (is_through and self.IS_OURS):
+            if self._await_end(0.0) is None:
+                with suppress(ProcessLookupError):
+                    os.killpg(self._child.pid, sent)
+                self._await_end(patience_s)
+        if not is_through:
             self._sweep(patience_s)
+        self._forget()
 
-    def forget(self) -> None:
-        """It has ended: the end of the grader needs not see to it."""
+    def _forget(self) -> None:
+        """It has ended: the end of the grader needs not see to it, and what it held is free."""
         _running.discard(self)
+        for descriptor in {self._child.pidfd, self._child.report} - {-1}:
+            os.close(descriptor)
+        self._child = self._child._replace(pidfd=-1, report=-1)
+        if self._cold is not None:
+            self._cold.close()
 
-    def _send(self, number: signal.Signals) -> None:
-        """A signal to it and its group."""
-        with suppress(ProcessLookupError):
-            os.killpg(self._process.pid, number)
+    def _signal(self, number: signal.Signals) -> None:
+        """A signal to it, or to its supervisor."""
+        with suppress(OSError):  # it has ended
+            if self._child.pidfd >= 0:
+                signal.pidfd_send_signal(self._child.pidfd, number)
+            elif self._child.report >= 0 and not self._hear("over", 0.0):
+                os.kill(self._child.pid, number)
 
     def _sweep(self, patience_s: float) -> None:
         """End what it has started, wherever that has gone: its environment tells."""
@@ -236,7 +288,7 @@ class Watched:
         return False
 
     def _read(self) -> None:
-        with self._process.stdout as output:
+        with open(self._child.output, "rb") as output:  # noqa: PTH123
             while chunk := os.read(output.fileno(), 65536):
                 self._keep(chunk)
 

@@ -1,28 +1,30 @@
-"""A zygote as the grader holds it: asked for processes that need not start from nothing.
+"""A fork server as the grader holds it: asked for processes, with a pidfd and a report each.
 
-What it does itself is in `.forking`. Nothing depends on it: where it cannot start, has died or
-refuses, `ZygoteLost` tells, and the process is started from nothing. Only where it dies over an
+What it does itself is in `.forking`. A zygote has loaded what runs need; nothing depends on it:
+where it cannot start, has died or refuses, `ZygoteLost` tells, and the process comes from a server
+that has nothing loaded, forks once and executes the command (`cold`). Only where it dies over an
 order, whose process may have begun, the run is void.
 """
 
 from __future__ import annotations
 
+import errno
 import json
 import os
-import signal
+import select
 import socket
 import subprocess
+import sys
 import threading
 from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, NamedTuple
 
 from grader.errors import GraderFailure
 from grader.language.phrase import say
 from grader.run.processes import ZYGOTE, forking
-from grader.run.processes.process import await_readable
+from grader.run.processes.refusal import Refusal
 
 #: How long it may take to import everything, or to fork [s]; only a machine in distress does.
 PATIENCE_S = 30.0
@@ -31,67 +33,55 @@ MOST_FILES = 10_000
 
 
 class ZygoteLost(Exception):
-    """A zygote gives no process; the text says why."""
+    """A server gives no process; `refusal` says why."""
+
+    def __init__(self, refusal: Refusal) -> None:
+        super().__init__(refusal.why)
+        self.refusal = refusal
 
 
-class Forked:
-    """A zygote's child; a `grader.run.processes.process.Process`."""
+class Child(NamedTuple):
+    """What a server has forked.
 
-    def __init__(self, pid: int, pidfd: int, ending: int, stdout: BinaryIO) -> None:
-        self.pid = pid
-        self.stdout = stdout
-        self._pidfd = pidfd
-        self._ending = ending
-        self._code: int | None = None
-        self.was_lost = False
-        # a handler of signals, in the middle of a wait, may ask as well
-        self._lock = threading.RLock()
+    Attributes:
+        pid: its process id, which is also that of its group.
+        pidfd: of the same process; -1 where the system has none.
+        report: the reading end of what becomes of it; see `.forking`.
+        output: the reading end of what it prints on both outputs.
+    """
 
-    def poll(self) -> int | None:
-        """The exit code, negative for a signal, or None while it runs."""
-        return self.wait(0.0)
+    pid: int
+    pidfd: int
+    report: int
+    output: int
 
-    def wait(self, timeout_s: float) -> int | None:
-        """Wait for its end; None if it still runs then."""
-        if self._code is None and await_readable(self._ending, timeout_s):
-            with self._lock:
-                told = os.read(self._ending, 16) if self._code is None else b""
-                if self._code is None:
-                    # a zygote that has died takes its children along, and tells nothing
-                    self._code = int(told) if told else -signal.SIGKILL
-                    self.was_lost = not told
-        return self._code
 
-    def kill(self) -> None:
-        """Send it SIGKILL, if it still runs."""
-        self._send(signal.SIGKILL)
-
-    def terminate(self) -> None:
-        """Send it SIGTERM, if it still runs."""
-        self._send(signal.SIGTERM)
-
-    def _send(self, number: signal.Signals) -> None:
-        with suppress(ProcessLookupError):
-            signal.pidfd_send_signal(self._pidfd, number)
-
-    def __del__(self) -> None:
-        for fd in (self._pidfd, self._ending):
-            with suppress(OSError):
-                os.close(fd)
+def await_readable(descriptor: int, timeout_s: float) -> bool:
+    """Whether there is something to read, or its other end is closed, within so long."""
+    poll = select.poll()
+    poll.register(descriptor, select.POLLIN)
+    return bool(poll.poll(max(0, round(timeout_s * 1000))))
 
 
 class Zygote:
     """A process that forks itself for others; any thread may ask."""
 
-    def __init__(self, command: Sequence[str], env: Mapping[str, str], *more: str) -> None:
+    def __init__(
+        self,
+        command: Sequence[str],
+        env: Mapping[str, str],
+        *more: str,
+        executes: bool = False,
+    ) -> None:
         """Start it; that it is ready is waited for where it is first asked.
 
         Args:
             command: a program that calls `.forking.serve` with what is added to it.
             env: its environment variables; its children get their own.
             more: arguments that follow those of `serve`.
+            executes: whether its children execute their command.
         """
-        self.command, self.env = tuple(command), dict(env)
+        self.command, self.env, self._executes = tuple(command), dict(env), executes
         self.is_lost = False
         #: how many processes it has given
         self.forks = 0
@@ -100,7 +90,7 @@ class Zygote:
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket.settimeout(PATIENCE_S)
         with theirs:
-            words = (ZYGOTE, str(theirs.fileno()), str(os.getpid()), *more)
+            words = (ZYGOTE, str(theirs.fileno()), *more)
             self._process = subprocess.Popen(
                 [*self.command, *words],
                 env={**self.env, forking.MARK: forking.NO_MARK},
@@ -130,58 +120,63 @@ class Zygote:
         self,
         command: Sequence[str],
         env: Mapping[str, str],
-        cwd: Path | None,
-        pass_fds: Sequence[int],
-        namespaces: Mapping[str, int],
-        report: int = -1,
+        cwd: Path | None = None,
+        pass_fds: Sequence[int] = (),
+        namespaces: Mapping[str, int] | None = None,
         confinement: Mapping[str, Any] | None = None,
-    ) -> Forked:
-        """A process as if `command` had been started, in these namespaces.
+        *,
+        supervised: bool = False,
+    ) -> Child:
+        """A process as if `command` had been started.
 
         Args:
-            namespaces: kind -> descriptor, in the order in which they are entered.
-            report: of a supervisor, which then stands between; see `.supervisor`.
-            confinement: what that orders the process; see `.sandbox.confinement`.
+            namespaces: which it is in: kind -> descriptor, in the order in which they are entered.
+            confinement: what its supervisor orders it; see `.sandbox.confinement`.
+            supervised: whether a supervisor stands above it; see `.supervisor`.
 
         Raises:
             ZygoteLost: it gave none.
             GraderFailure: nobody knows whether it did.
+            OSError: the grader has no descriptors left.
         """
+        namespaces = namespaces or {}
         order = forking.Order(
-            command=command,
-            env=env,
-            zygote_env=self.env,
+            command=list(command),
+            env=dict(env),
+            server_env=self.env,
             cwd=str(cwd or Path.cwd()),
-            fds=pass_fds,
+            fds=list(pass_fds),
             namespaces=list(namespaces),
             limits=forking.limits(),
-            supervised=report >= 0,
+            executes=self._executes,
+            supervised=supervised,
             confinement=None if confinement is None else dict(confinement),
         )
-        ours, theirs = os.pipe()
-        reports = [report] if report >= 0 else []
-        try:
+        with ExitStack() as ours, ExitStack() as theirs:
+            ordered = os.memfd_create("order")
+            theirs.callback(os.close, ordered)
+            os.write(ordered, json.dumps(order._asdict()).encode())
+            os.lseek(ordered, 0, os.SEEK_SET)
+            (output, printed), (report, told) = (_pipe(ours, theirs) for _ in range(2))
             with self._lock:
                 self._await_ready()
-                fds = [theirs, *reports, *namespaces.values(), *pass_fds]
-                pid, pidfd, ending = self._ask(order.to_bytes(), fds)
+                pid, pidfd = self._ask([ordered, printed, told, *namespaces.values(), *pass_fds])
                 self.forks += 1
-        except BaseException:
-            os.close(ours)
-            raise
-        finally:
-            os.close(theirs)
-        return Forked(pid, pidfd, ending, os.fdopen(ours, "rb"))
+            ours.pop_all()
+        return Child(pid, pidfd, report, output)
 
     def retire(self) -> None:
         """Let it end when its children have; those may go on. Who waits for it is answered."""
         with self._lock:
-            self._hang_up()
+            self.is_lost = True
+            with suppress(OSError):  # it has died, or is lost already
+                self._socket.shutdown(socket.SHUT_WR)
 
     def close(self) -> None:
         """End it, and what it has left; wait for that."""
         self._process.kill()  # which also ends an exchange
-        self.retire()
+        with self._lock:
+            self._hang_up()
         self._process.wait()
         assert self._process.stdout is not None
         self._process.stdout.close()
@@ -196,26 +191,26 @@ class Zygote:
         """Whether nothing is left of it."""
         if self._process.poll() is None:
             return False
-        assert self._process.stdout is not None
-        self._process.stdout.close()
+        self.close()
         return True
 
     def _await_ready(self) -> frozenset[str]:
         if self.is_lost:
-            raise ZygoteLost("it is gone")
+            raise ZygoteLost(Refusal(0, "", "it is gone"))
         if self._preloaded is None:
             data, _ = self._hear()
             self._preloaded = frozenset(json.loads(data))
         return self._preloaded
 
-    def _ask(self, order: bytes, fds: list[int]) -> tuple[int, int, int]:
-        if len(order) > forking.LIMIT_BYTES or len(fds) > forking.MOST_FDS:
-            raise ZygoteLost("the order is too long")
+    def _ask(self, fds: list[int]) -> tuple[int, int]:
+        if len(fds) > forking.MOST_FDS:
+            why = f"{len(fds)} descriptors are more than {forking.MOST_FDS}"
+            raise ZygoteLost(Refusal(errno.E2BIG, "", why))
         try:
-            socket.send_fds(self._socket, [order], fds)
+            socket.send_fds(self._socket, [b"order"], fds)
         except OSError as error:
             self._lose()
-            raise ZygoteLost(repr(error)) from None
+            raise ZygoteLost(Refusal.of(error)) from None
         except BaseException:
             self._lose()
             raise
@@ -229,23 +224,22 @@ class Zygote:
         if "lost" in answer:  # it has begun
             raise GraderFailure(say("a forked process was lost: {lost}", lost=str(answer["lost"])))
         if "refused" in answer:
-            raise ZygoteLost(str(answer["refused"]))
-        pidfd, ending = got
-        return int(answer["pid"]), pidfd, ending
+            raise ZygoteLost(Refusal.from_line(str(answer["refused"])))
+        return int(answer["pid"]), got[0] if got else -1
 
     def _hear(self) -> tuple[bytes, list[int]]:
         """An answer. Whatever comes between makes them lose step: the end."""
         try:
-            answer, got, _, _ = socket.recv_fds(self._socket, forking.LIMIT_BYTES, 2)
+            answer, got, _, _ = socket.recv_fds(self._socket, forking.LIMIT_BYTES, 1)
         except OSError as error:
             self._lose()
-            raise ZygoteLost(repr(error)) from None
+            raise ZygoteLost(Refusal.of(error)) from None
         except BaseException:
             self._lose()
             raise
         if not answer:
             self._lose()
-            raise ZygoteLost("it has died")
+            raise ZygoteLost(Refusal(0, "", "it has died"))
         return answer, got
 
     def _lose(self) -> None:
@@ -258,12 +252,17 @@ class Zygote:
         self._socket.close()
 
 
-@dataclass(frozen=True)
-class Warm:
-    """A zygote, and the namespaces that its next child is to enter: kind -> descriptor."""
+def cold(env: Mapping[str, str]) -> Zygote:
+    """A server that has loaded nothing, whose children execute their command."""
+    return Zygote([sys.executable, "-I", "-S", forking.__file__], env, executes=True)
 
-    zygote: Zygote
-    namespaces: Mapping[str, int]
+
+def _pipe(ours: ExitStack, theirs: ExitStack) -> tuple[int, int]:
+    """Both ends of a pipe: the reading one is ours."""
+    reading, writing = os.pipe()
+    ours.callback(os.close, reading)
+    theirs.callback(os.close, writing)
+    return reading, writing
 
 
 def shadows(folder: Path, names: Collection[str]) -> bool:

@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
 
+from grader import usage
 from grader.run.lockstep.link import PacketReader, pieces
 from grader.run.lockstep.protocol import (
     MOST_SENT,
@@ -30,7 +31,6 @@ from grader.run.lockstep.protocol import (
     decode,
     encode,
 )
-from grader.run.processes import usage
 from grader.text import without_controls
 
 #: How often it is looked at while it is silent [ms], and while it is not [s].

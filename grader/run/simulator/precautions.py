@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import resource
 import signal
 
-from grader.run.processes.parent import be_out_of_reach, die_with_parent, limit_memory
+from grader import linux
+from grader.run.processes.sandbox.limits import lower
 
 #: Of its own; a run takes 0.2 GB, and what may come from a submission at most as much again.
 MOST_MEMORY_BYTES = 3_000_000_000
@@ -12,8 +14,7 @@ MOST_MEMORY_BYTES = 3_000_000_000
 
 def take() -> None:
     """Take them, before anything else."""
-    die_with_parent()
-    be_out_of_reach()
-    limit_memory(MOST_MEMORY_BYTES)
+    linux.control(linux.PR_SET_DUMPABLE, 0)  # nobody else looks into our memory and descriptors
+    lower(resource.RLIMIT_DATA, MOST_MEMORY_BYTES, resource.RLIM_INFINITY)
     # Ctrl-C in a terminal reaches the whole group; the grader decides what happens then.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,7 +1,7 @@
 """Starts the simulator of a run in virtual time; where that cannot work, says so and ends.
 
     python -m grader.run.simulator.virtual_main ...
-    python -m grader.run.simulator.virtual_main --zygote SOCKET GRADER_PID NEEDED
+    python -m grader.run.simulator.virtual_main --zygote SOCKET NEEDED
 
 The arguments are those of `grader.run.simulator.virtual_time`. Whatever fails in this process
 fails here: the grader then runs the submission in real time, and the result says why. Should that
@@ -44,7 +44,7 @@ def become_one_of_many(words: Sequence[str]) -> list[str]:
     """Be a zygote; returns in each child, with the arguments that it would have been started with.
 
     Args:
-        words: what `forking.serve` wants, and what to import.
+        words: the number of the socket, and what to import.
     """
     from grader.run.lockstep import contract
 
@@ -55,12 +55,12 @@ def become_one_of_many(words: Sequence[str]) -> list[str]:
     from grader.run.simulator import virtual_time  # noqa: F401
     from grader.scenes import load_scene
 
-    *serving, needed = words
+    number, needed = words
     packages, scenes = json.loads(needed)
     preloading.import_messages(packages)
     for name in scenes:
         load_scene(name).preload()
-    command = forking.serve(serving, ())
+    command = forking.serve(number, ())
     return command[command.index("-m") + 2 :]
 
 

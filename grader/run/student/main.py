@@ -11,7 +11,6 @@ the submission finds the interpreter as it would at a student's desk. ROOT comes
 path; our packages of the same names as the submission's are out of reach, whatever is installed.
 """
 
-import ctypes
 import functools
 import importlib
 import importlib.machinery
@@ -19,19 +18,16 @@ import importlib.util
 import json
 import re
 import runpy
-import signal
 import sys
 import time
 import traceback
 import types
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 #: Installed packages that a submission must never pick up in place of its own.
 OURS = ("turtlesim_challenge", "turtlesim_py", "grader")
-PR_SET_PDEATHSIG = 1
 #: How a line begins that declares the encoding of a file (PEP 263).
 ENCODING = re.compile(rb"[ \t\f]*#.*?coding[:=][ \t]*[-\w.]+")
 
@@ -227,12 +223,6 @@ def call(
     return code if isinstance(code, int) else 0
 
 
-def die_with_parent() -> None:
-    """If whoever started us is killed, we go too, where the system can see to that: Linux."""
-    with suppress(AttributeError, OSError, TypeError):
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-
-
 def forget_ourselves(root: str, target: str, arguments: Sequence[str] = ()) -> None:
     """Have the interpreter look as it would at a student's desk."""
     name = Path(target).name if target.endswith(".py") else target.partition(":")[0]
@@ -250,7 +240,6 @@ def main(arguments: Sequence[str] = ()) -> None:
         arguments: of the submission's program.
     """
     _, awaited, page, root, target, *more = sys.argv
-    die_with_parent()
     sys.path[0] = str(Path(__file__).resolve().parents[3])
     from grader.run.student.looking import Looking
 

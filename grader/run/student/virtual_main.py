@@ -2,7 +2,7 @@
 
     python virtual_main.py FD EVIDENCE SCENE ROOT module:function
     python virtual_main.py FD EVIDENCE SCENE ROOT path/to/script.py [function]
-    python virtual_main.py --zygote SOCKET GRADER_PID MESSAGES
+    python virtual_main.py --zygote SOCKET MESSAGES
 
 FD is the link to the simulator, EVIDENCE a pipe to the grader (`telling`), SCENE a JSON list of the
 simulator's nodes, with names and namespaces, and of whether two stamps have to be told apart.
@@ -50,15 +50,12 @@ def main() -> None:
     """Run one submission; does not return."""
     words = sys.argv
     is_zygote = words[1] == ZYGOTE
-    if not is_zygote:
-        student_main.die_with_parent()
     scheduler = Scheduler()
     fault, state = prepare(scheduler)
     if is_zygote:
         if fault:
             sys.exit(fault)  # the run says so, when it has started from nothing
         words = become_one_of_many(scheduler, state, words[2:])
-        student_main.die_with_parent()
     _, fd, page, introduction, root, target, *more = words
     connection = socket.socket(fileno=int(fd))
     teller = telling.Teller(int(page), root, lambda: scheduler.now_ns / 1e9)
@@ -142,9 +139,9 @@ def become_one_of_many(
 
     Args:
         state: tells whether anything has drawn random numbers.
-        words: what `forking.serve` wants, and which packages' messages to import.
+        words: the number of the socket, and which packages' messages to import.
     """
-    *serving, packages = words
+    number, packages = words
     before, loaded = (state(), vars(scheduler).copy()), _loaded()
     from grader.run.lockstep import preloading
     from grader.run.processes import forking
@@ -153,7 +150,7 @@ def become_one_of_many(
     if (state(), vars(scheduler)) != before:
         sys.exit("what is imported beforehand draws random numbers, or takes time")
     drawn = random.getstate()
-    command = forking.serve(serving, _loaded() - loaded)
+    command = forking.serve(number, _loaded() - loaded)
     random.setstate(drawn)  # Python has drawn others for each fork
     sys.argv = command[1:]
     return sys.argv

@@ -12,11 +12,11 @@ from itertools import count
 
 import pytest
 
+from grader import usage
 from grader.recording.conduct import Conduct
 from grader.run import evidence
 from grader.run.evidence import open_evidence
 from grader.run.opening import open_submission
-from grader.run.processes import usage
 from grader.run.student import account, loops
 from grader.submission.opening import Submission
 from grader.submission.start import Slip

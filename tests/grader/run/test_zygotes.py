@@ -1,6 +1,5 @@
 """Runs that are forked from zygotes are those that start from nothing, only sooner."""
 
-import errno
 import os
 import re
 import signal
@@ -297,16 +296,6 @@ def test_there_is_none_where_the_import_path_depends_on_the_folder(
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     monkeypatch.setenv(names, value)
     assert zygotes.zygote(zygotes.STUDENT) is None
-
-
-def test_there_is_none_without_pidfd(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refused(pid: int) -> int:
-        raise PermissionError(errno.EPERM, "not permitted")
-
-    monkeypatch.setattr(os, "pidfd_open", refused)
-    assert zygotes.zygote(zygotes.STUDENT) is None
-    assert zygotes.for_simulator({}) is None
-    assert zygotes.for_student(ROOT, {}) is None
 
 
 def test_a_fork_of_the_grader_has_zygotes_of_its_own() -> None:

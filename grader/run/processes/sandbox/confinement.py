@@ -21,7 +21,7 @@ import os
 import signal
 from typing import Any
 
-from grader.run.processes import linux
+from grader import linux
 from grader.run.processes.sandbox import filesystem, landlock, limits, privileges, seccomp
 
 NAMESPACES, LANDLOCK, LIMITS = "namespaces", "landlock", "limits"

@@ -28,7 +28,7 @@ import os
 import stat
 from collections.abc import Sequence
 
-from grader.run.processes import linux
+from grader import linux
 
 #: Where the new root is put together: a folder that every system has, and that shows nothing here.
 SITE = "/sys"

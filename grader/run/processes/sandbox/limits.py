@@ -98,10 +98,11 @@ def apply(limits: Limits = LIMITS, *, is_alone: bool = True) -> None:
     ):
         number = getattr(resource, f"RLIMIT_{name}", None)
         if number is not None:
-            _lower(number, soft, hard)
+            lower(number, soft, hard)
 
 
-def _lower(number: int, soft: int, hard: int) -> None:
+def lower(number: int, soft: int, hard: int) -> None:
+    """Limit a resource of the calling process, unless it is limited to less already."""
     now_soft, now_hard = resource.getrlimit(number)
     hard = _lesser(hard, now_hard)
     resource.setrlimit(number, (_lesser(_lesser(soft, now_soft), hard), hard))

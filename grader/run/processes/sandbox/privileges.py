@@ -8,7 +8,7 @@ from __future__ import annotations
 import errno
 import os
 
-from grader.run.processes import linux
+from grader import linux
 
 #: More than there are.
 CAPABILITIES = range(64)

@@ -31,6 +31,7 @@ HOST = (
     *("grader/__init__.py", "grader/system.py", "grader/versions.py", "grader/run/__init__.py"),
     *("grader/run/student", "grader/run/lockstep"),
     *("grader/run/processes/__init__.py", "grader/run/processes/cores.py"),
+    *("grader/linux.py", "grader/usage.py"),
     # of a package that is looked at
     *("grader/limited.py", "grader/scenes/__init__.py", "grader/scenes/package"),
     "grader/strict_json.py",

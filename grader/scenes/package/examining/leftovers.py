@@ -10,12 +10,13 @@ import os
 import signal
 import time
 from contextlib import suppress
-from ctypes import CDLL
 from itertools import count
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
-_PR_SET_CHILD_SUBREAPER: Final = 36
+from grader import linux, usage
+from grader.usage import Usage
+
 _PROC: Final = Path("/proc")
 #: After so many looks, each of which stops those who were born meanwhile, all are ended at once.
 _MOST_LOOKS: Final = 200
@@ -25,7 +26,7 @@ _adopts = False
 def adopt() -> None:
     """From now on whatever this process starts stays below it, and `end` ends it."""
     global _adopts
-    _adopts = CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) == 0
+    _adopts = linux.control(linux.PR_SET_CHILD_SUBREAPER, 1)
 
 
 def end() -> None:
@@ -65,7 +66,8 @@ def used() -> tuple[int, bool]:
         return 0, True
     stats = _stats()
     below = _below(os.getpid(), stats)
-    return sum(stats[each].used for each in below), any(stats[each].state in "RD" for each in below)
+    used = sum(stats[each].ticks + stats[each].waited_ticks for each in below)
+    return used, any(stats[each].state in ("R", "D") for each in below)
 
 
 def _is_seen() -> bool:
@@ -94,26 +96,13 @@ def _children() -> set[int]:
     return found
 
 
-class _Stat(NamedTuple):
-    state: str
-    parent: int
-    used: int  # of itself and of those that it has waited for [ticks]
-
-
-def _stats() -> dict[int, _Stat]:
+def _stats() -> dict[int, Usage]:
     """Of every process that there is."""
-    found = {}
-    for folder in _PROC.iterdir():
-        if folder.name.isdecimal():
-            with suppress(OSError, ValueError, IndexError):
-                text = (folder / "stat").read_text("latin-1")
-                words = text.rpartition(")")[2].split()  # a name may hold anything
-                used = sum(map(int, words[11:15]))
-                found[int(folder.name)] = _Stat(words[0], int(words[1]), used)
-    return found
+    numbers = [int(folder.name) for folder in _PROC.iterdir() if folder.name.isdecimal()]
+    return {number: usage.look(number) for number in numbers}
 
 
-def _below(ancestor: int, stats: dict[int, _Stat]) -> set[int]:
+def _below(ancestor: int, stats: dict[int, Usage]) -> set[int]:
     """All descendants of a process.
 
     Whom /proc calls a zombie is one of them: threads of it may go on.

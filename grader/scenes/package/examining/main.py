@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[4]
 if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
+from grader import linux  # noqa: E402
 from grader.scenes.package import inspection, trace  # noqa: E402
 from grader.scenes.package.examining import layout, leftovers, packages, setup_call  # noqa: E402
 from grader.scenes.package.examining.looking import Looking  # noqa: E402
@@ -42,10 +43,8 @@ def main() -> None:
 
 
 def _main() -> None:
-    from ctypes import CDLL
-
     order = json.loads(sys.argv[1])
-    CDLL(None).prctl(4, 0)  # PR_SET_DUMPABLE: no copy opens our descriptors by /proc
+    linux.control(linux.PR_SET_DUMPABLE, 0)  # no copy opens our descriptors by /proc
     leftovers.adopt()
     with tempfile.TemporaryDirectory(prefix="package-", ignore_cleanup_errors=True) as scratch:
         folder = Path(order["folder"]) if "folder" in order else None

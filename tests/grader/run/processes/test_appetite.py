@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.run.processes import appetite
+from grader import usage
 from grader.run.processes.appetite import Appetite, Family
 from grader.run.processes.sandbox.limits import MIB, Limits
 
@@ -64,16 +64,16 @@ def test_whose_parent_ends_during_a_look_is_found_by_the_next(
 ) -> None:
     """He has told of a parent that is not there any more, and has another one by now."""
     gone = 1 << 30
-    see = appetite._see
+    look = usage.look
     with family() as child:
 
-        def see_before(pid: int) -> appetite._Process | None:
-            seen = see(pid)
-            return seen._replace(parent=gone) if seen and pid == child else seen
+        def look_before(pid: int) -> usage.Usage:
+            seen = look(pid)
+            return seen._replace(parent=gone) if pid == child else seen
 
         found = Family(os.getpid())
         with monkeypatch.context() as during:
-            during.setattr(appetite, "_see", see_before)
+            during.setattr(usage, "look", look_before)
             before = found.look().tasks
         assert found.look().tasks == before + 4
 

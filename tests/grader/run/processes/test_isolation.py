@@ -4,6 +4,7 @@ import errno
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
@@ -54,8 +55,14 @@ def kind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str
     return str(request.param)
 
 
+def inside(namespaces: Mapping[str, int]) -> list[str]:
+    """The words before a command that is to run in these."""
+    words = [f"--{kind}=/proc/{os.getpid()}/fd/{fd}" for kind, fd in namespaces.items()]
+    return ["nsenter", "--preserve-credentials", *words, "--"] if words else []
+
+
 def talk(stage: Stage, role: str, seconds: float) -> "subprocess.Popen[str]":
-    words = [*stage.entry, sys.executable, "-c", TALK, role, str(seconds)]
+    words = [*inside(stage.namespaces), sys.executable, "-c", TALK, role, str(seconds)]
     return subprocess.Popen(words, env=dict(stage.env), text=True, **PIPES)
 
 
@@ -78,7 +85,10 @@ def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
     except OSError:
         pytest.skip("this system does not allow it")
     shown = subprocess.run(
-        [*namespaces.entry(), "cat", "/proc/net/dev"], capture_output=True, text=True, check=True
+        [*inside(namespaces.fds), "cat", "/proc/net/dev"],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     namespaces.close()
     assert [line.split(":")[0].strip() for line in shown.stdout.splitlines()[2:]] == ["lo"]
@@ -119,7 +129,8 @@ FEW_NETWORKS = """
 import os, sys
 from pathlib import Path
 from grader.errors import NotNow
-from grader.run.processes import isolation, linux, refusal
+from grader import linux
+from grader.run.processes import isolation, refusal
 refusal.PAUSES_S = (0.0, 0.0)
 user, group = os.getuid(), os.getgid()
 linux.unshare(linux.CLONE_NEWUSER)

@@ -20,7 +20,7 @@ from grader.run import stage
 from grader.run.processes import isolation, levels, refusal
 from grader.run.processes.family import Student
 from grader.run.processes.sandbox import view
-from grader.run.processes.zygote import Warm, Zygote
+from grader.run.processes.zygote import Zygote
 from tests.children import in_child
 from tests.grader.run.processes.test_zygote import COMMAND, ENV
 
@@ -176,17 +176,17 @@ def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(
 
 
 @pytest.fixture(params=["started", "forked"])
-def warm(request: pytest.FixtureRequest) -> Iterator[Warm | None]:
+def warm(request: pytest.FixtureRequest) -> Iterator[Zygote | None]:
     if request.param == "started":
         yield None
         return
     zygote = Zygote(COMMAND, ENV)
-    yield Warm(zygote, {})
+    yield zygote
     zygote.close()
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="others have no mounts of their own here")
-def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: Warm | None) -> None:
+def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: Zygote | None) -> None:
     order = {
         "level": "namespaces",
         "uid": 61184,
@@ -196,7 +196,7 @@ def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: Warm | No
         "folder": "/",
     }
     words = [sys.executable, "-c", "print('it runs')"]
-    student = Student(words, ENV, Path("/"), warm=warm, confinement=order)
+    student = Student(words, ENV, Path("/"), zygote=warm, confinement=order)
     with pytest.raises(GraderFailure, match="could not be started: mount: No such file"):
         student.wait(20.0)
     student.end()

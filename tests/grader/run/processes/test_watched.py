@@ -6,7 +6,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from ctypes import CDLL
 from pathlib import Path
@@ -14,11 +14,12 @@ from pathlib import Path
 import psutil
 import pytest
 
-from grader import scratch
-from grader.run.processes import family, linux
+from grader import linux, scratch
+from grader.run.processes import forking, watched
 from grader.run.processes.family import Student
 from grader.run.processes.supervisor import Supervisor
 from grader.run.processes.watched import await_ends
+from grader.run.processes.zygote import Zygote
 from tests.children import in_child
 
 ROOT = Path(__file__).parents[4]
@@ -57,11 +58,16 @@ def python(code: str, *words: object) -> Student:
     return Student([sys.executable, "-c", code, *map(str, words)], os.environ)
 
 
+def unprivileged(env: Mapping[str, str]) -> Zygote:
+    command = [*UNPRIVILEGED, sys.executable, "-I", "-S", forking.__file__]
+    return Zygote(command, env, executes=True)
+
+
 @pytest.fixture(params=["own namespace", "shared namespace"])
 def namespace(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """With and without the right to make a process namespace."""
     if request.param == "shared namespace":
-        monkeypatch.setattr(family, "SUPERVISOR", (*UNPRIVILEGED, *family.SUPERVISOR))
+        monkeypatch.setattr(watched, "cold", unprivileged)
     yield request.param
 
 
@@ -126,7 +132,7 @@ def test_a_submission_may_clean_up_when_it_is_asked_to_end() -> None:
 def test_a_supervisor_that_is_killed_is_the_submission_s_end() -> None:
     student = python("import time; time.sleep(1000)")
     child = psutil.Process(student.pid)
-    student._process.kill()
+    student._signal(signal.SIGKILL)
     assert student.wait(20.0) == -signal.SIGKILL
     student.end()
     assert not await_ends([child], 20.0)
@@ -192,7 +198,7 @@ def _walkers_are_ended() -> None:
             while True:
                 if os.fork():
                     os._exit(0)
-    Supervisor(os.getppid(), -1, None)._end_all()
+    Supervisor(os.getppid(), -1)._end_all()
     with pytest.raises(ChildProcessError):  # who is left would be our child
         os.waitpid(-1, os.WNOHANG)
 
@@ -209,7 +215,7 @@ def _one_without_its_first_thread_is_ended() -> None:
         CDLL(None).pthread_exit(None)
     while psutil.Process(child).status() != psutil.STATUS_ZOMBIE:
         time.sleep(0.001)
-    Supervisor(os.getppid(), -1, None)._end_all()
+    Supervisor(os.getppid(), -1)._end_all()
     with pytest.raises(ChildProcessError):
         os.waitpid(-1, os.WNOHANG)
 

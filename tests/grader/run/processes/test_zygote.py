@@ -9,6 +9,7 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -16,8 +17,8 @@ import pytest
 from grader.errors import GraderFailure
 from grader.run.processes import forking, isolation
 from grader.run.processes.family import Student
-from grader.run.processes.watched import Watched, await_ends
-from grader.run.processes.zygote import Warm, Zygote, ZygoteLost, shadows
+from grader.run.processes.watched import NotConfined, Watched, await_ends
+from grader.run.processes.zygote import Zygote, ZygoteLost, shadows
 
 ROOT = Path(__file__).parents[4]
 #: A zygote whose children run the last word of their command as Python.
@@ -25,7 +26,7 @@ PROGRAM = """
 import sys
 sys.path.insert(0, {root!r})
 from grader.run.processes import forking
-command = forking.serve(sys.argv[2:4], ["numpy"])
+command = forking.serve(sys.argv[2], ["numpy"])
 sys.argv = ["-c"]
 exec(command[-1], {{"__name__": "__main__"}})
 """
@@ -57,13 +58,22 @@ def zygote() -> Iterator[Zygote]:
     made.close()
 
 
+#: The same, where the system refuses descriptors that stand for processes.
+WITHOUT_PIDFD = """
+import os
+def refused(pid):
+    raise PermissionError(1, "Operation not permitted")
+os.pidfd_open = refused
+"""
+
+
 @pytest.fixture(params=["started", "forked"])
-def warm(request: pytest.FixtureRequest, zygote: Zygote) -> Warm | None:
-    return Warm(zygote, {}) if request.param == "forked" else None
+def warm(request: pytest.FixtureRequest, zygote: Zygote) -> Zygote | None:
+    return zygote if request.param == "forked" else None
 
 
-def python(code: str, warm: Warm | None, **more: object) -> Student:
-    return Student([sys.executable, "-c", code], ENV, ROOT, warm=warm, **more)  # type: ignore[arg-type]
+def python(code: str, warm: Zygote | None, **more: Any) -> Student:
+    return Student([sys.executable, "-c", code], more.pop("env", ENV), ROOT, zygote=warm, **more)
 
 
 def read_until(process: Watched, text: str) -> None:
@@ -82,11 +92,9 @@ def test_a_forked_process_finds_all_that_a_started_one_does(zygote: Zygote, way:
         pytest.skip("this system does not allow it")
     passed, other = os.pipe()
     portraits = []
-    for warm in (None, Warm(zygote, spaces.fds)):
-        entry = spaces.entry() if spaces.fds else ()
-        process = Student(
-            [sys.executable, "-c", PORTRAIT], {**ENV, "MORE": "1"}, ROOT, (passed,), entry, warm
-        )
+    for warm in (None, zygote):
+        command = [sys.executable, "-c", PORTRAIT]
+        process = Student(command, {**ENV, "MORE": "1"}, ROOT, (passed,), spaces.fds, warm)
         assert process.wait(20.0) == 0, process.output()
         process.end()
         portraits.append(process.output().splitlines())
@@ -103,7 +111,7 @@ def test_a_forked_process_hears_only_its_own_network(zygote: Zygote) -> None:
         pytest.skip("this system allows none")
     process = Watched(
         ["-c", "print(open('/proc/net/dev').read().count(':'))"],
-        *(ENV, ROOT, (), (), Warm(zygote, spaces.fds)),
+        *(ENV, ROOT, (), spaces.fds, zygote),
     )
     assert process.wait(20.0) == 0
     assert process.output() == "1\n"
@@ -120,7 +128,7 @@ def test_nothing_of_the_zygote_or_of_the_grader_is_open_in_a_child(
         "if os.path.exists('/proc/self/fd/%s' % f)])"
     )
     kind = Student if supervised else Watched
-    process = kind(["-c", code], ENV, ROOT, (), (), Warm(zygote, {}))
+    process = kind(["-c", code], ENV, ROOT, (), {}, zygote)
     assert process.wait(20.0) == 0
     process.end()
     inside = process.output().split()
@@ -132,7 +140,7 @@ def test_descriptors_have_the_numbers_that_the_command_knows(zygote: Zygote) -> 
     pipes = [os.pipe() for _ in range(8)]
     fds = tuple(fd for pipe in reversed(pipes) for fd in pipe)
     code = f"import os; [os.write(w, str(w).encode()) for w in {[w for _, w in pipes]}]"
-    process = python(code, Warm(zygote, {}), pass_fds=fds)
+    process = python(code, zygote, pass_fds=fds)
     assert process.wait(20.0) == 0, process.output()
     assert [os.read(r, 99) for r, _ in pipes] == [str(w).encode() for _, w in pipes]
     process.end()
@@ -150,15 +158,15 @@ def test_descriptors_have_the_numbers_that_the_command_knows(zygote: Zygote) -> 
         ("import os; os.abort()", -6),
     ],
 )
-def test_the_exit_code_is_told(warm: Warm | None, code: str, exit_code: int) -> None:
+def test_the_exit_code_is_told(warm: Zygote | None, code: str, exit_code: int) -> None:
     for kind in (Student, Watched):
-        process = kind([sys.executable, "-c", code], ENV, ROOT, (), (), warm)
+        process = kind([sys.executable, "-c", code], ENV, ROOT, (), {}, warm)
         assert process.wait(20.0) == exit_code
         process.end()
         assert process.poll() == exit_code
 
 
-def test_a_submission_may_clean_up_when_it_is_asked_to_end(warm: Warm | None) -> None:
+def test_a_submission_may_clean_up_when_it_is_asked_to_end(warm: Zygote | None) -> None:
     student = python(
         "import time\ntry:\n print('up', flush=True)\n time.sleep(1000)\n"
         "except KeyboardInterrupt: print('interrupted')\n",
@@ -175,7 +183,7 @@ def test_limits_are_those_that_the_grader_has_now(zygote: Zygote) -> None:
     code = "import resource; print(resource.getrlimit(resource.RLIMIT_NOFILE)[0])"
     resource.setrlimit(resource.RLIMIT_NOFILE, (soft - 7, hard))
     try:
-        student = python(code, Warm(zygote, {}))
+        student = python(code, zygote)
         assert student.wait(20.0) == 0
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
@@ -196,25 +204,28 @@ time.sleep(1000)
 """
 
 
-@pytest.fixture(params=["own namespace", "shared namespace"])
+@pytest.fixture(params=["own namespace", "shared namespace", "no pidfd"])
 def namespace(request: pytest.FixtureRequest) -> Iterator[Zygote]:
-    """Zygotes that may, and may not, make a process namespace."""
+    """Zygotes that may, and may not, make a process namespace; or have no pidfd."""
     unprivileged = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
     words = unprivileged if request.param == "shared namespace" else ()
-    made = Zygote([*words, *COMMAND], ENV)
+    *command, program = COMMAND
+    if request.param == "no pidfd":
+        program = WITHOUT_PIDFD + program
+    made = Zygote([*words, *command, program], ENV)
     yield made
     made.close()
 
 
 @pytest.mark.parametrize("end", ["in good order", "supervisor killed"])
 def test_a_hidden_descendant_ends_with_the_run(namespace: Zygote, end: str) -> None:
-    student = python(HIDES, Warm(namespace, {}))
+    student = python(HIDES, namespace)
     read_until(student, "hidden")
     mark = f"{forking.MARK}={student._mark}".encode()
     family = [p for p in psutil.process_iter() if mark in environment(p)]
     assert len(family) >= 3  # the supervisor, the command and the hidden one
     if end == "supervisor killed":
-        student._process.kill()
+        student._signal(signal.SIGKILL)
         assert student.wait(20.0) == -signal.SIGKILL
     student.end()
     assert not await_ends(family, 20.0)
@@ -228,7 +239,7 @@ def environment(process: psutil.Process) -> bytes:
 
 
 def test_one_run_s_end_leaves_another_alone(zygote: Zygote) -> None:
-    first, second = (python(HIDES, Warm(zygote, {})) for _ in range(2))
+    first, second = (python(HIDES, zygote) for _ in range(2))
     for student in (first, second):
         read_until(student, "hidden")
     first.end(gently=False)
@@ -241,14 +252,14 @@ GRADER = f"""
 import sys, threading, time
 sys.path.insert(0, {str(ROOT)!r})
 from grader.run.processes.family import Student
-from grader.run.processes.watched import Watched, await_ends
-from grader.run.processes.zygote import Warm, Zygote
+from grader.run.processes.watched import NotConfined, Watched, await_ends
+from grader.run.processes.zygote import Zygote
 made = []
 thread = threading.Thread(target=lambda: made.append(Zygote({COMMAND!r}, {ENV!r})))
 thread.start()
 thread.join()
-warm = Warm(made[0], {{}})
-each = [kind(["-c", sys.argv[1]], {{}}, None, (), (), warm) for kind in (Student, Watched)]
+warm = made[0]
+each = [kind(["-c", sys.argv[1]], {{}}, None, (), {{}}, warm) for kind in (Student, Watched)]
 while not all(b"hidden" in bytes(p._head) for p in each):
     each[0].wait(0.02)
 print("up", flush=True)
@@ -278,7 +289,7 @@ def test_a_zygote_outlives_the_thread_that_has_started_it() -> None:
     thread = threading.Thread(target=lambda: made.append(Zygote(COMMAND, ENV)))
     thread.start()
     thread.join()
-    student = python("print('here')", Warm(made[0], {}))
+    student = python("print('here')", made[0])
     assert student.wait(20.0) == 0
     student.end()
     assert made[0].forks == 1
@@ -288,7 +299,7 @@ def test_a_zygote_outlives_the_thread_that_has_started_it() -> None:
 def test_a_killed_zygote_takes_its_children_along_and_gives_no_more() -> None:
     zygote = Zygote(COMMAND, ENV)
     each = [
-        kind(["-c", "import time; time.sleep(1000)"], ENV, ROOT, (), (), Warm(zygote, {}))
+        kind(["-c", "import time; time.sleep(1000)"], ENV, ROOT, (), {}, zygote)
         for kind in (Student, Watched)
     ]
     family = psutil.Process(zygote.pid).children(recursive=True)
@@ -297,7 +308,7 @@ def test_a_killed_zygote_takes_its_children_along_and_gives_no_more() -> None:
     assert not await_ends(family, 20.0)
     with pytest.raises(ZygoteLost):
         zygote.fork(["-c", ""], ENV, ROOT, (), {})
-    student = python("print('started')", Warm(zygote, {}))
+    student = python("print('started')", zygote)
     assert student.wait(20.0) == 0
     for process in (*each, student):
         process.end()
@@ -307,7 +318,7 @@ def test_a_killed_zygote_takes_its_children_along_and_gives_no_more() -> None:
 
 def test_a_retired_zygote_ends_when_its_children_have() -> None:
     zygote = Zygote(COMMAND, ENV)
-    student = python("input(); print('heard')", Warm(zygote, {}))
+    student = python("input(); print('heard')", zygote)
     assert student.pid
     zygote.retire()
     assert not zygote.has_ended() or student.poll() is not None
@@ -333,33 +344,48 @@ def test_a_zygote_is_retired_when_it_has_answered_those_who_wait() -> None:
 def test_a_process_that_may_have_begun_is_not_started_a_second_time() -> None:
     zygote = Zygote([sys.executable, "-c", DIES], ENV)
     with pytest.raises(GraderFailure, match="has died"):
-        python("print('started')", Warm(zygote, {}))
+        python("print('started')", zygote)
     assert zygote.is_lost
     zygote.close()
 
 
-def test_what_is_refused_is_started_instead(zygote: Zygote) -> None:
+def test_what_is_refused_is_told_with_its_step_and_the_next_one_is_not(warm: Zygote | None) -> None:
     nowhere = os.open("/dev/null", os.O_RDONLY)  # no namespace
-    before = zygote.forks
-    student = python("print('started')", Warm(zygote, {"net": nowhere}))
+    for kind in (Student, Watched):
+        refused = kind([sys.executable, "-c", ""], ENV, ROOT, (), {"net": nowhere}, warm)
+        with pytest.raises(NotConfined, match="setns: Invalid argument"):
+            refused.wait(20.0)
+        refused.end()
+    os.close(nowhere)
+    student = python("print('started')", warm)
     assert student.wait(20.0) == 0
     student.end()
     assert student.output() == "started\n"
-    with pytest.raises(ZygoteLost, match="OSError"):
-        zygote.fork(["-c", ""], ENV, ROOT, (), {"net": nowhere})
-    with pytest.raises(ZygoteLost, match="too long"):
-        zygote.fork(["-c", ""], {"A": "x" * forking.LIMIT_BYTES}, ROOT, (), {})
-    os.close(nowhere)
-    assert zygote.forks == before
-    student = python("", Warm(zygote, {}))
+
+
+def test_a_command_that_is_not_there_is_told() -> None:
+    process = Watched(["/nowhere/python"], ENV, ROOT)
+    with pytest.raises(NotConfined, match="No such file or directory"):
+        process.wait(20.0)
+    process.end()
+
+
+def test_an_order_may_be_long(warm: Zygote | None) -> None:
+    long = {str(number): "x" * 100_000 for number in range(10)}
+    student = python("import os; print(len(os.environ['9']))", warm, env={**ENV, **long})
     assert student.wait(20.0) == 0
     student.end()
-    assert zygote.forks == before + 1
+    assert student.output() == "100000\n"
+
+
+def test_more_descriptors_than_one_packet_carries_are_refused(zygote: Zygote) -> None:
+    with pytest.raises(ZygoteLost, match="are more than 64"):
+        zygote.fork(["-c", ""], ENV, ROOT, [0] * 62)
 
 
 def test_many_may_ask_at_once_and_leave_no_descriptor(zygote: Zygote) -> None:
     def graded(number: int) -> str:
-        student = python(f"print({number})", Warm(zygote, {}))
+        student = python(f"print({number})", zygote)
         assert student.wait(20.0) == 0
         student.end()
         return student.output()
@@ -370,7 +396,7 @@ def test_many_may_ask_at_once_and_leave_no_descriptor(zygote: Zygote) -> None:
     with ThreadPoolExecutor(8) as pool:
         assert list(pool.map(graded, range(24))) == [f"{number}\n" for number in range(24)]
     assert len(list(Path("/proc/self/fd").iterdir())) <= before
-    python("", Warm(zygote, {})).end()  # it has heard of the ends before
+    python("", zygote).end()  # it has heard of the ends before
     assert psutil.Process(zygote.pid).num_fds() <= theirs + 2
     assert not [p for p in psutil.Process(zygote.pid).children() if p.status() == "zombie"][1:]
 
@@ -380,7 +406,7 @@ def test_a_zygote_that_does_not_come_up_is_done_without(command: list[str]) -> N
     zygote = Zygote(command, ENV)
     with pytest.raises(ZygoteLost):
         zygote.preloaded()
-    student = python("print('started')", Warm(zygote, {}))
+    student = python("print('started')", zygote)
     assert student.wait(20.0) == 0
     student.end()
     assert zygote.is_lost
@@ -429,7 +455,7 @@ def test_what_is_too_much_to_search_may_have_any(
 
 
 def test_the_sandbox_s_place_is_the_command_s_own_process(
-    monkeypatch: pytest.MonkeyPatch, warm: Warm | None
+    monkeypatch: pytest.MonkeyPatch, warm: Zygote | None
 ) -> None:
     """However it came to be, nothing of the submission runs before `confine`."""
     code = "print(len([n for n in __import__('os').listdir('/proc') if n.isdigit()]))"
@@ -451,11 +477,4 @@ def test_the_end_of_a_started_process_is_waited_for(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("time.sleep", no_pauses)
     process = Watched([sys.executable, "-S", "-c", ""], ENV)
     assert process.wait(20.0) == 0
-    process.end()
-
-
-def test_without_pidfd_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr(os, "pidfd_open")
-    process = Watched([sys.executable, "-S", "-c", "raise SystemExit(4)"], ENV)
-    assert process.wait(20.0) == 4
     process.end()

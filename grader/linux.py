@@ -110,7 +110,8 @@ def change_root() -> None:
 def control(option: int, *values: int) -> bool:
     """As prctl; whether it was done."""
     words = [ctypes.c_ulong(value) for value in (*values, 0, 0, 0, 0)[:4]]
-    return bool(_libc.prctl(option, *words) == 0)
+    there = getattr(_libc, "prctl", None)
+    return there is not None and bool(there(option, *words) == 0)
 
 
 def signal_at_parents_death(number: int) -> None:
