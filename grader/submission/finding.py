@@ -42,7 +42,6 @@ from grader.submission.folder import (
     MAX_ENTRIES,
     USUAL_NAME,
     HandedIn,
-    copy,
     entries_of,
     files_below,
     is_junk,
@@ -52,6 +51,7 @@ from grader.submission.folder import (
 )
 from grader.submission.launching import find_launched, is_launch_file
 from grader.submission.manifest import FILE as MANIFEST
+from grader.submission.private_copy import copy_folder
 from grader.submission.python_source import Source, read_source
 from grader.submission.refusals import CPP, advice, missing, no_python, unreadable
 from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, Package
@@ -250,7 +250,7 @@ def _from_script(
         return Submission(handed_in.name, module.root, start, found, notes=notes, package=folder)
     # without its __init__.py, Python prefers any installed package of the same name
     mended = scratch / "with_init"
-    copy(handed_in.base, mended)  # all of it: there may be packages beside
+    left_out = copy_folder(handed_in.base, mended)  # all of it: there may be packages beside
     root = mended / module.root.relative_to(handed_in.base)
     added = tuple(each / "__init__.py" for each in module.bare)
     for each in added:
@@ -259,6 +259,7 @@ def _from_script(
         "{found}, with the missing {missing} added", found=found, missing=listed(map(str, added))
     )
     folder = mended / folder.relative_to(handed_in.base)
+    notes = (*notes, *left_out)
     return Submission(handed_in.name, root, start, found, notes=notes, added=added, package=folder)
 
 

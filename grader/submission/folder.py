@@ -177,45 +177,6 @@ def read_bounded(path: Path) -> bytes | None:
     return data if len(data) <= MAX_SOURCE_BYTES else None
 
 
-def copy(top: Path, into: Path) -> None:
-    """Copy what of a folder belongs to a submission: files, folders, and links as links.
-
-    Raises:
-        SubmissionError: there are more than MAX_ENTRIES, or more than MAX_BYTES in them.
-        OSError: something cannot be read.
-    """
-    import shutil  # here: few submissions are copied
-
-    seen = size = 0
-    pending = [(top, into)]
-    while pending:
-        source, target = pending.pop()
-        target.mkdir()
-        for entry in entries_of(source, MAX_ENTRIES):
-            seen += 1
-            if seen > MAX_ENTRIES:
-                raise too_many(top)
-            if is_junk(entry.name):
-                continue
-            if entry.is_symlink():
-                (target / entry.name).symlink_to(entry.readlink())
-            elif entry.is_dir():
-                pending += [] if is_generated(entry) else [(entry, target / entry.name)]
-            elif entry.is_file():  # no pipe, socket or device: they would be waited for
-                size += entry.stat().st_size
-                if size > MAX_BYTES:
-                    raise SubmissionError(
-                        say(
-                            "{name} has more than {max_bytes:g} MB, the limit for a submission. "
-                            "{hand_in}",
-                            name=shown(top.name),
-                            max_bytes=MAX_BYTES / 1e6,
-                            hand_in=HAND_IN,
-                        )
-                    )
-                shutil.copy2(entry, target / entry.name)
-
-
 def shown(name: str | PurePath) -> Phrase:
     """A name of a student's in a message: in one line, and not longer than anybody reads.
 

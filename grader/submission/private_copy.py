@@ -130,12 +130,12 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
     base = origin if path.is_dir() else origin.parent
     copies = scratch / "copy"
     folder = copies / (base.name or "submission")
-    folder.mkdir(parents=True)
-    copying = _Copying(base)
+    remarks: tuple[str, ...] = ()
     if path.is_dir():
-        copying.copy_all(folder)
+        remarks = copy_folder(base, folder)
     else:
-        copying.copy_alone(origin, folder)
+        folder.mkdir(parents=True)
+        _Copying(base).copy_alone(origin, folder)
     _close(copies)
     return PrivateCopy(
         folder,
@@ -143,8 +143,21 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
         prefix=str(copies),
         shown=str(base.parent).rstrip(os.sep),
         beside=None if path.is_dir() else base,
-        remarks=copying.remarks(),
+        remarks=remarks,
     )
+
+
+def copy_folder(top: Path, into: Path) -> tuple[str, ...]:
+    """Copy a folder into a new one; what was left out, for the result.
+
+    Raises:
+        SubmissionError: it has too many files, or too large ones.
+        OSError: something is wrong with the machine.
+    """
+    into.mkdir(parents=True)
+    copying = _Copying(top)
+    copying.copy_all(into)
+    return copying.remarks()
 
 
 def not_handed_in(name: str, copy: PrivateCopy | None, modules: Iterable[str]) -> tuple[str, ...]:
