@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 from grader.recording.conduct import Conduct
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
 from grader.run.plan import Plan
 from grader.run.processes.sandbox.limits import LIMITS, size
+from grader.run.processes.watched import Watched
 from grader.scenes import load_scene
 from grader.scenes.scene import Reason, Trace
+from grader.submission.start import Submission
 
 NOTHING_TOLD = Conduct()
 #: How a scene says that there is nothing more to come.
@@ -53,6 +56,28 @@ class Ending:
     isolation: str
     output: str
     flags: tuple[str, ...] = ()
+
+
+def ended(
+    clock: Clock,
+    submission: Submission,
+    process: Watched,
+    isolation: str,
+    since_s: float,
+    how: Outcome,
+    exit_code: int | None,
+    flags: tuple[str, ...] = (),
+) -> Ending:
+    """How a run ended of which nothing is to come.
+
+    Args:
+        process: the submission's.
+        since_s: when it began, on the machine's monotonic clock [s].
+    """
+    output = submission.as_handed_in(process.output())
+    struck = limits_struck(exit_code, output, process.excess)
+    flags = (*map(submission.as_handed_in, flags), *struck)
+    return Ending(clock, how, exit_code, time.monotonic() - since_s, isolation, output, flags)
 
 
 def outcome(reason: Reason, exit_code: int | None) -> Outcome:

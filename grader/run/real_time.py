@@ -6,20 +6,23 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 
 from grader import usage
 from grader.errors import GraderFailure, NotNow
-from grader.recording.recording import Outcome, Recording
+from grader.recording.recording import Recording
 from grader.run import evidence, handover, stage
 from grader.run.audience import Audience, seats
-from grader.run.finish import Ending, limits_struck, outcome, record
+from grader.run.environment import student_environment
+from grader.run.finish import ended, outcome, record
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
 from grader.run.processes.watched import Watched
 from grader.run.simulator_process import Message, Simulator, start_simulator
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
-from grader.submission.opening import Submission
+from grader.submission.opening import Launch, Submission
 
 #: Told the simulated time [s] now and then.
 Progress = Callable[[float], None]
@@ -28,6 +31,8 @@ Progress = Callable[[float], None]
 COMPUTES = 0.5
 #: How long the clock of the run waits for the submission's first node [s].
 FIRST_NODE_S = 8.0
+#: Where what runs as the submission's process is.
+STUDENT = Path(__file__).with_name("student")
 #: What runs as the simulator's process.
 MODULE = "grader.run.simulator.real_time"
 
@@ -60,24 +65,14 @@ def run(
     ):
         seat.taken()
         simulator.expect("ready")
-        submission = place.own(submission)
-        words = command(submission, scene.introduction, told.page)
-        student = place.student(words, submission, (told.page,))
+        submission, student = place.start(
+            submission,
+            lambda own: command(own, scene.introduction, told.page),
+            (told.page,),
+            student_environment({}),
+        )
+        ending = partial(ended, "real", submission, student, place.isolation, started)
         began_s = time.monotonic()
-
-        def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
-            output = submission.as_handed_in(student.output())
-            struck = limits_struck(exit_code, output, student.excess)
-            return Ending(
-                time="real",
-                outcome=how,
-                exit_code=exit_code,
-                wall_s=time.monotonic() - started,
-                isolation=place.isolation,
-                output=output,
-                flags=(*flags, *struck),
-            )
-
         try:
             try:
                 done, exit_code, ended_s = _watch(simulator, student, progress)
@@ -102,7 +97,8 @@ def command(submission: Submission, introduction: Introduction, page: int) -> li
     """How the submission's process is started."""
     awaited = json.dumps([introduction.topics, introduction.services])
     words = [awaited, str(page), *stage.target(submission)]
-    return [sys.executable, stage.program(submission), *words]
+    program = "launched.py" if isinstance(submission.start, Launch) else "main.py"
+    return [sys.executable, str(STUDENT / program), *words]
 
 
 def _watch(

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from grader import scratch
-from grader.run import zygotes
 from grader.run.budget import Budget
-from grader.run.environment import environment, student_environment, virtual_environment
+from grader.run.environment import environment
 from grader.run.processes import isolation, levels
 from grader.run.processes.family import Student
 from grader.run.processes.sandbox.confinement import NAMESPACES
 from grader.run.processes.watched import Watched
 from grader.run.processes.zygote import Zygote
-from grader.run.student import main as student_main
 from grader.submission.opening import EntryPoint, Launch, Submission, Whole
 
 
@@ -38,13 +36,6 @@ def target(submission: Submission) -> list[str]:
 
 def _words(entry: EntryPoint) -> str:
     return f"{entry.module}:{entry.function}"
-
-
-def program(submission: Submission) -> str:
-    """The file with the `main` of a submission's process, in real time."""
-    alone = Path(student_main.__file__)
-    is_launch = isinstance(submission.start, Launch)
-    return str(alone.with_name("launched.py") if is_launch else alone)
 
 
 def not_in_virtual_time(submission: Submission) -> str:
@@ -84,46 +75,29 @@ class Stage:
     level: levels.Level
     budget: Budget
 
-    def own(self, submission: Submission) -> Submission:
-        """The submission as this run has it for itself; at `namespaces`, its process copies it."""
-        if self.level.level == NAMESPACES:
-            return submission
-        return submission.again(self.folder / "submission")
-
-    def student(
+    def start(
         self,
-        command: Sequence[str],
         submission: Submission,
-        pass_fds: tuple[int, ...] = (),
-        env: Mapping[str, str] | None = None,
-    ) -> Watched:
-        """Start the submission's process in its own folder."""
-        env = student_environment({}) if env is None else env
-        return self._start(command, env, submission, pass_fds)
-
-    def virtual_student(
-        self, command: Sequence[str], submission: Submission, pass_fds: tuple[int, ...]
-    ) -> Watched:
-        """The same for virtual time: forked, unless that would make a difference."""
-        zygote = zygotes.for_student(submission.root)
-        return self._start(command, virtual_environment({}), submission, pass_fds, zygote)
-
-    def _start(
-        self,
-        command: Sequence[str],
-        env: Mapping[str, str],
-        submission: Submission,
+        command: Callable[[Submission], Sequence[str]],
         pass_fds: tuple[int, ...],
+        env: Mapping[str, str],
         zygote: Zygote | None = None,
-    ) -> Watched:
-        root, is_apart = submission.root, bool(self.namespaces)
+    ) -> tuple[Submission, Watched]:
+        """Start the submission's process; the submission is the one that this run has for itself.
+
+        Args:
+            command: says how that is started.
+            env: environment variables beside those of both processes.
+            zygote: what it is forked from, if that can be; None: it starts from nothing.
+        """
+        if self.level.level != NAMESPACES:  # there the process copies it
+            submission = submission.again(self.folder / "submission")
+        root = submission.root
         own = submission.copy.folder if submission.copy else root
-        place = levels.prepare(self.level, root, own, self.folder, is_apart=is_apart)
+        place = levels.prepare(self.level, root, own, self.folder, is_apart=bool(self.namespaces))
         env = {**self.env, **env, **place.env}
-        return Student(
-            *(command, env, root, pass_fds, self.namespaces, zygote, place.order),
-            budget=self.budget,
-        )
+        words = (command(submission), env, root, pass_fds, self.namespaces, zygote, place.order)
+        return submission, Student(*words, budget=self.budget)
 
 
 @contextmanager

@@ -158,10 +158,9 @@ def _look(
     budget: Budget,
 ) -> _Looked[Found]:
     with stage.open_stage(budget) as place:
-        submission = place.own(submission)
-        student = place.student(
-            command(submission, asked, place.recording),
+        submission, student = place.start(
             submission,
+            lambda own: command(own, asked, place.recording),
             (place.recording,),
             virtual_environment({}),
         )

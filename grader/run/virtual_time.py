@@ -10,6 +10,7 @@ import json
 import socket
 import time
 from dataclasses import asdict, replace
+from functools import partial
 
 from grader import usage
 from grader.errors import GraderFailure
@@ -18,7 +19,8 @@ from grader.recording.recording import Outcome, Recording
 from grader.run import evidence, handover, real_time, stage, zygotes
 from grader.run.audience import Audience, seats
 from grader.run.budget import Budget
-from grader.run.finish import Ending, limits_struck, outcome, record
+from grader.run.environment import virtual_environment
+from grader.run.finish import ended, outcome, record
 from grader.run.lost import SimulatorLost
 from grader.run.plan import Plan
 from grader.run.processes import cores
@@ -92,25 +94,16 @@ def _try(
         ours,
         theirs,
     ):
-        submission = place.own(submission)
         fds = (ours.fileno(), told.page)
-        words = command(submission, scene.introduction, *fds)
-        student = place.virtual_student(words, submission, pass_fds=fds)
+        submission, student = place.start(
+            submission,
+            lambda own: command(own, scene.introduction, *fds),
+            fds,
+            virtual_environment({}),
+            zygotes.for_student(submission.root),
+        )
         ours.close()
-
-        def ending(how: Outcome, exit_code: int | None, flags: tuple[str, ...] = ()) -> Ending:
-            output = submission.as_handed_in(student.output())
-            struck = limits_struck(exit_code, output, student.excess)
-            return Ending(
-                time="virtual",
-                outcome=how,
-                exit_code=exit_code,
-                wall_s=time.monotonic() - started,
-                isolation=place.isolation,
-                output=output,
-                flags=(*map(submission.as_handed_in, flags), *struck),
-            )
-
+        ending = partial(ended, "virtual", submission, student, place.isolation, started)
         is_driven = False
         try:
             try:
