@@ -36,11 +36,6 @@ class Usage(NamedTuple):
         return self.ticks / TICKS_PER_S
 
     @property
-    def sleeps(self) -> bool:
-        """Whether it waits, without wanting the processor."""
-        return self.state == "S"
-
-    @property
     def is_stopped(self) -> bool:
         """Whether somebody has stopped it, by SIGSTOP or as a debugger does."""
         return self.state in ("T", "t")
