@@ -147,7 +147,7 @@ def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
         f"subprocess.Popen(['sleep', '{seconds}'], start_new_session=True)\n"
         "while True: time.sleep(1)\n"
     )
-    before = set(psutil.Process().children())
+    before = set(psutil.Process().children(recursive=True))
     over = threading.Event()
 
     def graded() -> None:
@@ -159,7 +159,7 @@ def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
     with ThreadPoolExecutor(1) as pool:
         task = pool.submit(graded)
         while not over.is_set():
-            for process in psutil.Process().children():
+            for process in psutil.Process().children(recursive=True):
                 if any("grader.run.simulator" in word for word in words(process)):
                     with suppress(psutil.NoSuchProcess):  # it has ended by itself
                         process.kill()
@@ -168,7 +168,7 @@ def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
     assert not [p for p in psutil.process_iter() if words(p) == ["sleep", seconds]]
     zygotes.close()  # which wait for the next grading, as a reader of hand-ins does
     reader.close()
-    assert set(psutil.Process().children()) <= before
+    assert set(psutil.Process().children(recursive=True)) <= before
 
 
 def words(process: psutil.Process) -> list[str]:
