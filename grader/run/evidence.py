@@ -15,7 +15,7 @@ from itertools import chain
 from typing import Any
 
 from grader import strict_json, usage
-from grader.recording.conduct import Conduct
+from grader.recording.conduct import STRANGERS, Conduct
 from grader.run import dumps
 from grader.run.student import account
 from grader.run.student.telling import asking_signal
@@ -121,6 +121,8 @@ def _conduct(
         told |= dumps.ending(dump, own, ended_s, computes=computes)
     for place in _places(told):
         place["file"] = own.as_handed_in(place["file"])
+    for error in filter(None, (told["raised"], *told["caught"])):
+        error["text"] = submission.as_handed_in(error["text"])[: int(STRANGERS.characters)]
     return Conduct.from_json(told)
 
 

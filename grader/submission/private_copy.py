@@ -96,17 +96,24 @@ class PrivateCopy:
     def as_handed_in(self, text: str) -> str:
         """What a run has printed, with the paths that it would have printed in the first place."""
         text = text.replace(self.prefix, self.shown)
-        parts = _LEFT_OUT.split(text)
-        for at in range(0, len(parts) - 1, 2):  # a path may have been cut through
-            for size in range(len(self.prefix) - 1, _LEAST - 1, -1):
-                if parts[at].endswith(self.prefix[:size]):
-                    parts[at] = parts[at][:-size] + self.shown[:size]
-                    break
-            for size in range(len(self.prefix) - 1, _LEAST - 1, -1):
-                if parts[at + 2].startswith(self.prefix[-size:]):
-                    parts[at + 2] = self.shown[-size:] + parts[at + 2][size:]
-                    break
-        return "".join(parts)
+        first, *parts = _LEFT_OUT.split(text)
+        made = [self._with_whole_end(first)]
+        for note, part in zip(parts[::2], parts[1::2], strict=True):
+            made += [note, self._with_whole_end(self._with_whole_start(part))]
+        return "".join(made)
+
+    def _with_whole_end(self, text: str) -> str:
+        """A text that may have been cut within a path."""
+        for size in range(len(self.prefix) - 1, _LEAST - 1, -1):
+            if text.endswith(self.prefix[:size]):
+                return text[:-size] + self.shown[:size]
+        return text
+
+    def _with_whole_start(self, text: str) -> str:
+        for size in range(len(self.prefix) - 1, _LEAST - 1, -1):
+            if text.startswith(self.prefix[-size:]):
+                return self.shown[-size:] + text[size:]
+        return text
 
 
 def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:

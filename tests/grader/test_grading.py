@@ -139,6 +139,15 @@ def test_what_cannot_be_used_is_told(drives, short):
 
 
 @pytest.mark.parametrize("time", ["virtual", "real"])
+def test_a_path_in_an_error_is_that_of_what_was_handed_in(short, tmp_path, time):
+    path = tmp_path / "reads.py"
+    path.write_text("from pathlib import Path\nopen(Path(__file__).with_name('gains.yaml'))\n")
+    diagnosis = grader.grade(path, short, time=time).diagnosis
+    assert diagnosis is not None
+    assert f"No such file or directory: '{tmp_path}/" in diagnosis.cause
+
+
+@pytest.mark.parametrize("time", ["virtual", "real"])
 def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
     seconds = str(780_000 + os.getpid() % 1000)
     path = tmp_path / "hides.py"

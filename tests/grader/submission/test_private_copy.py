@@ -249,6 +249,7 @@ def test_a_path_that_was_cut_through_tells_nothing_of_the_copy() -> None:
         assert told.endswith(f"/x {shown}")
         assert "0123" not in told and "89ab" not in told
         assert note in told
+        assert copy.as_handed_in(f"cannot read {prefix[:at]}") == f"cannot read {begin}"
 
 
 def test_letters_beside_a_cut_that_are_no_path_stay_as_they_are() -> None:
