@@ -19,7 +19,7 @@ endif
 NOT_AT_LOWEST := tests/examples tests/grader/test_fixture_verdicts.py tests/grader/run/test_* \
 	tests/packaging/test_check_setup.py tests/packaging/test_colcon.py tests/packaging/test_wheel.py
 
-.PHONY: help install tools needs test test-more test-all test-lowest test-kilted catalogues lint demo bench wheel clean
+.PHONY: help install tools needs test test-more test-all test-lowest test-kilted mutate size catalogues lint demo bench wheel clean
 .DEFAULT_GOAL := help
 
 help:
@@ -30,6 +30,8 @@ help:
 	@echo "   test-more      ... what only that runs here: attacks at every level, wheels, colcon, searches"
 	@echo "   test-lowest    ... make test with our dependencies at their lower bounds"
 	@echo "   test-kilted    ... make test with ROS 2 Kilted, in .venv-kilted (ROS=kilted make ... for others)"
+	@echo "make mutate    do the tests notice a change?  (ARGS=\"grader/exercise --count 100\": in these modules)"
+	@echo "make size      lines and modules of each room, class names that stand twice, circles"
 	@echo "make needs     install what tests need of the machine: a browser, ..."
 	@echo "make lint      ruff and mypy"
 	@echo "make catalogues   after a sentence was written or translated: the languages' catalogues"
@@ -71,6 +73,14 @@ test-kilted:
 	@$(MAKE) --no-print-directory ROS=kilted test
 
 test-all: test test-more test-lowest test-kilted
+
+# in a clone, build/mutants
+mutate: tools
+	@$(BIN)/python -m pip install -q "cosmic-ray>=8.7,<9"
+	@$(BIN)/python scripts/mutate.py $(ARGS)
+
+size:
+	@$(firstword $(wildcard $(BIN)/python) python3) scripts/size.py
 
 catalogues: tools
 	@$(BIN)/python scripts/catalogues.py

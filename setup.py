@@ -6,13 +6,14 @@ required stands in pyproject.toml.
 """
 
 import os
+import re
 import shutil
 import sys
 import tomllib
 from pathlib import Path
 from typing import Any
 
-from setuptools import find_packages, setup
+from setuptools import Command, Distribution, find_packages, setup
 from setuptools.command.build_py import build_py
 
 # resolved: `colcon build --symlink-install` runs a link to this file, in a folder that lacks most
@@ -33,6 +34,7 @@ COMPILING = {"egg_info", "dist_info", "bdist_wheel", "editable_wheel", "install"
 # of several destinations of one file, colcon sees the last.
 ROS_PACKAGES: dict[str, list[str]] = {
     "grader": [],
+    "grader_robots": [],
     "robot_py": [],
     "turtlesim_challenge": ["launch/turtlesim_challenge.launch.py"],
     "turtlesim_py": ["launch/multisim.launch.py"],
@@ -68,11 +70,49 @@ OWN_PACKAGES = find_packages(
 )
 
 
+# `ros2 run PACKAGE PROGRAM` starts <prefix>/lib/PACKAGE/PROGRAM. pip and colcon write the same
+# program, with the right Python in its first line, to <prefix>/bin: run that one.
+RUN_FROM_BIN = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
+# Data files that the build writes, by the folder that `data_files` names for them: there is none of
+# that name in the sources. An empty file in the ament index is how packages are found.
+WRITTEN = {"run_from_bin": RUN_FROM_BIN, "ament_marker": ""}
+
+
+class WriteData(Command):
+    """Part of the commands that install data files: writes those which are not in the sources."""
+
+    def copy_file(self, infile: str, outfile: str, **options: Any) -> tuple[str, bool]:
+        """Install a data file in the folder `outfile`; return its path there, and True."""
+        folder, _, name = infile.partition("/")
+        if folder not in WRITTEN:
+            return super().copy_file(infile, outfile, **options)
+        path = Path(outfile, name)
+        path.unlink(missing_ok=True)  # a link of `colcon build --symlink-install` would be followed
+        path.write_text(WRITTEN[folder], encoding="utf-8")
+        path.chmod(0o755 if folder == "run_from_bin" else 0o644)
+        return str(path), True
+
+
+class RosDistribution(Distribution):
+    """A distribution whose data files are partly written by the build.
+
+    Not by `cmdclass`: colcon brings a command of its own, which may not be here.
+    """
+
+    def get_command_class(self, command: str) -> type[Command]:
+        """Return the class of a command."""
+        found = super().get_command_class(command)
+        if command not in ("install_data", "symlink_data"):
+            return found
+        return type(found.__name__, (WriteData, found), {})
+
+
 def data_files() -> list[tuple[str, list[str]]]:
     """What `ros2 run`, `ros2 launch` and the ament index look for, below the prefix."""
+    index = "share/ament_index/resource_index/packages"
     programs: dict[str, list[str]] = {package: [] for package in ROS_PACKAGES}
     for name, function in PROJECT["scripts"].items():
-        programs[function.split(".")[0]].append(f"ros2run/{name}")
+        programs[re.split(r"[.:]", function)[0]].append(f"run_from_bin/{name}")
     files = []
     if not ROS_IS_SOURCED:
         # `ros2 run turtlesim turtlesim_node`, as every tutorial has it. A sourced ROS has its own
@@ -83,15 +123,11 @@ def data_files() -> list[tuple[str, list[str]]]:
         # likewise the nodes of robots, each in the package of its name
         for path in programs["robot_py"]:
             package = Path(path).name
-            marker = f"ros2run/index/{package}"
-            files += [
-                ("share/ament_index/resource_index/packages", [marker]),
-                (f"lib/{package}", [path]),
-            ]
+            files += [(index, [f"ament_marker/{package}"]), (f"lib/{package}", [path])]
     for package, launch_files in ROS_PACKAGES.items():
         manifest = "package.xml" if package == PROJECT["name"] else f"{package}/package.xml"
         files += [
-            ("share/ament_index/resource_index/packages", [f"ros2run/index/{package}"]),
+            (index, [f"ament_marker/{package}"]),
             (f"share/{package}", [manifest]),
             (f"share/{package}/launch", launch_files),
             (f"lib/{package}", programs[package]),
@@ -140,8 +176,13 @@ setup(
     exclude_package_data={package: ["*.py[cod]"] for package in ROS_PACKAGES},
     include_package_data=False,
     data_files=data_files(),
+    distclass=RosDistribution,
     entry_points={
-        "console_scripts": [f"{name} = {where}" for name, where in PROJECT["scripts"].items()]
+        group: [f"{name} = {where}" for name, where in points.items()]
+        for group, points in {
+            "console_scripts": PROJECT["scripts"],
+            **PROJECT["entry-points"],
+        }.items()
     },
     zip_safe=False,
     **ros_dependent(),

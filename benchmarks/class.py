@@ -4,7 +4,7 @@
 
 A class made of the fixtures (scripts/make_class.py) is graded anew for each number of jobs. Prints
 gradings a minute, CPU seconds a grading and the peak of memory, all processes together, and of one
-hand-in at a time how long each step takes; then what 1,000 and 100,000 hand-ins come to.
+submission at a time how long each step takes; then what 1,000 and 100,000 submissions come to.
 """
 
 from __future__ import annotations
@@ -14,74 +14,75 @@ import subprocess
 import sys
 import tempfile
 import time
+from itertools import pairwise
 from pathlib import Path
 
-from measuring import Sample, group, machine, spread
+from measuring import ROOT, command, head, machine, row, spread
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-
-from grader import grading, judging  # noqa: E402
-from grader.batch.page.thumb import thumb  # noqa: E402
-from grader.batch.similar import behaviour, sources  # noqa: E402
-from grader.exercise.loading import load_exercise  # noqa: E402
-from grader.reports import Report, render  # noqa: E402
-from grader.run.processes import cores  # noqa: E402
-from grader.submission.opening import open_submission  # noqa: E402
+from grader import grading, judging, open_submission
+from grader.batch.page.thumb import thumb
+from grader.batch.similar import behaviour, sources
+from grader.exercise.loading import load_exercise
+from grader.reports import Report, render
+from grader.run.processes import cores
 
 HOUR_S = 3600.0
 
 
-def whole(submissions: Path, out: Path, jobs: int) -> Sample:
-    """Grade a class in a process group of its own."""
-    command = [sys.executable, "-m", "grader", "batch", str(submissions), "--out", str(out)]
-    with group() as measured:
-        began = time.perf_counter()
-        process = measured.start(
-            [*command, "--jobs", str(jobs)], cwd=ROOT, stderr=subprocess.DEVNULL
-        )
-        process.wait()
-        wall_s = time.perf_counter() - began
-        return Sample(wall_s, measured.cpu_s(), measured.peak_mib())
+def batch(submissions: Path, out: Path, jobs: int) -> list[str]:
+    """Return the call of `grader batch`."""
+    words = [sys.executable, "-m", "grader", "batch", str(submissions), "--out", str(out)]
+    return [*words, "--jobs", str(jobs)]
 
 
-def steps(submissions: list[Path], folder: Path) -> dict[str, list[float]]:
-    """Wall time of each step of a grading [s], one hand-in after the other."""
+def steps(path: Path, place: Path) -> dict[str, float]:
+    """Grade a submission; the wall time of each step [s]."""
     exercise, run = load_exercise("turtlesim_challenge"), grading.RUNNERS["virtual"]
-    found: dict[str, list[float]] = {}
-    for number, path in enumerate(submissions):
-        place = folder / str(number)
-        place.mkdir()
-        last = time.perf_counter()
-
-        def took(step: str) -> None:
-            nonlocal last
-            now = time.perf_counter()
-            found.setdefault(step, []).append(now - last)
-            last = now
-
-        with open_submission(path) as submission:
-            took("read what was handed in")
-            recordings = grading.run_all(submission, exercise, run)
-            took("three runs")
-            if submission.copy is not None:
-                sources.keep(submission.copy.folder, place / sources.SOURCE)
-            behaviour.behaved(place / sources.SOURCE, recordings.nominal)
-            thumb(recordings)
-            took("for the pages of the class")
-        judging.save_recordings(recordings, place / "recording")
-        took("write recordings")
-        result = judging.judge(recordings, exercise, submission="x")
-        took("judge")
-        render("html", [Report.of(result, place, recordings, "whole")])
-        took("report page")
-        judging.judge(judging.load_recordings(place / "recording"), exercise)
-        took("(a regrade: read and judge)")
-    return found
+    place.mkdir()
+    ends = {"": time.perf_counter()}
+    with open_submission(path) as submission:
+        ends["read what was handed in"] = time.perf_counter()
+        recordings = grading.run_all(submission, exercise, run)
+        ends["three runs"] = time.perf_counter()
+        if submission.copy is not None:
+            sources.keep(submission.copy.folder, place / sources.SOURCE)
+        behaviour.behaved(place / sources.SOURCE, recordings.nominal)
+        thumb(recordings)
+        ends["for the pages of the class"] = time.perf_counter()
+    judging.save_recordings(recordings, place / "recording")
+    ends["write recordings"] = time.perf_counter()
+    result = judging.judge(recordings, exercise, submission="x")
+    ends["judge"] = time.perf_counter()
+    render("html", [Report.of(result, place, recordings, "whole")])
+    ends["report page"] = time.perf_counter()
+    judging.judge(judging.load_recordings(place / "recording"), exercise)
+    ends["(a regrade: read and judge)"] = time.perf_counter()
+    return {step: end - before for (_, before), (step, end) in pairwise(ends.items())}
 
 
-def main() -> int:
-    """Measure and print."""
+def measure(submissions: Path, folder: Path, count: int, jobs: list[int]) -> None:
+    """Print both tables."""
+    head("jobs", "wall [s]", "gradings a minute", "CPU a grading [s]", "peak memory [MiB]")
+    samples = []
+    for number in jobs:
+        sample = command(batch(submissions, folder / f"out{number}", number))
+        samples.append(sample.cpu_s / count if sample.cpu_s is not None else None)
+        rate = f"{count / sample.wall_s * 60:.0f}"
+        peak = spread([sample.peak_mib], 0)
+        row(number, f"{sample.wall_s:.0f}", rate, spread(samples[-1:]), peak)
+    if cpu_s := [sample for sample in samples if sample is not None]:
+        for many in (1_000, 100_000):
+            print(f"{many:,} submissions: {many * min(cpu_s) / HOUR_S:.1f} core hours")
+    usual = ROOT / "turtlesim_challenge" / "turtle_controller.py"
+    steps(usual, folder / "first")  # imports, and processes that wait for the next
+    found = [steps(usual, folder / f"step{number}") for number in range(10)]
+    head(f"one right solution at a time, {cores.share():g} cores", "wall [s]")
+    for step in found[0]:
+        row(step, spread((times[step] for times in found), 3))
+
+
+def main() -> None:
+    """Make a class, and measure."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--count", type=int, default=60)
     parser.add_argument("--jobs", type=int, nargs="+", default=[1, 2, 4])
@@ -93,31 +94,8 @@ def main() -> int:
         submissions = folder / "class"
         make = [sys.executable, str(ROOT / "scripts" / "make_class.py"), str(submissions)]
         subprocess.run([*make, "--count", str(args.count), "--seed", str(args.seed)], check=True)
-        print("| jobs | wall [s] | gradings a minute | CPU a grading [s] | peak memory [MiB] |")
-        print("|---:|---:|---:|---:|---:|")
-        cpu_s: list[float] = []
-        for jobs in args.jobs:
-            took = whole(submissions, folder / f"out{jobs}", jobs)
-            a_grading = None if took.cpu_s is None else took.cpu_s / args.count
-            cpu_s += [] if a_grading is None else [a_grading]
-            print(
-                f"| {jobs} | {took.wall_s:.0f} | {args.count / took.wall_s * 60:.0f} | "
-                f"{'-' if a_grading is None else f'{a_grading:.2f}'} | "
-                f"{'-' if took.peak_mib is None else f'{took.peak_mib:.0f}'} |",
-                flush=True,
-            )
-        for count in (1_000, 100_000) if cpu_s else ():
-            print(f"{count:,} hand-ins: {count * min(cpu_s) / HOUR_S:.1f} core hours")
-        usual = ROOT / "turtlesim_challenge" / "turtle_controller.py"
-        few = folder / "steps"
-        few.mkdir()
-        steps([usual], folder)  # imports, and processes that wait for the next
-        found = steps([usual] * 10, few)
-    print(f"\nOne right solution at a time, {cores.share():g} cores, wall time [s]:")
-    for step, values in found.items():
-        print(f"| {step} | {spread(values, 3)} |")
-    return 0
+        measure(submissions, folder, args.count, args.jobs)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

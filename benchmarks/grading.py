@@ -3,28 +3,41 @@
     .venv/bin/python benchmarks/grading.py [--real] [--repetitions N] [--only TABLE...]
 
 Machines differ, so everything is given as multiples of two yardsticks too, which are measured again
-before each table: `yardsticks.py` says which. `measuring.py` says what processor time and memory
-are here. No test looks at any of these numbers: they are for people.
+before each table: the start of a bare rclpy process, and a process that handles 3,449 poses.
+`measuring.py` explains these, and what processor time and memory are here. No test reads any of
+these numbers: they are for people.
 """
 
 from __future__ import annotations
 
 import argparse
+import multiprocessing
 import os
 import signal
+import subprocess
 import sys
+import tempfile
+import threading
 import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
 import measuring
-import yardsticks
-from measuring import ROOT, Sample, spread
-from timing import REFERENCE, command_cold, command_warm, real_s, runs_of, worker
-from yardsticks import Yardsticks, middle
+from measuring import ROOT, Cost, Group, load, median, ratio, row, spread
 
-sys.path.insert(0, str(ROOT))  # this checkout, whatever is installed
+import grader
+from grader.run import real_time, virtual_time
+from grader.run.handover import Plan
+from grader.run.processes import isolation
+from grader.scenes.scene import Limits
+from turtlesim_py.world.turtle import TICK_S
 
-from grader.run.processes import domain
-
+REFERENCE = ROOT / "turtlesim_challenge" / "turtle_controller.py"
 #: Five ways to write a controller that students use, each for half a minute of simulated time.
 STYLES = {
     "timer": "timer and rclpy.spin",
@@ -33,104 +46,243 @@ STYLES = {
     "sleeping_loop": "loop of time.sleep",
     "multi_threaded": "MultiThreadedExecutor, awaits",
 }
+PLAN = Plan(Limits(first_motion_s=5, rest_s=3, total_s=120))
 STAGES = ("start", "discovery", "ticking", "shutdown")
 AT_ONCE = (1, 2, 4)
 #: Of a processor, as the smallest container of Gradescope has.
 HALF = 0.5
 TABLES = ("runs", "commands", "rates", "half")
+#: What `grader run --watch` prints when it has graded.
+GRADED = "Waiting for the next save"
+#: Between two readings of the processor time of a run, to divide it among its stages [s].
+READ_S = 0.005
 
 
-def line(*cells: object) -> None:
-    """A row of a Markdown table."""
-    print("| " + " | ".join(str(cell) for cell in cells) + " |", flush=True)
+# Work in a process of its own. Each returns when its parts began and ended [s, monotonic] -----
 
 
-def head(*cells: str) -> None:
-    """The first row of a Markdown table, and the one below it."""
-    print()
-    line(*cells)
-    print("|---" + "|--:" * (len(cells) - 1) + "|")
+def virtual_run(path: Path) -> tuple[list[float], int]:
+    """Run a submission once in virtual time; also return the ticks."""
+    with grader.open_submission(path) as submission:
+        marks: dict[str, float] = {}
+        begun = time.monotonic()
+        recording = virtual_time.run(submission, PLAN, marks=marks)
+        ended = time.monotonic()
+    if recording.run.time != "virtual":
+        raise RuntimeError(f"{path.stem}: {recording.run.flags}")
+    return [begun, marks["met"], marks["connected"], marks["over"], ended], recording.run.ticks
 
 
-def row(name: str, samples: list[Sample], units: Yardsticks, *more: object) -> None:
-    """What something took: wall, CPU, both as multiples of both yardsticks."""
-    wall, cpu = [s.wall_s for s in samples], [s.cpu_s for s in samples]
-    typical = middle(samples)
-    multiples = units.multiples(typical.wall_s, typical.cpu_s)
-    line(name, spread(wall), spread(cpu), *multiples, *more)
+def real_run(path: Path) -> tuple[list[float], int]:
+    """Run a submission once in real time; also return the ticks."""
+    with grader.open_submission(path) as submission:
+        begun = time.monotonic()
+        recording = real_time.run(submission, PLAN)
+        return [begun, time.monotonic()], recording.run.ticks
 
 
-def mebibytes(peak: float | None) -> str:
-    """A peak of memory in a cell."""
-    return "-" if peak is None else f"{peak:.0f}"
+def gradings(path: Path, at_once: int) -> tuple[list[float], list[float]]:
+    """Grade a submission as many times at once, all its runs each; also return the scores."""
+    begun = time.monotonic()
+    with ThreadPoolExecutor(at_once) as pool:
+        scores = [result.score for result in pool.map(grader.grade, [path] * at_once)]
+    return [begun, time.monotonic()], scores
 
 
-def yardstick_rows(
-    env: dict[str, str], repetitions: int, more: tuple[str, ...] = (), cpus: float | None = None
-) -> Yardsticks:
-    """Measure the yardsticks, and begin a table with them."""
-    units, starts, floors = yardsticks.measure(env, repetitions, cpus)
-    head("", "wall [s]", "CPU [s]", "in starts (wall / CPU)", "in floors (wall / CPU)", *more)
-    for name, samples in (("start: a bare rclpy process", starts), ("floor: 3,449 poses", floors)):
-        row(name, samples, units, *[""] * len(more))
-    return units
+# Measuring that work ------------------------------------------------------------------------------
+
+
+class CpuReadings:
+    """Reads a group's processor time again and again: how much was used between two times."""
+
+    def __init__(self, measured: Group) -> None:
+        self._measured = measured
+        self._readings: list[tuple[float, float]] = []
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._read_on, daemon=True)
+
+    def __enter__(self) -> CpuReadings:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._done.set()
+        self._thread.join()
+
+    def between(self, begin_s: float, end_s: float) -> Cost:
+        """What was used between two times of the monotonic clock [s]."""
+        has_any = len(self._readings) > 1
+        return Cost(end_s - begin_s, self._at(end_s) - self._at(begin_s) if has_any else None)
+
+    def _at(self, when_s: float) -> float:
+        """Interpolate between the readings before and after."""
+        readings = self._readings
+        after = next((n for n, (at, _) in enumerate(readings) if at >= when_s), len(readings) - 1)
+        (t0, cpu0), (t1, cpu1) = readings[max(after - 1, 0)], readings[after]
+        return cpu1 if t1 <= t0 else cpu0 + (cpu1 - cpu0) * min((when_s - t0) / (t1 - t0), 1.0)
+
+    def _read_on(self) -> None:
+        while (used := self._measured.cpu_s()) is not None:
+            self._readings.append((time.monotonic(), used))
+            if self._done.is_set():  # one more after the end
+                return
+            self._done.wait(READ_S)
+
+
+class Worker:
+    """A process in a group, which does one piece of work after the other."""
+
+    def __init__(self, measured: Group, pool: ProcessPoolExecutor) -> None:
+        self.group, self._pool = measured, pool
+
+    def do(
+        self, work: Callable[..., tuple[list[float], Any]], *arguments: object, times: int = 1
+    ) -> list[tuple[Cost, list[Cost], Any]]:
+        """Do the work; each time the whole, its parts, and what the work returns besides."""
+        with CpuReadings(self.group) as watch:
+            answers = [self._pool.submit(work, *arguments).result() for _ in range(times)]
+        return [
+            (watch.between(edges[0], edges[-1]), [watch.between(*p) for p in pairwise(edges)], more)
+            for edges, more in answers
+        ]
+
+
+@contextmanager
+def worker(cpus: float | None = None) -> Iterator[Worker]:
+    """Have a worker for some jobs."""
+    spawn = multiprocessing.get_context("spawn")
+    with measuring.group(cpus) as measured, ProcessPoolExecutor(1, spawn) as pool:
+        with measured.entered():
+            pool.submit(os.getpid).result()  # starts it
+        yield Worker(measured, pool)
+
+
+def warm_runs(
+    path: Path, repetitions: int, cpus: float | None = None
+) -> tuple[list[tuple[Cost, list[Cost], Any]], float | None]:
+    """Run a submission again and again in one process; also return the peak [MiB]."""
+    with worker(cpus) as at_work:
+        at_work.do(virtual_run, path)
+        return at_work.do(virtual_run, path, times=repetitions), at_work.group.peak_mib()
+
+
+def command_cold(repetitions: int, cpus: float | None = None) -> list[Cost]:
+    """`grader run` of the reference, each in a fresh process, everything written."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = [sys.executable, "-m", "grader", "run", str(REFERENCE), "--out", folder]
+        return [measuring.command(words, cpus=cpus) for _ in range(repetitions)]
+
+
+def command_warm(repetitions: int) -> list[Cost]:
+    """The second verdict and those after it under `grader run --watch`, from save to verdict."""
+    samples = []
+    with tempfile.TemporaryDirectory() as folder, measuring.group() as measured:
+        path = Path(folder) / "turtle_controller.py"
+        path.write_bytes(REFERENCE.read_bytes())
+        words = [sys.executable, "-m", "grader", "run", str(path), "--watch"]
+        words += ["--out", f"{folder}/graded"]
+        with measured.entered():
+            process = subprocess.Popen(
+                words, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+            )
+        assert process.stderr
+        for number in range(repetitions + 1):
+            with CpuReadings(measured) as watch:
+                begun = time.monotonic()
+                if number:
+                    path.write_bytes(REFERENCE.read_bytes() + b"# saved again\n" * number)
+                if not any(line.startswith(GRADED) for line in process.stderr):
+                    raise SystemExit("grader run --watch ended")
+                ended = time.monotonic()
+            if number:
+                samples.append(replace(watch.between(begun, ended), peak_mib=measured.peak_mib()))
+        process.send_signal(signal.SIGINT)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(10)
+        process.stderr.close()
+    return samples
+
+
+# Tables -------------------------------------------------------------------------------------------
+
+
+class Units:
+    """Both yardsticks, measured at the beginning of a table."""
+
+    def __init__(
+        self, env: dict[str, str], repetitions: int, *titles: str, cpus: float | None = None
+    ) -> None:
+        starts, floors = measuring.yardsticks(env, repetitions, cpus)
+        self._units = (median(starts), median(floors))
+        measured = ("", "wall [s]", "CPU [s]", "in starts (wall / CPU)", "in floors (wall / CPU)")
+        measuring.head(*measured, *titles)
+        self.row("start: a bare rclpy process", starts, *[""] * len(titles))
+        self.row("floor: 3,449 poses", floors, *[""] * len(titles))
+
+    def row(self, name: str, samples: Sequence[Cost], *more: object) -> None:
+        """Print what something took: wall, CPU, both as multiples of both yardsticks."""
+        multiples = [ratio(median(samples), unit) for unit in self._units]
+        wall, cpu = spread(s.wall_s for s in samples), spread(s.cpu_s for s in samples)
+        row(name, wall, cpu, *multiples, *more)
 
 
 def table_of_runs(env: dict[str, str], repetitions: int, with_real: bool) -> None:
     """The reference and the styles, a run each."""
     print("\n## One run, warm: wall and CPU, and the stages of each (wall / CPU)")
-    more = ("simulated [s]", *STAGES, "peak of the process and its runs [MiB]")
-    units = yardstick_rows(env, 3, (*more, "real time [s]") if with_real else more)
+    titles = ("simulated [s]", *STAGES, "peak of the process and its runs [MiB]")
+    units = Units(env, 3, *titles, *["real time [s]"] * with_real)
     paths = {"reference": REFERENCE}
-    paths |= {
-        text: ROOT / "tests" / "submissions" / "styles" / f"{name}.py"
-        for name, text in STYLES.items()
-    }
+    for name, text in STYLES.items():
+        paths[text] = ROOT / "tests" / "submissions" / "styles" / f"{name}.py"
     for name, path in paths.items():
-        runs, peak = runs_of(path, repetitions)
-        stages = [middle([run.stages[n] for run in runs]) for n in range(len(STAGES))]
-        split = [
-            f"{s.wall_s:.3f} / " + ("-" if s.cpu_s is None else f"{s.cpu_s:.3f}") for s in stages
-        ]
-        shown = [f"{runs[0].simulated_s:.1f}", *split, mebibytes(peak)]
-        real = [f"{real_s(path):.1f}"] if with_real else []
-        row(name, [run.whole for run in runs], units, *shown, *real)
+        runs, peak_mib = warm_runs(path, repetitions)
+        stages = [median(samples) for samples in zip(*(parts for _, parts, _ in runs), strict=True)]
+        split = [f"{spread([s.wall_s], 3)} / {spread([s.cpu_s], 3)}" for s in stages]
+        cells = [f"{runs[0][2] * TICK_S:.1f}", *split, spread([peak_mib], 0)]
+        if with_real:
+            with worker() as at_work:
+                cells += [f"{at_work.do(real_run, path)[0][0].wall_s:.1f}"]
+        units.row(name, [whole for whole, *_ in runs], *cells)
 
 
 def table_of_commands(env: dict[str, str], repetitions: int) -> None:
     """`grader run`, cold and warm."""
     print("\n## `grader run` of the reference: three runs, everything written")
-    units = yardstick_rows(env, 3, ("peak [MiB]",))
+    units = Units(env, 3, "peak [MiB]")
     for name, samples in (
         ("cold: a fresh process", command_cold(repetitions)),
         ("warm: `--watch`, from a save to its verdict", command_warm(repetitions)),
     ):
-        row(name, samples, units, spread((s.peak_mib for s in samples), 0))
+        units.row(name, samples, spread((s.peak_mib for s in samples), 0))
 
 
 def table_of_rates(env: dict[str, str], repetitions: int) -> None:
     """Whole gradings in one process, one and several at once."""
     print("\n## Gradings of the reference (three runs each) in one warm process; a row's time is")
     print("that of one grading: the wall time of all divided by their number")
-    units = yardstick_rows(env, 3, ("gradings a minute", "peak [MiB]"))
+    units = Units(env, 3, "gradings a minute", "peak [MiB]")
     for at_once in AT_ONCE:
-        with worker("gradings", at_once, REFERENCE) as at_work:
-            at_work.do()
-            jobs = [at_work.do()[0] for _ in range(repetitions)]
-            peak = at_work.group.peak_mib()
+        with worker() as at_work:
+            at_work.do(gradings, REFERENCE, at_once)
+            jobs = at_work.do(gradings, REFERENCE, at_once, times=repetitions)
+            peak_mib = at_work.group.peak_mib()
         each = [
-            Sample(s.wall_s / at_once, None if s.cpu_s is None else s.cpu_s / at_once) for s in jobs
+            Cost(s.wall_s / at_once, None if s.cpu_s is None else s.cpu_s / at_once)
+            for s, *_ in jobs
         ]
         rates = spread((60 / sample.wall_s for sample in each), 0)
-        row(f"{at_once} at once", each, units, rates, mebibytes(peak))
+        units.row(f"{at_once} at once", each, rates, spread([peak_mib], 0))
 
 
-def table_at_half(env: dict[str, str], repetitions: int) -> None:
+def table_at_half(env: dict[str, str]) -> None:
     """The same on half a processor."""
-    print(f"\n## The reference on half a processor ({measuring.how_limited(HALF)})")
-    units = yardstick_rows(env, 2, cpus=HALF)
-    row("one run, warm", [r.whole for r in runs_of(REFERENCE, repetitions, HALF)[0]], units)
-    row("`grader run`, cold", command_cold(repetitions, HALF), units)
+    with measuring.group(HALF) as tried:
+        neighbour = "a busy neighbour on the one core it may use"
+        how = "cgroup quota" if tried.core is None else neighbour
+    print(f"\n## The reference on half a processor ({how})")
+    units = Units(env, 2, cpus=HALF)
+    units.row("one run, warm", [whole for whole, *_ in warm_runs(REFERENCE, 2, HALF)[0]])
+    units.row("`grader run`, cold", command_cold(2, HALF))
 
 
 def main() -> None:
@@ -145,11 +297,9 @@ def main() -> None:
     print(measuring.machine())
     print("Medians (lowest-highest). CPU: user and system time of all processes.")
     few = max(2, options.repetitions - 2)  # of what takes longer
-    with domain.reserve_domain() as number:
-        env = os.environ | {
-            "ROS_DOMAIN_ID": str(number),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        }
+    with isolation.reserve_isolation() as number:
+        discovery = {"ROS_DOMAIN_ID": str(number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+        env = os.environ | discovery
         if "runs" in options.only:
             table_of_runs(env, options.repetitions, options.real)
         if "commands" in options.only:
@@ -157,9 +307,8 @@ def main() -> None:
         if "rates" in options.only:
             table_of_rates(env, few)
         if "half" in options.only:
-            table_at_half(env, 2)
-    load = " ".join(f"{value:.1f}" for value in os.getloadavg())
-    print(f"\nTook {time.monotonic() - begun:.0f} s; load after (1, 5, 15 minutes) {load}")
+            table_at_half(env)
+    print(f"\nTook {time.monotonic() - begun:.0f} s; load after (1, 5, 15 minutes) {load()}")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,20 @@
-"""How the benchmarks measure: time, processor time, memory, half a processor, and the machine.
+"""How the benchmarks measure and print: time, processor time, memory, the machine, yardsticks.
 
 Processor time is the kernel's own count for a control group of its own (cgroup): user and system
 time of every process that was ever in it, also of those that had ended, were forked by others or
-were waited for by nobody. Where this process may not make such a group (a container without rights,
-a system other than Linux), the tables show "-" for it: no other way counts all of them.
+were waited for by nobody. Where this process may not make such a group (a container without
+rights), the tables show "-" for it: no other way counts all of them.
 
 Memory is the group's peak: everything at once, shared pages once, with the file cache that the
 processes filled.
+
+Two yardsticks show what rclpy itself costs on this machine, so that gradings can be counted in
+them. Both are whole processes, from their start to their end:
+
+    python benchmarks/measuring.py start    a bare rclpy process: import, init, a node, shutdown
+    python benchmarks/measuring.py floor    takes and handles as many poses, from itself and by
+                                            rclpy's own executor, as a run of the reference
+                                            controller has ticks
 """
 
 from __future__ import annotations
@@ -19,23 +27,25 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import threading
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import TypeVar
 
-#: Between two looks at the processor time of a run, to divide it among its stages [s].
-LOOK_S = 0.005
 #: The length in which a share of a processor is dealt out [us]; Docker's `--cpus` takes the same.
 PERIOD_US = 100_000
+#: Ticks of the reference controller's nominal run.
+POSES = 3449
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))  # all benchmarks are of this checkout, whatever is installed
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Sample:
+class Cost:
     """What something took; None where it could not be measured.
 
     Attributes:
@@ -49,31 +59,69 @@ class Sample:
     peak_mib: float | None = None
 
 
+def in_turns(repetitions: int, *works: Callable[[], T]) -> list[list[T]]:
+    """Repeat several measurements in turns, so that other load on the machine concerns each."""
+    rounds = [[work() for work in works] for _ in range(repetitions)]
+    return [list(values) for values in zip(*rounds, strict=True)]
+
+
+def median(samples: Sequence[Cost]) -> Cost:
+    """Return the medians of some samples."""
+    cpu_s = [sample.cpu_s for sample in samples if sample.cpu_s is not None]
+    peak_mib = [sample.peak_mib for sample in samples if sample.peak_mib is not None]
+    return Cost(
+        statistics.median(sample.wall_s for sample in samples),
+        statistics.median(cpu_s) if cpu_s else None,
+        statistics.median(peak_mib) if peak_mib else None,
+    )
+
+
+# Printing -------------------------------------------------------------------------------------
+
+
+def head(*titles: str) -> None:
+    """Print the first row of a Markdown table, and the one below it."""
+    print()
+    row(*titles)
+    print("|---" + "|--:" * (len(titles) - 1) + "|")
+
+
+def row(*cells: object) -> None:
+    """Print a row of a Markdown table."""
+    print("| " + " | ".join(str(cell) for cell in cells) + " |", flush=True)
+
+
 def spread(values: Iterable[float | None], digits: int = 2) -> str:
-    """Median (lowest - highest), or "-"."""
+    """Format values as their median (lowest-highest); "-" if there are none."""
     known = [value for value in values if value is not None]
     if not known:
         return "-"
-    low, high = min(known), max(known)
-    return f"{statistics.median(known):.{digits}f} ({low:.{digits}f}-{high:.{digits}f})"
+    middle, low, high = (
+        f"{value:,.{digits}f}" for value in (statistics.median(known), min(known), max(known))
+    )
+    return middle if len(known) == 1 else f"{middle} ({low}-{high})"
+
+
+def ratio(value: Cost, unit: Cost) -> str:
+    """Format how many times a unit something is: wall / CPU."""
+    cpu = "-" if value.cpu_s is None or not unit.cpu_s else f"{value.cpu_s / unit.cpu_s:.1f}"
+    return f"{value.wall_s / unit.wall_s:.1f} / {cpu}"
 
 
 def machine() -> str:
-    """Which machine this is, how busy, and what runs on it."""
-    lines: list[str] = []
-    with suppress(OSError):
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    """Return which machine this is, how busy, and what runs on it."""
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
     model = next((line.partition(":")[2].strip() for line in lines if "model name" in line), "?")
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    try:
-        rclpy = importlib.metadata.version("rclpy")
-    except importlib.metadata.PackageNotFoundError:
-        rclpy = "?"
-    load = " ".join(f"{value:.1f}" for value in os.getloadavg())
+    cores, rclpy = len(os.sched_getaffinity(0)), importlib.metadata.version("rclpy")
     return (
         f"{model}, {cores} cores; Python {platform.python_version()}, rclpy {rclpy}; "
-        f"{datetime.now():%Y-%m-%d %H:%M}, load before (1, 5, 15 minutes) {load}"
+        f"{datetime.now():%Y-%m-%d %H:%M}, load before (1, 5, 15 minutes) {load()}"
     )
+
+
+def load() -> str:
+    """Return how busy the machine is."""
+    return " ".join(f"{value:.1f}" for value in os.getloadavg())
 
 
 # Groups of processes --------------------------------------------------------------------------
@@ -84,62 +132,58 @@ class Group:
     """Processes that are measured together.
 
     Attributes:
-        folders: controller -> the folder in which the kernel tells of it; "" is cgroup v2's own.
+        name: of its folder in each hierarchy of control groups.
+        parents: controller -> the folder of the group that this process is in, below which the
+            new one is made; "" is cgroup v2's own.
         core: the only core that its processes may use, or None.
     """
 
-    folders: Mapping[str, Path] = field(default_factory=dict)
+    name: str
+    parents: Mapping[str, Path]
     core: int | None = None
 
-    def start(self, command: Sequence[str], **more: object) -> subprocess.Popen[str]:
-        """Start a process in the group; `more` is for Popen."""
-        doors = [str(folder / "cgroup.procs") for folder in set(self.folders.values())]
-        enter = 'while [ "$1" != -- ]; do echo $$ > "$1" || exit 99; shift; done; shift; exec "$@"'
-        before = os.sched_getaffinity(0) if self.core is not None else set()
+    @contextmanager
+    def entered(self) -> Iterator[None]:
+        """Have this process in the group for a moment: those that it starts then stay there."""
+        cores = os.sched_getaffinity(0)
         if self.core is not None:
-            os.sched_setaffinity(0, {self.core})  # of this thread; the child inherits it
+            os.sched_setaffinity(0, {self.core})  # of this thread; a child inherits it
+        for parent in set(self.parents.values()):
+            _enter(parent / self.name)
         try:
-            words = ["sh", "-c", enter, "sh", *doors, "--", *command]
-            return subprocess.Popen(words, text=True, **more)  # type: ignore[call-overload, no-any-return]
+            yield
         finally:
-            if before:
-                os.sched_setaffinity(0, before)
+            for parent in set(self.parents.values()):
+                _enter(parent)
+            os.sched_setaffinity(0, cores)
 
     def cpu_s(self) -> float | None:
-        """User and system time up to now [s]; whoever runs this moment may lack a tick."""
-        if "" in self.folders:
-            words = (self.folders[""] / "cpu.stat").read_text().split()
+        """Return user and system time up to now [s]; what runs this moment may lack a tick."""
+        if file := self._file("", "cpu.stat"):
+            words = file.read_text().split()
             return int(words[words.index("usage_usec") + 1]) / 1e6
-        if "cpuacct" in self.folders:
-            return int((self.folders["cpuacct"] / "cpuacct.usage").read_text()) / 1e9
-        return None
+        file = self._file("cpuacct", "cpuacct.usage")
+        return int(file.read_text()) / 1e9 if file else None
 
     def peak_mib(self) -> float | None:
-        """The most memory up to now [MiB]."""
-        for controller, name in (("", "memory.peak"), ("memory", "memory.max_usage_in_bytes")):
-            if controller in self.folders:
-                with suppress(OSError):
-                    return int((self.folders[controller] / name).read_text()) / 2**20
-        return None
+        """Return the most memory up to now [MiB]."""
+        file = self._file("", "memory.peak") or self._file("memory", "memory.max_usage_in_bytes")
+        return int(file.read_text()) / 2**20 if file else None
 
     def limit(self, cpus: float) -> bool:
         """Give all its processes together so much of a processor; False where that is not ours."""
         quota_us = int(cpus * PERIOD_US)
-        for controller, name, text in (
-            ("", "cpu.max", f"{quota_us} {PERIOD_US}"),
-            ("cpu", "cpu.cfs_quota_us", f"{quota_us}"),
-        ):
-            file = self.folders.get(controller, Path("/nowhere")) / name
-            if file.exists():
-                with suppress(OSError):
-                    file.write_text(text)
-                    return True
+        file, text = self._file("", "cpu.max"), f"{quota_us} {PERIOD_US}"
+        if not file:
+            file, text = self._file("cpu", "cpu.cfs_quota_us"), f"{quota_us}"
+        with suppress(OSError):
+            return bool(file and file.write_text(text))
         return False
 
     def end(self) -> None:
-        """End whoever is still in it, and remove it."""
+        """Kill the processes that are still in it, and remove it."""
         deadline = time.monotonic() + 5.0
-        for folder in set(self.folders.values()):
+        for folder in {parent / self.name for parent in self.parents.values()}:
             while time.monotonic() < deadline:
                 for number in (folder / "cgroup.procs").read_text().split():
                     with suppress(ProcessLookupError):
@@ -150,72 +194,62 @@ class Group:
                 except OSError:
                     time.sleep(0.01)
 
+    def _file(self, controller: str, name: str) -> Path | None:
+        parent = self.parents.get(controller)
+        file = parent / self.name / name if parent else None
+        return file if file and file.exists() else None
+
 
 @contextmanager
 def group(cpus: float | None = None) -> Iterator[Group]:
-    """A new group; with `cpus`, its processes get that much of a processor.
+    """Make a group; with `cpus`, its processes get that much of a processor.
 
     Where the kernel lets us deal out no share, a process that never rests shares one core with the
-    group, which gives it about half: see `how_limited`.
+    group, which gives it about half.
     """
-    with ExitStack() as held:
-        made = Group(dict(_new_folders()))
-        held.callback(made.end)
+    made = _new_group()
+    neighbour = None
+    try:
         if cpus is not None and not made.limit(cpus):
             made.core = min(os.sched_getaffinity(0))
-            held.enter_context(busy_neighbour(made.core))
+            pinned = f"import os\nos.sched_setaffinity(0, {{{made.core}}})\n"
+            code = f"{pinned}while os.getppid() == {os.getpid()}: 0"
+            neighbour = subprocess.Popen([sys.executable, "-c", code])
         yield made
-
-
-def how_limited(cpus: float) -> str:
-    """In words, how `group(cpus)` limits here."""
-    found = Group(dict(_new_folders()))
-    try:
-        by_kernel = found.limit(cpus)
     finally:
-        found.end()
-    return "cgroup quota" if by_kernel else "a busy neighbour on the one core it may use"
+        if neighbour:
+            neighbour.kill()
+            neighbour.wait()
+        made.end()
 
 
-@contextmanager
-def busy_neighbour(core: int) -> Iterator[None]:
-    """A process that never rests, on one core."""
-    idle = f"import os\nos.sched_setaffinity(0, {{{core}}})\nwhile os.getppid() == {os.getpid()}: 0"
-    with subprocess.Popen([sys.executable, "-c", idle]) as process:
-        try:
-            yield
-        finally:
-            process.kill()
-
-
-def _new_folders() -> Iterator[tuple[str, Path]]:
+def _new_group() -> Group:
     """Make a group below our own in each hierarchy that we need and may change."""
     name = f"turtlesim-bench-{os.getpid()}-{time.monotonic_ns()}"
-    made: dict[Path, Path] = {}
-    for controllers, own in _own_groups():
-        folder = own / name
+    usable: dict[str, Path] = {}
+    for controllers, parent in _own_groups():
+        folder = parent / name
         try:
             folder.mkdir()
-            # whether a process may enter is known only when one does
-            door = str(folder / "cgroup.procs")
-            subprocess.run(["sh", "-c", f'echo $$ > "{door}"'], check=True, capture_output=True)
-        except (OSError, subprocess.CalledProcessError):
+            # only entering it shows whether a process may
+            _enter(folder)
+            _enter(parent)
+        except OSError:
             with suppress(OSError):
                 folder.rmdir()
             continue
-        made[own] = folder
-        for controller in controllers:
-            yield controller, folder
+        usable |= dict.fromkeys(controllers, parent)
+    return Group(name, usable)
+
+
+def _enter(folder: Path) -> None:
+    (folder / "cgroup.procs").write_text(str(os.getpid()))
 
 
 def _own_groups() -> Iterator[tuple[list[str], Path]]:
-    """The folders of the groups that we are in, with their controllers; v2's is ""."""
-    try:
-        lines = Path("/proc/self/cgroup").read_text().splitlines()
-        mounts = [line.split() for line in Path("/proc/mounts").read_text().splitlines()]
-    except OSError:
-        return
-    for line in lines:
+    """Yield the folders of the groups that we are in, with their controllers; v2's is ""."""
+    mounts = [line.split() for line in Path("/proc/mounts").read_text().splitlines()]
+    for line in Path("/proc/self/cgroup").read_text().splitlines():
         _, names, path = line.split(":", 2)
         controllers = [
             name for name in names.split(",") if name in ("", "cpu", "cpuacct", "memory")
@@ -233,56 +267,69 @@ def _own_groups() -> Iterator[tuple[list[str], Path]]:
 
 def command(
     words: Sequence[str], env: Mapping[str, str] | None = None, cpus: float | None = None
-) -> Sample:
+) -> Cost:
     """Run a command to its end.
 
     Raises:
         SystemExit: it failed.
     """
-    with group(cpus) as ours, tempfile.TemporaryFile() as said:
+    with group(cpus) as measured, tempfile.TemporaryFile() as output:
         begun = time.monotonic()
-        process = ours.start(words, cwd=ROOT, env=env, stdout=said, stderr=said)
+        with measured.entered():
+            process = subprocess.Popen(words, cwd=ROOT, env=env, stdout=output, stderr=output)
         failed = process.wait()
         wall_s = time.monotonic() - begun
         if failed:
-            said.seek(0)
-            raise SystemExit(f"{said.read().decode()}\n{' '.join(words)}: exit {failed}")
-        return Sample(wall_s, ours.cpu_s(), ours.peak_mib())
+            output.seek(0)
+            raise SystemExit(f"{output.read().decode()}\n{' '.join(words)}: exit {failed}")
+        return Cost(wall_s, measured.cpu_s(), measured.peak_mib())
 
 
-class Watch:
-    """Looks at a group's processor time again and again, to say how much there was when."""
+# Yardsticks -----------------------------------------------------------------------------------
 
-    def __init__(self, watched: Group) -> None:
-        self._watched = watched
-        self._looks: list[tuple[float, float]] = []
-        self._done = threading.Event()
-        self._thread = threading.Thread(target=self._look, daemon=True)
 
-    def __enter__(self) -> Watch:
-        self._thread.start()
-        return self
+def start() -> None:
+    """Import, init, a node, shutdown."""
+    import rclpy
 
-    def __exit__(self, *_: object) -> None:
-        self._done.set()
-        self._thread.join()
+    rclpy.init()
+    node = rclpy.create_node("bare")
+    node.destroy_node()
+    rclpy.shutdown()
 
-    def between(self, begin_s: float, end_s: float) -> float | None:
-        """The processor time between two times of the monotonic clock [s]."""
-        if len(self._looks) < 2:
-            return None
-        return self._at(end_s) - self._at(begin_s)
 
-    def _at(self, when_s: float) -> float:
-        """Interpolated between the looks before and after."""
-        looks = list(self._looks)
-        after = next((n for n, (at, _) in enumerate(looks) if at >= when_s), len(looks) - 1)
-        (t0, cpu0), (t1, cpu1) = looks[max(after - 1, 0)], looks[after]
-        return cpu1 if t1 <= t0 else cpu0 + (cpu1 - cpu0) * min((when_s - t0) / (t1 - t0), 1.0)
+def floor() -> None:
+    """Publish pose after pose, and handle each."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+    from turtlesim.msg import Pose
 
-    def _look(self) -> None:
-        while not self._done.wait(LOOK_S):
-            used = self._watched.cpu_s()
-            if used is None:
-                return
-            self._looks.append((time.monotonic(), used))
+    rclpy.init()
+    node = rclpy.create_node("floor")
+    places: list[float] = []
+    node.create_subscription(Pose, "turtle1/pose", lambda pose: places.append(pose.x), 10)
+    publisher = node.create_publisher(Pose, "turtle1/pose", 10)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    for number in range(POSES):
+        publisher.publish(Pose(x=float(number), y=5.5, theta=0.5, linear_velocity=2.0))
+        while len(places) <= number:
+            executor.spin_once()
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+def yardsticks(
+    env: Mapping[str, str], repetitions: int, cpus: float | None = None
+) -> list[list[Cost]]:
+    """Measure both yardsticks, in turns."""
+
+    def process(name: str) -> Callable[[], Cost]:
+        return lambda: command([sys.executable, __file__, name], env, cpus)
+
+    return in_turns(repetitions, process("start"), process("floor"))
+
+
+if __name__ == "__main__":
+    {"start": start, "floor": floor}[sys.argv[1]]()

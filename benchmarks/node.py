@@ -3,7 +3,7 @@
     .venv/bin/python benchmarks/node.py
 
 The figures of the original are those of `turtlesim_node` 1.8.2 with Qt's offscreen platform, on a
-machine with 2 cores. No test looks at any of these numbers: they are for people.
+machine with 2 cores. No test reads any of these numbers: they are for people.
 """
 
 from __future__ import annotations
@@ -18,60 +18,43 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))  # this checkout, whatever is installed
+import psutil
+import rclpy
+from geometry_msgs.msg import Twist, Vector3
+from measuring import ROOT, T, head, in_turns, row, spread
+from turtlesim.msg import Pose
+from turtlesim.srv import Spawn
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
 
-import psutil  # noqa: E402
-import rclpy  # noqa: E402
-from geometry_msgs.msg import Twist, Vector3  # noqa: E402
-from turtlesim.msg import Pose  # noqa: E402
-from turtlesim.srv import Spawn  # noqa: E402
-from websockets.exceptions import ConnectionClosed  # noqa: E402
-from websockets.sync.client import ClientConnection, connect  # noqa: E402
-
-from grader.run.processes import domain  # noqa: E402
-from turtlesim_py.world.arena import TICK_NS, Arena  # noqa: E402
-from turtlesim_py.world.canvas import Canvas, Pen  # noqa: E402
+from grader.run.processes import isolation
+from turtlesim_py.world.arena import TICK_NS, Arena
+from turtlesim_py.world.canvas import Canvas, Pen
 
 #: How often a figure is taken.
 REPETITIONS = 5
-#: How often and how long a process is watched for a figure of its cost [s].
+#: How often and how long a process is measured for a figure of its cost [s].
 WINDOWS = 3
 WINDOW_S = 2.5
 #: The rate of commands of the original's measurement [Hz].
 COMMANDS_HZ = 10.0
 
 
-@dataclass
-class Row:
-    """One line of the table."""
-
-    name: str
-    unit: str
-    values: list[float]
-    original: str = ""
-    digits: int = 1
-
-    def __str__(self) -> str:
-        middle, low, high = (
-            f"{value:,.{self.digits}f}"
-            for value in (statistics.median(self.values), min(self.values), max(self.values))
-        )
-        spread = f"{low} – {high}" if len(self.values) > 1 else ""
-        return (
-            f"| {self.name:44} | {self.unit:5} | {middle:>9} | {spread:>19} | {self.original:>13} |"
-        )
+def figure(
+    name: str, unit: str, values: Sequence[float], digits: int = 1, original: str = ""
+) -> None:
+    """Print one line of the table."""
+    row(name, unit, spread(values, digits), original)
 
 
 class Subscriber:
-    """The one rclpy subscriber: it listens to turtle1, and drives it where it is told to."""
+    """The one rclpy subscriber: it listens to turtle1, and drives it on request."""
 
     def __init__(self) -> None:
         self.node = rclpy.create_node("benchmark")
@@ -102,6 +85,12 @@ class Subscriber:
                 self._velocity.publish(command)
             rclpy.spin_once(self.node, timeout_sec=min(0.02, end - now))
 
+    def gaps_ms(self, seconds: float, drive: bool = False) -> list[float]:
+        """Listen, and return the times between the stamps of poses [ms]."""
+        self.stamps_ns.clear()
+        self.spin_for(seconds, drive)
+        return [(b - a) / 1e6 for a, b in pairwise(self.stamps_ns)]
+
     def spawn(self, count: int) -> None:
         """Add turtles somewhere."""
         self.spin_until(self._spawn.service_is_ready)
@@ -122,43 +111,42 @@ def simulator(*arguments: str) -> Iterator[psutil.Process]:
             process.send_signal(signal.SIGINT)
 
 
-def cpu_percent(process: psutil.Process, work: Callable[[], None]) -> float:
-    """The share of a core that a process takes while `work` lasts."""
-
-    def used_s() -> float:
-        times = process.cpu_times()
-        return float(times.user + times.system)
-
-    begin, used = time.monotonic(), used_s()
-    work()
-    return (used_s() - used) / (time.monotonic() - begin) * 100.0
+@contextmanager
+def heard(subscriber: Subscriber, *arguments: str) -> Iterator[psutil.Process]:
+    """A simulator whose poses arrive, and whose start is over."""
+    with simulator(*arguments) as process:
+        subscriber.stamps_ns.clear()
+        subscriber.spin_until(lambda: subscriber.stamps_ns)
+        subscriber.spin_for(2.0)
+        yield process
 
 
-def cost_of_node(subscriber: Subscriber) -> Iterator[Row]:
+def cpu_percent(process: psutil.Process, subscriber: Subscriber, drive: bool = False) -> float:
+    """Return the share of a core that a process takes for a while."""
+    process.cpu_percent()
+    subscriber.spin_for(WINDOW_S, drive)
+    return process.cpu_percent()
+
+
+def cost_of_node(subscriber: Subscriber) -> None:
     """CPU and memory of the node, idle and driven, with one turtle and with ten."""
 
     def shares(drive: bool) -> list[float]:
-        return [
-            cpu_percent(process, lambda: subscriber.spin_for(WINDOW_S, drive))
-            for _ in range(WINDOWS)
-        ]
+        return [cpu_percent(process, subscriber, drive) for _ in range(WINDOWS)]
 
     def memory_mib() -> list[float]:
         return [process.memory_info().rss / 2**20]
 
-    with simulator() as process:
-        subscriber.stamps_ns.clear()
-        subscriber.spin_until(lambda: subscriber.stamps_ns)
-        subscriber.spin_for(2.0)
-        yield Row("CPU, idle, 1 subscriber", "%", shares(drive=False), "2.7")
-        yield Row("CPU, driven at 10 Hz, 1 subscriber", "%", shares(drive=True), "6.8")
-        yield Row("memory, 1 turtle", "MiB", memory_mib(), "52", digits=0)
+    with heard(subscriber) as process:
+        figure("CPU, idle, 1 subscriber", "%", shares(drive=False), original="2.7")
+        figure("CPU, driven at 10 Hz, 1 subscriber", "%", shares(drive=True), original="6.8")
+        figure("memory, 1 turtle", "MiB", memory_mib(), 0, "52")
         subscriber.spawn(9)
-        yield Row("CPU, 10 turtles, 1 driven", "%", shares(drive=True), "10.1")
-        yield Row("memory, 10 turtles", "MiB", memory_mib(), "60", digits=0)
+        figure("CPU, 10 turtles, 1 driven", "%", shares(drive=True), original="10.1")
+        figure("memory, 10 turtles", "MiB", memory_mib(), 0, "60")
 
 
-def start_to_first_pose() -> Iterator[Row]:
+def start_to_first_pose() -> None:
     """From the start of the process until a waiting client has a pose."""
     waits = []
     for _ in range(REPETITIONS):
@@ -168,32 +156,26 @@ def start_to_first_pose() -> Iterator[Row]:
             subscriber.spin_until(lambda s=subscriber: s.stamps_ns)  # type: ignore[misc]
             waits.append(time.monotonic() - begin)
         subscriber.node.destroy_node()
-    yield Row("start to first pose", "s", waits, "0.15 – 0.43", digits=2)
+    figure("start to first pose", "s", waits, 2, "0.15 – 0.43")
 
 
-def pose_interval(subscriber: Subscriber) -> Iterator[Row]:
+def pose_interval(subscriber: Subscriber) -> None:
     """Between the stamps of two poses of an idle turtle."""
-    with simulator():
-        subscriber.spin_until(lambda: subscriber.stamps_ns)
-        subscriber.spin_for(2.0)
-        subscriber.stamps_ns.clear()
-        subscriber.spin_for(20.0)
+    with heard(subscriber):
+        gaps_ms = subscriber.gaps_ms(20.0)
         others = subscriber.node.count_publishers("turtle1/pose") - 1
         assert not others, "another simulator is in the same ROS domain"
-    stamps = subscriber.stamps_ns
-    gaps_ms = [(b - a) / 1e6 for a, b in pairwise(stamps)]
-    yield Row("pose interval over 20 s, mean", "ms", [statistics.mean(gaps_ms)], "16.0007", 4)
-    yield Row(
-        "pose interval over 20 s, standard deviation", "ms", [statistics.stdev(gaps_ms)], "0.65", 2
-    )
-    yield Row("pose interval over 20 s, longest", "ms", [max(gaps_ms)], "20.4")
+    deviation = [statistics.stdev(gaps_ms)]
+    figure("pose interval over 20 s, mean", "ms", [statistics.mean(gaps_ms)], 4, "16.0007")
+    figure("pose interval over 20 s, standard deviation", "ms", deviation, 2, "0.65")
+    figure("pose interval over 20 s, longest", "ms", [max(gaps_ms)], original="20.4")
 
 
 @contextmanager
 def viewers(port: int, count: int) -> Iterator[None]:
-    """So many who look at the page, and take everything that they are sent."""
+    """Have so many clients of the page, which read everything that they are sent."""
 
-    def look(connection: ClientConnection) -> None:
+    def read(connection: ClientConnection) -> None:
         with suppress(ConnectionClosed):
             for _ in connection:
                 pass
@@ -202,55 +184,42 @@ def viewers(port: int, count: int) -> Iterator[None]:
         for _ in range(count):
             connection = stack.enter_context(connect(f"ws://127.0.0.1:{port}/socket"))
             connection.send('{"op": "subscribe", "topic": "/turtlesim_live"}')
-            threading.Thread(target=look, args=(connection,), daemon=True).start()
+            threading.Thread(target=read, args=(connection,), daemon=True).start()
         yield
 
 
-def cost_of_page(subscriber: Subscriber) -> Iterator[Row]:
+def cost_of_page(subscriber: Subscriber) -> None:
     """What the page costs the simulator, and whether poses stay as regular, with viewers."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
 
-    def share(drive: bool) -> float:
-        return cpu_percent(process, lambda: subscriber.spin_for(WINDOW_S, drive))
-
-    def gaps_ms() -> list[float]:
-        subscriber.stamps_ns.clear()
-        subscriber.spin_for(5.0, drive=True)
-        return [(b - a) / 1e6 for a, b in pairwise(subscriber.stamps_ns)]
-
-    with simulator("--ros-args", "-p", f"view_port:={port}") as process:
-        subscriber.stamps_ns.clear()
-        subscriber.spin_until(lambda: subscriber.stamps_ns)
-        subscriber.spin_for(2.0)
-        alone: list[float] = []
-        looked_at: list[float] = []
-        for _ in range(WINDOWS):  # in turns: what else the machine does concerns both
-            alone.append(share(drive=False))
-            with viewers(port, 1):
+    def beside(count: int, measure: Callable[[], T]) -> Callable[[], T]:
+        def measured() -> T:
+            with viewers(port, count):
                 subscriber.spin_for(0.5)
-                looked_at.append(share(drive=False))
-        yield Row("CPU, idle, page that nobody looks at", "%", alone)
-        yield Row("CPU, idle, 1 viewer", "%", looked_at)
-        with viewers(port, 1):
-            yield Row("CPU, driven, 1 viewer", "%", [share(drive=True) for _ in range(WINDOWS)])
-        with viewers(port, 10):
-            yield Row("CPU, driven, 10 viewers", "%", [share(drive=True) for _ in range(WINDOWS)])
-        without: list[list[float]] = []
-        with_ten: list[list[float]] = []
-        for _ in range(2 * WINDOWS):  # in turns, too
-            without.append(gaps_ms())
-            with viewers(port, 10):
-                subscriber.spin_for(0.5)
-                with_ten.append(gaps_ms())
+                return measure()
+
+        return measured
+
+    with heard(subscriber, "--ros-args", "-p", f"view_port:={port}") as process:
+        idle = partial(cpu_percent, process, subscriber)
+        driven = partial(idle, drive=True)
+        alone, viewed = in_turns(WINDOWS, beside(0, idle), beside(1, idle))
+        one, ten = in_turns(WINDOWS, beside(1, driven), beside(10, driven))
+        figure("CPU, idle, page without viewers", "%", alone)
+        figure("CPU, idle, 1 viewer", "%", viewed)
+        figure("CPU, driven, 1 viewer", "%", one)
+        figure("CPU, driven, 10 viewers", "%", ten)
+        gaps_ms = partial(subscriber.gaps_ms, 5.0, drive=True)
+        without, with_ten = in_turns(2 * WINDOWS, beside(0, gaps_ms), beside(10, gaps_ms))
         for name, windows in (("no viewer", without), ("10 viewers", with_ten)):
-            means, spreads = map(statistics.mean, windows), map(statistics.stdev, windows)
-            yield Row(f"pose interval, driven, {name}, mean", "ms", list(means), digits=4)
-            yield Row("... standard deviation", "ms", list(spreads), digits=2)
+            means, deviations = map(statistics.mean, windows), map(statistics.stdev, windows)
+            figure(f"pose interval, driven, {name}, mean", "ms", list(means), 4)
+            figure("... standard deviation", "ms", list(deviations), 2)
 
 
-def most_turtles(subscriber: Subscriber) -> Iterator[Row]:
+def most_turtles(subscriber: Subscriber) -> None:
     """How many turtles hold 62.5 Hz while the node has one core only.
 
     Turtles are added, a sixth more each time, until the poses of turtle1 come on average later
@@ -258,11 +227,8 @@ def most_turtles(subscriber: Subscriber) -> Iterator[Row]:
     """
 
     def holds_the_rate() -> bool:
-        subscriber.stamps_ns.clear()
-        subscriber.spin_for(2.0)
-        stamps = subscriber.stamps_ns
-        gaps = len(stamps) - 1
-        return gaps > 0 and (stamps[-1] - stamps[0]) / gaps < 1.0125 * TICK_NS
+        gaps_ms = subscriber.gaps_ms(2.0)
+        return bool(gaps_ms) and statistics.mean(gaps_ms) < 1.0125 * TICK_NS / 1e6
 
     with simulator() as process:
         subscriber.spin_until(lambda: subscriber.stamps_ns)
@@ -276,7 +242,7 @@ def most_turtles(subscriber: Subscriber) -> Iterator[Row]:
             subscriber.spawn(more)
             subscriber.spin_for(0.5)
             count += more
-    yield Row("turtles at 62.5 Hz on one core", "", [most], digits=0)
+    figure("turtles at 62.5 Hz on one core", "", [most], 0)
 
 
 def per_second(work: Callable[[int], None], count: int) -> list[float]:
@@ -289,7 +255,7 @@ def per_second(work: Callable[[int], None], count: int) -> list[float]:
     return rates
 
 
-def bare_world() -> Iterator[Row]:
+def bare_world() -> None:
     """The world without ROS."""
 
     def ticks(count: int) -> None:
@@ -306,29 +272,23 @@ def bare_world() -> Iterator[Row]:
             x, y = 250.0 + 90.0 * math.sin(angle), 250.0 + 90.0 * math.cos(angle)
             canvas.draw_line(x + 1.4 * math.cos(angle), y - 1.4 * math.sin(angle), x, y, pen)
 
-    yield Row(
-        "ticks of the bare world, 1 driven turtle", "1/s", per_second(ticks, 20_000), digits=0
-    )
-    yield Row("strokes of a tick's length", "1/s", per_second(strokes, 20_000), digits=0)
+    figure("ticks of the bare world, 1 driven turtle", "1/s", per_second(ticks, 20_000), 0)
+    figure("strokes of a tick's length", "1/s", per_second(strokes, 20_000), 0)
 
 
 def main() -> None:
     """Print the table, each line when it is known."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # the simulator is not left behind
-    print(f"| {'':44} | {'':5} | {'median':>9} | {'lowest – highest':>19} | {'the original':>13} |")
-    print(f"|{'-' * 46}|{'-' * 7}|{'-' * 10}:|{'-' * 20}:|{'-' * 14}:|")
-    for row in bare_world():
-        print(row, flush=True)
-    with domain.reserve_domain() as number:
+    head("", "unit", "median (lowest-highest)", "the original")
+    bare_world()
+    with isolation.reserve_isolation() as number:
         os.environ["ROS_DOMAIN_ID"] = str(number)
         os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
         rclpy.init(args=[])
-        for row in start_to_first_pose():
-            print(row, flush=True)
+        start_to_first_pose()
         for part in (cost_of_node, pose_interval, cost_of_page, most_turtles):
             subscriber = Subscriber()
-            for row in part(subscriber):
-                print(row, flush=True)
+            part(subscriber)
             subscriber.node.destroy_node()
         rclpy.shutdown()
 

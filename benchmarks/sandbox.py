@@ -3,7 +3,7 @@
     .venv/bin/python benchmarks/sandbox.py [--repetitions N]
 
 Each figure is the time from asking for a process to its end, where all that it does is to end:
-forked from a zygote, as nearly all runs are, and started. `none` is a process below its supervisor
+forked from a server, as nearly all runs are, and started. `none` is a process below its supervisor
 that is not confined; the difference to it is the sandbox's. No test looks at these numbers.
 """
 
@@ -17,31 +17,30 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from measuring import ROOT, spread
-
-sys.path.insert(0, str(ROOT))  # this checkout, whatever is installed
+from measuring import ROOT, head, row, spread
 
 from grader import scratch
 from grader.run.processes import isolation, levels
-from grader.run.processes.family import Student
-from grader.run.processes.zygote import Zygote
+from grader.run.processes.fork_server import ForkServer
+from grader.run.processes.fork_server_main import ProcessCommand
+from grader.run.processes.started_process import SubmissionProcess
 
-#: A program that ends at once, started or forked; what a zygote is told comes after its code.
+#: A program that ends at once, started or forked; what a server is told comes after its code.
 ENDS = f"""
 import os, sys
 sys.path.insert(0, {str(ROOT)!r})
 if len(sys.argv) > 1:
-    from grader.run.processes import forking
-    forking.serve(sys.argv[2:], ())
+    from grader.run.processes import fork_server_main
+    fork_server_main.serve(sys.argv[2], ())
 os._exit(0)
 """
 COMMAND = [sys.executable, "-I", "-S", "-c", ENDS]
 
 
 @contextmanager
-def zygote(env: dict[str, str]) -> Iterator[Zygote]:
+def fork_server(env: dict[str, str]) -> Iterator[ForkServer]:
     """One that forks processes which end at once."""
-    made = Zygote(COMMAND, env)
+    made = ForkServer(COMMAND, env)
     made.preloaded()
     try:
         yield made
@@ -50,30 +49,29 @@ def zygote(env: dict[str, str]) -> Iterator[Zygote]:
 
 
 def measure(
-    level: levels.Level, warm: Zygote | None, env: dict[str, str], times: int
+    level: levels.Level, warm: ForkServer | None, env: dict[str, str], times: int
 ) -> list[float]:
     """How long it takes to have a process and see its end [ms]."""
     taken = []
     for _ in range(times):
         with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
             (folder / "tmp").mkdir()
-            submission = folder / "submission"
+            submission = folder / "handed_in"
             submission.mkdir()
             begin = time.perf_counter()
-            place = levels.prepare(
-                level, submission, submission, folder, is_apart=bool(isolated.namespaces)
+            confinement = levels.prepare(
+                level, submission, folder, is_apart=bool(isolated.namespaces)
             )
-            student = Student(
-                *(COMMAND, {**env, **place.env}, submission, ()),
-                isolated.namespaces,
-                warm,
-                place.order,
+            command = ProcessCommand(
+                *(COMMAND, {**env, **confinement.env}, confinement.copy, ()),
+                *(isolated.namespaces, confinement.order),
             )
-            code = student.wait(30.0)
+            process = SubmissionProcess(command, warm)
+            code = process.wait(30.0)
             taken.append(1000 * (time.perf_counter() - begin))
-            student.end(gently=False)
+            process.end(gently=False)
             if code != 0:
-                raise SystemExit(f"it ended with {code}: {student.output()}")
+                raise SystemExit(f"it ended with {code}: {process.output()}")
     return taken
 
 
@@ -85,12 +83,12 @@ def main() -> None:
     env = {"PATH": os.environ["PATH"], "PYTHONPATH": str(Path(ROOT))}
     with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
         offered = levels.offered(isolated)
-    print("| level | forked [ms] | started [ms] |\n|---|--:|--:|")
-    with zygote(env) as warm:
+    head("level", "forked [ms]", "started [ms]")
+    with fork_server(env) as warm:
         for level in (levels.Level(""), *reversed(offered)):
             forked, started = (measure(level, each, env, times) for each in (warm, None))
             name = f"{level.name() or 'none'}, {level.user}" if level.level else "none"
-            print(f"| {name} | {spread(forked, 1)} | {spread(started, 1)} |", flush=True)
+            row(name, spread(forked, 1), spread(started, 1))
 
 
 if __name__ == "__main__":

@@ -11,8 +11,10 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from functools import partial
+from typing import Any, ClassVar, Literal
 
+from grader.message import Message, as_message, msg
 from grader.text import without_controls
 
 #: Whose turn it is: the student's, the exercise's author's, the caller's, ours.
@@ -21,6 +23,9 @@ Whose = Literal["submission", "exercise", "call", "grader"]
 
 class GraderError(Exception):
     """Why there is no verdict.
+
+    Args:
+        message: a sentence, or its key where `values` are given; a text without them is no key.
 
     Attributes:
         message: what was found, what was expected, and what to do.
@@ -31,9 +36,11 @@ class GraderError(Exception):
     whose: ClassVar[Whose] = "grader"
     exit_code: ClassVar[int] = 3
 
-    def __init__(self, message: str) -> None:
-        super().__init__(message)
-        self.message = message
+    def __init__(self, message: str | Message, /, **values: Any) -> None:
+        if isinstance(message, str) and values:
+            message = msg(message, **values)
+        self.message = as_message(message)
+        super().__init__(self.message)
 
 
 class UsageError(GraderError):
@@ -49,8 +56,10 @@ class SubmissionError(GraderError):
     whose = "submission"
     exit_code = 2
 
-    def __init__(self, message: str) -> None:
-        super().__init__(without_controls(message, "?", keep="\n"))
+    def __init__(self, message: str | Message, /, **values: Any) -> None:
+        super().__init__(message, **values)
+        self.message = self.message.map_texts(partial(without_controls, sign="?", keep="\n"))
+        self.args = (self.message,)
 
 
 class ExerciseError(GraderError):

@@ -1,6 +1,6 @@
-"""Files that are written whole or not at all, so that nobody reads a half of one.
+"""Writes files whole or not at all, so that nobody reads a half of one.
 
-A path that the caller names is taken as he means it: a link stays a link, a pipe is written to
+A path that a caller names is used as it is meant: a link stays a link, a pipe is written to
 (`write`). What has a name of ours, in a folder for results, takes the place of whatever stands
 there (`put`): the folder may have come with a submission, and no link in it is to lead us away.
 """
@@ -9,33 +9,36 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import os
 import re
 import stat
 import uuid
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import BinaryIO
 
-from grader import locks
+from grader import scratch
 from grader.errors import UsageError
-from grader.language.phrase import say
+from grader.message import Message, msg
 
 _STREAMS = {"/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
 _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,9})")
 
-#: So many bytes tell whose file it is [bytes].
+#: So much of a file shows whose it is [bytes].
 _BEGINNING = 200
+#: The first day that a zip can tell.
+_DATE = (1980, 1, 1, 0, 0, 0)
+_UNIX, _PLAIN_FILE = 3, 0o100644 << 16
 
 
-def cannot_write(path: Path, why: str) -> UsageError:
-    """What a caller is told of a file or folder that cannot be written."""
-    return UsageError(say("cannot write {path}: {why}", path=str(path), why=why))
+def cannot_write(path: Path, why: str | Message) -> UsageError:
+    """The error for a file or folder that cannot be written."""
+    return UsageError("cannot write {path}: {why}", path=str(path), why=why)
 
 
 @contextlib.contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Something is written at a path: what the system refuses is told of it.
+    """Turn what the system refuses while a path is written into an error that names the path.
 
     Raises:
         UsageError: the system refuses it.
@@ -74,6 +77,7 @@ def check_writable(path: Path) -> None:
     Raises:
         UsageError: it cannot.
     """
+    why_not: str | Message | None
     try:
         why_not = _why_not(path)
     except OSError as error:
@@ -82,20 +86,20 @@ def check_writable(path: Path) -> None:
         raise cannot_write(path, why_not)
 
 
-def _why_not(path: Path) -> str | None:
+def _why_not(path: Path) -> Message | None:
     descriptor = _descriptor(path)
     if descriptor is not None:
         import fcntl  # here: who names a descriptor by a path is not on Windows, which lacks it
 
         mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
-        return say("it is open for reading only") if mode == os.O_RDONLY else None
+        return msg("it is open for reading only") if mode == os.O_RDONLY else None
     if path.is_dir():
-        return say("it is a folder; expected the name of a file to write")
+        return msg("it is a folder; expected the name of a file to write")
     if path.exists() and not path.is_file():
-        return None if os.access(path, os.W_OK) else say("you may not write into it")
+        return None if os.access(path, os.W_OK) else msg("you may not write into it")
     there = next(folder for folder in _target(path).parents if os.path.lexists(folder))
     if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
-        return say("{there} is no folder that you may write into", there=str(there))
+        return msg("{there} is no folder that you may write into", there=str(there))
     return None
 
 
@@ -104,8 +108,8 @@ def check_replaceable(path: Path, schema: str, inputs: Iterable[Path]) -> None:
 
     Args:
         schema: how the schema of what may be replaced begins: "turtlesim-grader/error/".
-        inputs: what the call reads; folders do not count, since whatever lies in them is told by
-            its own schema.
+        inputs: what the call reads; folders do not count, since whatever lies in them has a
+            schema of its own.
 
     Raises:
         UsageError: there is a file, neither empty nor of this schema, or it is one of the inputs.
@@ -118,7 +122,7 @@ def check_replaceable(path: Path, schema: str, inputs: Iterable[Path]) -> None:
     if begin and not re.match(rb'\s*\{\s*"schema"\s*:\s*"' + re.escape(schema.encode()), begin):
         raise cannot_write(
             path,
-            say(
+            msg(
                 "there is a file already that this grader has not written; give another name, or "
                 "remove it. Nothing was changed."
             ),
@@ -131,11 +135,11 @@ def check_is_no_input(path: Path, inputs: Iterable[Path]) -> None:
     Raises:
         UsageError: the path is one of the inputs.
     """
-    with contextlib.suppress(OSError):  # what cannot be looked at is told where it is read
+    with contextlib.suppress(OSError):  # what cannot be read is reported where it is read
         for one in inputs:
             if one.is_file() and path.exists() and path.samefile(one):
                 raise cannot_write(
-                    path, say("this call reads it; give another name. Nothing was changed.")
+                    path, msg("this call reads it; give another name. Nothing was changed.")
                 )
 
 
@@ -156,13 +160,11 @@ def sole_writer(folder: Path) -> Iterator[None]:
     Raises:
         UsageError: another one does.
     """
-    lock = locks.take_folder(folder)
+    lock = scratch.lock_folder(folder)
     if lock is None:
         raise UsageError(
-            say(
-                "another grading writes into {folder}: wait for its end, or give each an --out",
-                folder=str(folder),
-            )
+            "another grading writes into {folder}: wait for its end, or give each an --out",
+            folder=str(folder),
         )
     try:
         yield
@@ -191,19 +193,8 @@ def put(path: Path, content: bytes) -> None:
         _write_beside(path, content)
 
 
-@contextlib.contextmanager
-def putting(path: Path) -> Iterator[BinaryIO]:
-    """`put` for what is too long to hold: a file to write to, in its place once the context ends.
-
-    Raises:
-        UsageError: it cannot be written.
-    """
-    with writing(path), _beside(path) as unfinished, unfinished.open("wb") as file:
-        yield file
-
-
-def read_own(path: Path, most_bytes: int) -> bytes:
-    """What a file of ours holds, in a folder for results that others may have changed.
+def read_ours(path: Path, most_bytes: int) -> bytes:
+    """Read a file of ours in a folder for results, which others may have changed.
 
     No link is followed and no pipe waited for.
 
@@ -212,10 +203,10 @@ def read_own(path: Path, most_bytes: int) -> bytes:
     """
     with open(path, "rb", opener=_open_own) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise OSError(errno.EINVAL, say("it is no ordinary file"))
+            raise OSError(errno.EINVAL, msg("it is no ordinary file"))
         data = file.read(most_bytes + 1)
     if len(data) > most_bytes:
-        raise OSError(errno.EFBIG, say("it has more than {most:,} bytes", most=most_bytes))
+        raise OSError(errno.EFBIG, msg("it has more than {most:,} bytes", most=most_bytes))
     return data
 
 
@@ -235,7 +226,7 @@ def check_can_put(path: Path, schema: str | None = None, inputs: Iterable[Path] 
     """
     mode = _mode(path)
     if mode is not None and stat.S_ISDIR(mode):
-        raise cannot_write(path, say("it is a folder; expected a file, or nothing"))
+        raise cannot_write(path, msg("it is a folder; expected a file, or nothing"))
     if mode is not None and stat.S_ISREG(mode) and schema is not None:
         check_replaceable(path, schema, inputs)
     check_writable(path.parent / uuid.uuid4().hex)
@@ -249,26 +240,26 @@ def check_can_fill(folder: Path) -> None:
     """
     mode = _mode(folder)
     if mode is not None and not (stat.S_ISDIR(mode) or stat.S_ISLNK(mode)):
-        raise cannot_write(folder, say("it is a file; expected a folder, or nothing"))
+        raise cannot_write(folder, msg("it is a file; expected a folder, or nothing"))
     check_writable((folder.parent if mode is None or stat.S_ISLNK(mode) else folder) / "new")
 
 
-def check_leads_nowhere_else(folder: Path, foreign: Path) -> None:
+def check_leads_nowhere_else(folder: Path, handed_in: Path) -> None:
     """Refuse a folder whose path goes through a link that others have laid.
 
     Args:
-        foreign: a folder with what others have handed in.
+        handed_in: a folder with what others have handed in.
 
     Raises:
         UsageError: it does.
     """
-    base = os.path.realpath(foreign)
+    base = os.path.realpath(handed_in)
     whole = Path(os.path.abspath(folder))  # noqa: PTH100  resolving would follow the link
     for at in (whole, *whole.parents):
         if at.is_symlink() and Path(os.path.realpath(at.parent)).is_relative_to(base):
             raise cannot_write(
                 folder,
-                say(
+                msg(
                     "{at} is a link that lies with the submission; name the folder itself, or "
                     "another",
                     at=str(at),
@@ -286,6 +277,21 @@ def clear(path: Path) -> None:
     if mode is not None and not stat.S_ISDIR(mode):
         with writing(path):
             path.unlink(missing_ok=True)
+
+
+def zipped(members: Iterable[tuple[str, bytes]]) -> bytes:
+    """A zip of these names, each once, and contents, in this order; the same at any time."""
+    import zipfile  # here: only a class makes zips
+
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, content in members:
+            member = zipfile.ZipInfo(name, _DATE)
+            member.compress_type = zipfile.ZIP_DEFLATED
+            member.create_system = _UNIX
+            member.external_attr = _PLAIN_FILE
+            archive.writestr(member, content)
+    return file.getvalue()
 
 
 def _mode(path: Path) -> int | None:

@@ -21,24 +21,23 @@ from grader.errors import GraderFailure, UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.judging import AnyPath, judge, loaded
-from grader.recording.provenance import Provenance, now
-from grader.recording.recording import Clock, Recording, Recordings
+from grader.message import Message, msg
+from grader.recording.recording import Clock, Provenance, Recording, Recordings, now
+from grader.recording.subject import PACKAGE_SCENE, Trace, load_subject
 from grader.result.result import Result
-from grader.run import real_time, static, virtual_time
-from grader.run.audience import Audience
-from grader.run.budget import Budget
-from grader.run.finish import not_run
-from grader.run.lost import SimulatorLost, judged_all_the_same
+from grader.run import inspecting, real_time, virtual_time
+from grader.run.finish import SimulatorLost, not_run, recording_of_nothing
+from grader.run.handover import Plan
+from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
-from grader.run.plan import Plan
 from grader.run.processes import cores
-from grader.scenes import load_scene
-from grader.scenes.scene import Trace
-from grader.submission.opening import Submission
+from grader.run.simulator_process import Audience
+from grader.scenes.scene import Scene
 from grader.submission.private_copy import not_handed_in
+from grader.submission.start import Submission
 
 Progress = Callable[[float], None]
-REPEATED = "repeated, because the first try failed in the grader"
+REPEATED = msg("repeated, because the first try failed in the grader")
 #: So many runs go at once even on less than two cores: each waits now and then.
 LEAST_AT_ONCE = 2
 #: A run by its number, 0 nominal, 1, 2, ... varied, and what was recorded of it.
@@ -78,7 +77,7 @@ def runner(exercise: Exercise, time: Clock, audience: Audience | None = None) ->
         audience: who looks on at the runs, of which there is to be one at once.
     """
     if not exercise.is_started:
-        return static.run
+        return inspecting.run
     return RUNNERS[time] if audience is None else partial(RUNNERS[time], audience=audience)
 
 
@@ -94,7 +93,7 @@ def grade(
     """Run a submission and judge it. Nothing is written, and no process of the run is left behind.
 
     Two that have imported what runs need wait for the next grading, and end with this process; see
-    `grader.run.zygotes`.
+    `grader.run.fork_servers`.
 
     Args:
         submission: the path of a .py file, a folder, a package or a zip; or what
@@ -163,16 +162,19 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         SubmissionError: there is no ROS in which it could run.
     """
     starts = exercise.starts(seed)
-    budget = Budget(exercise.cpu_s)
+    budget = CpuBudget(exercise.cpu_s)
     budget.spend(submission.spent_s)
     used = exercise.varied.seed if seed is None else seed
     imports = submission.imports
-    scene = load_scene(exercise.scene)
+    scene = exercise.subject
+    interfaces = ""
+    if isinstance(scene, Scene):
+        interfaces = scene.interfaces_for(imports.surely, imports.perhaps)
     nominal = Plan(
         exercise.limits,
         scene=exercise.scene,
         seed=used if starts else None,
-        interfaces=scene.interfaces_for(imports.surely, imports.perhaps),
+        interfaces=interfaces,
         setting=exercise.setting,
         looks_at_package=exercise.looks_at_package and submission.package is not None,
         budget=budget,
@@ -236,7 +238,7 @@ def start(
             try:
                 return run(submission, again, show)
             except SimulatorLost as lost:
-                return judged_all_the_same(again, lost)
+                return recording_of_nothing(again, lost)
         except GraderFailure:
             return run(submission, again, show)
 
@@ -244,7 +246,7 @@ def start(
     if looks:
         # Here, since two threads that import rosbags at once, each from another end, lock each
         # other out: Python ends one of them by a _DeadlockError.
-        load_scene(static.SCENE)
+        load_subject(PACKAGE_SCENE)
     many = min(len(plans) + looks, max(LEAST_AT_ONCE, math.ceil(cores.share())))
     pool = ThreadPoolExecutor(max_workers=at_once or many)
     try:
@@ -256,17 +258,19 @@ def start(
         pool.shutdown(cancel_futures=True)
 
 
-def _look_twice_at_most(submission: Submission, budget: Budget) -> tuple[Trace, tuple[str, ...]]:
+def _look_twice_at_most(
+    submission: Submission, budget: CpuBudget
+) -> tuple[Trace, tuple[Message, ...]]:
     try:
-        return static.look_beside(submission, budget)
+        return inspecting.inspect_beside(submission, budget)
     except GraderFailure:
-        return static.look_beside(submission, budget)
+        return inspecting.inspect_beside(submission, budget)
 
 
 def _nominal(
     recording: Recording,
     origin: Provenance | None,
-    looked: Future[tuple[Trace, tuple[str, ...]]] | None,
+    looked: Future[tuple[Trace, tuple[Message, ...]]] | None,
 ) -> Recording:
     """The nominal run with all that was found out beside it."""
     package, remarks = looked.result() if looked else (None, ())

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from grader.diagnosis.diagnose import diagnose
-from grader.exercise import DEFAULT, check, early
+from grader.exercise import DEFAULT, check
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.recording import reading, saving
@@ -52,7 +52,7 @@ def save_recordings(recordings: Recordings, folder: AnyPath) -> None:
 
 def judge_nominal(nominal: Recording, exercise: Exercise, *, submission: str = "") -> Result:
     """What the nominal run alone decides, as a result that lacks all other verdicts."""
-    verdicts = early.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
+    verdicts = check.judge_nominal(nominal, exercise.checks, exercise.points, exercise.tolerances)
     alone = Recordings(nominal)
     return build(submission, exercise, alone, verdicts, {}, diagnose(alone, verdicts))
 

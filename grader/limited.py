@@ -1,7 +1,8 @@
 """Work in a copy of this process, within limits of time and memory: what it breaks ends there.
 
 For code that should come to an end and may not: an author's checks, a reader of a file from
-anywhere. The copy is a fork, so it has everything that we have, and hands nothing back but bytes.
+anywhere. The copy is a fork of this process and not of a fork server, so it has everything that we
+have: the exercise, a recording, a function. It hands nothing back but bytes.
 Whatever happens to it, a loop without end, os._exit, an allocation without measure, a crash in C,
 is here a `LimitHit` with a line that says so.
 
@@ -13,11 +14,11 @@ the work is done in this process: then only what Python itself notices is a limi
 from __future__ import annotations
 
 import gc
+import json
 import os
 import select
 import signal
 import sys
-import threading
 import time
 import traceback
 import warnings
@@ -28,7 +29,7 @@ from struct import Struct
 from typing import NoReturn
 
 from grader import system
-from grader.language.phrase import say
+from grader.message import Message, msg
 
 #: Before each answer: whether it is one, why there is none, or that there are no more; its length.
 _HEAD = Struct("<cq")
@@ -41,7 +42,7 @@ _ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGPROF", "SIGXCPU", "SIG
 
 
 @dataclass(frozen=True)
-class Limits:
+class WorkLimits:
     """How much a copy may take.
 
     Attributes:
@@ -58,12 +59,17 @@ class Limits:
 
 
 #: Made before: who has no memory left makes no sentence.
-TOO_MUCH = say("needed more memory than it may have")
-TOO_DEEP = say("called itself too deeply")
+TOO_MUCH = msg("needed more memory than it may have")
+TOO_DEEP = msg("called itself too deeply")
+_SERIALISED = {each: json.dumps(each.serialise()).encode() for each in (TOO_MUCH, TOO_DEEP)}
 
 
 class LimitHit(Exception):
-    """The work was ended; the text goes on from its name: 'did not come to an end in 20 s ...'."""
+    """The work was ended; `why` goes on from its name: 'did not come to an end in 20 s ...'."""
+
+    def __init__(self, why: Message) -> None:
+        super().__init__(why)
+        self.why = why
 
 
 class NoEnd(LimitHit):
@@ -82,11 +88,12 @@ Work = Callable[[], Iterator[bytes]]
 
 
 def stream(
-    work: Work, limits: Limits, is_stalled: Callable[[], bool] = lambda: False
+    work: Work, limits: WorkLimits, is_stalled: Callable[[], bool] = lambda: False
 ) -> Generator[bytes]:
     """The answers that a generator yields in one copy of this process, each as it is made.
 
-    They have to be the same each time that it is called.
+    A fork has the locks that other threads of ours held, and would wait for one in vain: the
+    generator must need none that another thread takes.
 
     Args:
         limits: of all that it does.
@@ -100,24 +107,12 @@ def stream(
             made = list(_within_python(work))
         yield from made
         return
-    given = 0
-    for is_last in (False, True):
-        try:
-            with closing(_Copy(work, limits)) as copy:
-                for number, answer in enumerate(copy.answers(is_stalled)):
-                    if number >= given:
-                        given += 1
-                        yield answer
-            return
-        except Slow:
-            # It may have waited for a lock that it can never get: a fork has those that other
-            # threads held. That is rare; the same again is not to be expected.
-            if is_last or threading.active_count() == 1:
-                raise
+    with closing(_Copy(work, limits)) as copy:
+        yield from copy.answers(is_stalled)
 
 
 def call(
-    work: Callable[[], bytes], limits: Limits, is_stalled: Callable[[], bool] = lambda: False
+    work: Callable[[], bytes], limits: WorkLimits, is_stalled: Callable[[], bool] = lambda: False
 ) -> bytes:
     """What one call of a function returns, within limits; see `stream`.
 
@@ -141,7 +136,7 @@ def _within_python(work: Work) -> Iterator[bytes]:
 class _Copy:
     """A copy of this process that works until it is closed."""
 
-    def __init__(self, work: Work, limits: Limits) -> None:
+    def __init__(self, work: Work, limits: WorkLimits) -> None:
         self._limits = limits
         self._has_ended = False
         self._answers, ours = os.pipe()
@@ -168,13 +163,13 @@ class _Copy:
                 mark, length = _HEAD.unpack(self._read(_HEAD.size, deadline, is_stalled))
                 if not 0 <= length <= self._limits.answer_bytes:
                     raise LimitHit(
-                        say("answered with more than {size}", size=_mb(self._limits.answer_bytes))
+                        msg("answered with more than {size}", size=_mb(self._limits.answer_bytes))
                     )
                 body = self._read(length, deadline, is_stalled)
             except EOFError:
                 raise self._why_it_ended() from None
             if mark == _HIT:
-                raise LimitHit(body.decode())
+                raise LimitHit(Message.parse(json.loads(body)))
             if mark == _END:
                 return
             yield body
@@ -199,10 +194,10 @@ class _Copy:
             if not waiting.poll(min(left_s, _LOOK_S) * 1000):
                 if not left_s:
                     raise Slow(
-                        say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
+                        msg("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s)
                     )
                 if is_stalled():
-                    raise Stalled(say("waited for what did not come"))
+                    raise Stalled(msg("waited for what did not come"))
                 continue
             count = os.readv(self._answers, [rest])
             if not count:
@@ -214,22 +209,22 @@ class _Copy:
         # It has hung up; with time it surely ends, by itself or by the kernel.
         status = self._reaped()
         if status is None:
-            return LimitHit(say("ended the process that it ran in"))
+            return LimitHit(msg("ended the process that it ran in"))
         if os.WIFEXITED(status):
             code = str(os.WEXITSTATUS(status))
-            return LimitHit(say("ended the process that it ran in (exit code {code})", code=code))
+            return LimitHit(msg("ended the process that it ran in (exit code {code})", code=code))
         ended_by = os.WTERMSIG(status)
         if ended_by == signal.SIGPROF:
             return NoEnd(
-                say(
+                msg(
                     "did not come to an end in {cpu_s:g} s of processor time",
                     cpu_s=self._limits.cpu_s,
                 )
             )
         if ended_by == signal.SIGALRM:
-            return Slow(say("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s))
+            return Slow(msg("did not come to an end in {wall_s:g} s", wall_s=self._limits.wall_s))
         return LimitHit(
-            say("ended the process that it ran in (signal {signal})", signal=str(ended_by))
+            msg("ended the process that it ran in (signal {signal})", signal=str(ended_by))
         )
 
     def _reaped(self) -> int | None:
@@ -248,7 +243,7 @@ class _Copy:
 # In the copy ----------------------------------------------------------------------------------
 
 
-def _be_copy(work: Work, limits: Limits, answers: int) -> NoReturn:
+def _be_copy(work: Work, limits: WorkLimits, answers: int) -> NoReturn:
     code, copy = 1, os.getpid()
     try:
         gc.freeze()  # to look through all that is inherited would copy it, and might end it
@@ -263,7 +258,7 @@ def _be_copy(work: Work, limits: Limits, answers: int) -> NoReturn:
                 _write(answers, _HEAD.pack(_ANSWER, len(answer)) + answer)
             last, why = _END, b""
         except LimitHit as hit:
-            last, why = _HIT, str(hit).encode()
+            last, why = _HIT, _SERIALISED.get(hit.why) or json.dumps(hit.why.serialise()).encode()
         with suppress(AttributeError, OSError, ValueError):
             sys.stderr.flush()
         if os.getpid() == copy:
@@ -275,7 +270,7 @@ def _be_copy(work: Work, limits: Limits, answers: int) -> NoReturn:
         os._exit(code)
 
 
-def _confine(limits: Limits, kept: int) -> None:
+def _confine(limits: WorkLimits, kept: int) -> None:
     """Nothing of what this copy does reaches further than itself, or lasts."""
     import resource  # here: Windows has none
 
@@ -287,16 +282,11 @@ def _confine(limits: Limits, kept: int) -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM, signal.SIGPROF})
     linux.signal_at_parents_death(signal.SIGKILL)
     # Whoever waits for the other end of one of our sockets is not to wait for this copy.
-    for path in list((system.PROC / "self" / "fd").iterdir()):
-        if int(path.name) > 2 and int(path.name) != kept:
-            with suppress(OSError):
-                os.close(int(path.name))
+    linux.close_descriptors((0, 1, 2, kept))
     pages = int((system.PROC / "self" / "statm").read_text(encoding="ascii").split()[0])
-    most = pages * resource.getpagesize() + limits.memory_bytes
-    for what, value in ((resource.RLIMIT_AS, most), (resource.RLIMIT_CORE, 0)):
-        soft, hard = resource.getrlimit(what)
-        bounds = [bound for bound in (soft, hard, value) if bound != resource.RLIM_INFINITY]
-        resource.setrlimit(what, (min(bounds), hard))
+    most = pages * linux.PAGE_BYTES + limits.memory_bytes
+    linux.lower_limit(resource.RLIMIT_AS, most, resource.RLIM_INFINITY)
+    linux.lower_limit(resource.RLIMIT_CORE, 0, resource.RLIM_INFINITY)
 
 
 def _print_to_standard_error() -> None:

@@ -1,7 +1,7 @@
-"""Calls of Linux's that Python has no name for; elsewhere each says that it is not there.
+"""What Linux knows and Python has no name for: calls, limits of resources, /proc/PID/stat.
 
 Nothing but the standard library, and little of that: processes that import this start in a few
-milliseconds.
+milliseconds. Elsewhere than on Linux each call is refused as unknown.
 """
 
 from __future__ import annotations
@@ -9,7 +9,10 @@ from __future__ import annotations
 import ctypes
 import errno
 import os
-from typing import Any
+import resource
+from collections.abc import Collection, Mapping, Set
+from contextlib import suppress
+from typing import Any, NamedTuple
 
 CLONE_NEWNS, CLONE_NEWIPC, CLONE_NEWUSER = 0x00020000, 0x08000000, 0x10000000
 CLONE_NEWPID, CLONE_NEWNET = 0x20000000, 0x40000000
@@ -31,12 +34,17 @@ SIOCSIFFLAGS, IFF_UP, IFF_RUNNING = 0x8914, 0x1, 0x40
 _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
 _MOUNT_SETATTR = 442
 _CAPABILITY_VERSION = 0x20080522
+TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
 
 _libc: Any = ctypes.CDLL(None, use_errno=True)
 
 
-def call(function: str, *arguments: object) -> None:
-    """Call a function of C's that tells failure by its value, and the reason by errno.
+# Calls ----------------------------------------------------------------------------------------
+
+
+def call(function: str, *arguments: object) -> int:
+    """Call a function of the C library that returns less than 0 where it fails, with errno set.
 
     Raises:
         OSError: the system does not allow it, or does not know it; its `filename` is the function.
@@ -44,9 +52,24 @@ def call(function: str, *arguments: object) -> None:
     there = getattr(_libc, function, None)
     if there is None:
         raise OSError(errno.ENOSYS, "there is none here", function)
-    if there(*arguments) != 0:
+    answer = int(there(*arguments))
+    if answer < 0:
         number = ctypes.get_errno()
         raise OSError(number, os.strerror(number), function)
+    return answer
+
+
+def system_call(number: int, *words: int | bytes | None, of: str = "syscall") -> int:
+    """Make a system call that the C library has no function for; `of`: what it belongs to.
+
+    Raises:
+        OSError: the system does not allow it, or does not know it; its `filename` is `of`.
+    """
+    passed = [ctypes.c_ulong(word) if isinstance(word, int) else word for word in words]
+    try:
+        return call("syscall", ctypes.c_long(number), *passed)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, of) from None
 
 
 def unshare(kinds: int) -> None:
@@ -60,6 +83,29 @@ def unshare(kinds: int) -> None:
     except OSError as error:
         names = ", ".join(name for kind, name in KINDS.items() if kinds & kind)
         raise OSError(error.errno, error.strerror, f"unshare ({names})") from None
+
+
+def unshare_user(uid: int, proc: int, kinds: int = 0) -> None:
+    """Go on in a user namespace of our own, as this user and group in it; of other kinds as well.
+
+    What was made in the one before, mounts and networks, is then none of our business.
+
+    Args:
+        proc: our folder of /proc, opened where it can be written to.
+
+    Raises:
+        OSError: the system does not allow it.
+    """
+    user, group = os.getuid(), os.getgid()
+    unshare(CLONE_NEWUSER | kinds)
+    for name, text in (
+        ("setgroups", "deny"),
+        ("uid_map", f"{uid} {user} 1"),
+        ("gid_map", f"{uid} {group} 1"),
+    ):
+        file = os.open(name, os.O_WRONLY, dir_fd=proc)
+        os.write(file, text.encode())
+        os.close(file)
 
 
 def enter(namespace: int, kind: int) -> None:
@@ -87,10 +133,9 @@ def change_mount(target: str, put: int, take: int = 0, *, below: bool = False) -
     Raises:
         OSError: the system does not allow it, or is older than Linux 5.12.
     """
-    attributes = (ctypes.c_uint64 * 4)(put, take, 0, 0)
-    words = (os.fsencode(target), ctypes.c_uint(AT_RECURSIVE if below else 0))
-    number, size = ctypes.c_long(_MOUNT_SETATTR), ctypes.c_size_t(ctypes.sizeof(attributes))
-    call("syscall", number, ctypes.c_int(AT_FDCWD), *words, attributes, size)
+    attributes = bytes((ctypes.c_uint64 * 4)(put, take, 0, 0))
+    flags = AT_RECURSIVE if below else 0
+    system_call(_MOUNT_SETATTR, AT_FDCWD, os.fsencode(target), flags, attributes, len(attributes))
 
 
 def change_root() -> None:
@@ -102,13 +147,13 @@ def change_root() -> None:
     number = _PIVOT_ROOT.get(os.uname().machine)
     if number is None:
         raise OSError(errno.ENOSYS, f"no pivot_root known for {os.uname().machine}")
-    call("syscall", ctypes.c_long(number), b".", b".")
+    system_call(number, b".", b".")
     call("umount2", b".", ctypes.c_int(MNT_DETACH))
     os.chdir("/")
 
 
 def control(option: int, *values: int) -> bool:
-    """As prctl; whether it was done."""
+    """Call prctl; whether it succeeded."""
     words = [ctypes.c_ulong(value) for value in (*values, 0, 0, 0, 0)[:4]]
     there = getattr(_libc, "prctl", None)
     return there is not None and bool(there(option, *words) == 0)
@@ -117,6 +162,23 @@ def control(option: int, *values: int) -> bool:
 def signal_at_parents_death(number: int) -> None:
     """Have the kernel send us a signal when our parent dies."""
     control(PR_SET_PDEATHSIG, number)
+
+
+def go_with_parent(parent: int, number: int) -> None:
+    """Have the kernel send us a signal when this parent dies; end where it has died before."""
+    signal_at_parents_death(number)
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+def forbid_new_privileges() -> None:
+    """No program that is started from now on has more privileges than who starts it.
+
+    Raises:
+        OSError: the system does not know this.
+    """
+    if not control(PR_SET_NO_NEW_PRIVS, 1):
+        raise OSError(errno.EINVAL, os.strerror(errno.EINVAL), "no_new_privs")
 
 
 def set_capabilities(permitted: int = 0) -> None:
@@ -142,3 +204,126 @@ def raise_loopback() -> None:
 
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
         fcntl.ioctl(any_socket, SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", IFF_UP | IFF_RUNNING))
+
+
+def close_descriptors(kept: Collection[int]) -> None:
+    """Close all open files of this process but these descriptors."""
+    for name in os.listdir("/proc/self/fd"):  # noqa: PTH208  pathlib is slow to import
+        if int(name) not in kept:
+            with suppress(OSError):  # the folder's own
+                os.close(int(name))
+
+
+# Limits of resources --------------------------------------------------------------------------
+
+
+def resource_limits() -> list[tuple[int, int, int]]:
+    """What this process may use of every resource: its number, the soft and the hard limit."""
+    numbers = sorted({getattr(resource, n) for n in dir(resource) if n.startswith("RLIMIT_")})
+    return [(number, *resource.getrlimit(number)) for number in numbers]
+
+
+def set_limit(number: int, soft: int, hard: int) -> None:
+    """Limit a resource of the calling process to just this, where it is anything else.
+
+    Raises:
+        OSError, ValueError: the system does not allow it.
+    """
+    if resource.getrlimit(number) != (soft, hard):
+        resource.setrlimit(number, (soft, hard))
+
+
+def lower_limit(number: int, soft: int, hard: int) -> None:
+    """Limit a resource of the calling process, unless it is limited to less already."""
+    now_soft, now_hard = resource.getrlimit(number)
+    hard = _lesser(hard, now_hard)
+    resource.setrlimit(number, (_lesser(_lesser(soft, now_soft), hard), hard))
+
+
+def _lesser(one: int, other: int) -> int:
+    if resource.RLIM_INFINITY in (one, other):
+        return other if one == resource.RLIM_INFINITY else one
+    return min(one, other)
+
+
+# Processes ------------------------------------------------------------------------------------
+
+
+class ProcessStat(NamedTuple):
+    """What a process does and has used; where there is no such process, nothing but zeros.
+
+    Attributes:
+        state: the kernel's letter for what it does; '' if there is no such process.
+        parent: the process id of its parent.
+        ticks: the processor time that it has used [ticks].
+        waited_ticks: that of its children which it has waited for [ticks].
+        tasks: its threads.
+        memory_bytes: its pages, with those of files and those that it shares.
+        env: where what it was started with as its environment begins and ends [addresses].
+    """
+
+    state: str = ""
+    parent: int = 0
+    ticks: int = 0
+    waited_ticks: int = 0
+    tasks: int = 0
+    memory_bytes: int = 0
+    env: tuple[int, int] = (0, 0)
+
+    @property
+    def cpu_s(self) -> float:
+        """The processor time that it has used [s]."""
+        return self.ticks / TICKS_PER_S
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether somebody has stopped it, by SIGSTOP or as a debugger does."""
+        return self.state in ("T", "t")
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether there is no such process, or only its exit code."""
+        return self.state in ("", "Z", "X")
+
+
+def process_stat(pid: int) -> ProcessStat:
+    """Read /proc/PID/stat of a process; see proc_pid_stat(5)."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb", buffering=0) as file:  # noqa: PTH123  pathlib is slow
+            state, *words = file.readall().rpartition(b")")[2].split()
+    except OSError:
+        return ProcessStat()
+    # the number of a word is that of the manual's field less four
+    parent, (user, system, *waited) = int(words[0]), map(int, words[10:14])
+    tasks, pages, env = int(words[16]), int(words[20]), (int(words[46]), int(words[47]))
+    letter = state.decode("ascii")
+    return ProcessStat(letter, parent, user + system, sum(waited), tasks, pages * PAGE_BYTES, env)
+
+
+def process_ids() -> set[int]:
+    """The numbers of all processes that /proc shows.
+
+    Raises:
+        OSError: it cannot be listed.
+    """
+    return {int(name) for name in os.listdir("/proc") if name.isdigit()}  # noqa: PTH208
+
+
+def descendants(ancestor: int) -> dict[int, ProcessStat]:
+    """All processes below one, as /proc shows them: its children, their children, and so on.
+
+    A zombie counts: threads of it may go on.
+
+    Raises:
+        OSError: /proc cannot be listed.
+    """
+    stats = {pid: process_stat(pid) for pid in process_ids()}
+    return {pid: stats[pid] for pid in below({ancestor}, stats)}
+
+
+def below(ancestors: Set[int], stats: Mapping[int, ProcessStat]) -> set[int]:
+    """Those of some processes that descend from one of these ancestors."""
+    found = set(ancestors)
+    while more := {pid for pid, stat in stats.items() if stat.parent in found} - found:
+        found |= more
+    return found - ancestors

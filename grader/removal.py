@@ -3,30 +3,19 @@
 A submission's process may leave folders that it has forbidden (mode 000), that lie 300 levels deep
 or have names that are no text, links to all the world, pipes and sockets, files that are immutable
 (root's), or still being made. No link is followed, nothing is waited for, and a folder that lies in
-another is moved up before it is looked into, so that no depth is too deep for us.
+another is moved up before it is opened, so that no depth is too deep for us.
 """
 
 from __future__ import annotations
 
 import os
-import shutil
 import stat
 import uuid
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-with suppress(ImportError):  # Windows
-    import fcntl
-
-#: What is still being filled is looked through so often.
+#: How many passes a folder gets that is still being filled.
 PASSES = 3
-
-_BY_DESCRIPTOR = (
-    {os.open, os.unlink, os.rmdir, os.rename, os.stat} <= os.supports_dir_fd
-    and os.listdir in os.supports_fd
-    and hasattr(os, "O_NOFOLLOW")
-)
 #: Sets the attributes of a file, as chattr does; see ioctl_iflags(2).
 _FS_IOC_SETFLAGS = 0x40086602
 _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
@@ -38,10 +27,8 @@ def remove(path: Path) -> bool:
         with suppress(OSError):
             if not stat.S_ISDIR(path.lstat().st_mode):
                 path.unlink()
-            elif _BY_DESCRIPTOR:
+            else:
                 _remove_folder(path)
-            else:  # Windows
-                shutil.rmtree(path, onerror=_permit_and_go_on)
         if not os.path.lexists(path):
             return True
     return False
@@ -116,6 +103,8 @@ def _thaw_file(name: str, parent: int) -> None:
 
 def _thaw(opened: int) -> None:
     """Make what is immutable a file, or folder, like any other."""
+    import fcntl  # here: Windows lacks it
+
     with suppress(OSError):
         fcntl.ioctl(opened, _FS_IOC_SETFLAGS, bytes(8))
         if stat.S_ISDIR(os.fstat(opened).st_mode):
@@ -124,18 +113,8 @@ def _thaw(opened: int) -> None:
 
 def _permit(name: str, parent: int | None) -> None:
     """Let us read a folder of ours; if it is a link by now, that is not followed."""
-    if not hasattr(os, "O_PATH"):
-        os.chmod(name, stat.S_IRWXU, dir_fd=parent, follow_symlinks=False)
-        return
     folder = os.open(name, _FOLDER | os.O_PATH, dir_fd=parent)
     try:
         Path(f"/proc/self/fd/{folder}").chmod(stat.S_IRWXU)
     finally:
         os.close(folder)
-
-
-def _permit_and_go_on(function: Callable[..., object], path: str, error: object) -> None:
-    """Windows removes nothing that is read-only."""
-    with suppress(OSError):
-        Path(path).chmod(stat.S_IRWXU)
-        function(path)

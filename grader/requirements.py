@@ -11,25 +11,25 @@ import sys
 from importlib.util import find_spec
 
 from grader.errors import GraderFailure
-from grader.language.phrase import say
+from grader.message import msg
 
 #: The module that is imported, what it is needed for, and what pip is told to install; the bounds
 #: are those of pyproject.toml.
 OPTIONAL = {
-    "rosbags": ("rosbags.rosbag2", say("recordings are rosbag2 folders"), "rosbags>=0.11.9,<0.12"),
+    "rosbags": ("rosbags.rosbag2", msg("recordings are rosbag2 folders"), "rosbags>=0.11.9,<0.12"),
     "distributed": (
         "distributed",
-        say("--scheduler speaks to a dask cluster with it"),
+        msg("--scheduler speaks to a dask cluster with it"),
         "distributed>=2025.1.0",
     ),
     "websockets": (
         "websockets",
-        say("--live serves a page with it"),
+        msg("--live serves a page with it"),
         "websockets>=13.1,<18",
     ),
     "watchdog": (
         "watchdog.observers",
-        say("--watch waits for saves with it"),
+        msg("--watch waits for saves with it"),
         "watchdog>=3.0.0,<7",
     ),
 }
@@ -55,16 +55,14 @@ def require(package: str, load: bool = True) -> None:
         found = error.name or package
         own = found.partition(".")[0] == package
         missing = (
-            package if own else say("{found}, which {package} needs,", found=found, package=package)
+            package if own else msg("{found}, which {package} needs,", found=found, package=package)
         )
         raise GraderFailure(
-            say(
-                "the Python package {missing} is missing ({use}). Install it with: "
-                "{executable} -m pip install '{requirement}' (in a system's own Python,"
-                " where pip refuses that, with --break-system-packages)",
-                missing=missing,
-                use=use,
-                executable=sys.executable,
-                requirement=requirement,
-            )
+            "the Python package {missing} is missing ({use}). Install it with: "
+            "{executable} -m pip install '{requirement}' (in a system's own Python,"
+            " where pip refuses that, with --break-system-packages)",
+            missing=missing,
+            use=use,
+            executable=sys.executable,
+            requirement=requirement,
         ) from None

@@ -1,8 +1,9 @@
-"""A folder for each run that goes with it, at the latest when the next run looks round.
+"""A folder for each run, removed with it, or at the latest by the next run; and locks.
 
 All of them, and the locks of cores and ROS domains, lie in one folder that is this user's alone.
-Its name can be guessed, and everybody may write where it lies: what another has put there is gone
-round. Whatever lies in it and is no lock of ours is nobody's, and goes.
+Its name can be guessed, and everybody may write where it lies: what somebody else has put there is
+avoided. Whatever lies in it and is no lock of ours is removed. A lock vanishes with the process
+that holds it, however that ends.
 """
 
 from __future__ import annotations
@@ -16,13 +17,16 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
-from grader import locks, system
 from grader.errors import GraderFailure
-from grader.language.phrase import say
 from grader.removal import remove
 
+try:
+    import fcntl
+except ImportError:  # Windows, where nothing is run, and recordings are judged all the same
+    fcntl = None  # type: ignore[assignment]
+
 PREFIX = "run-"
-#: The lock of a folder lies beside it: Windows removes and renames nothing that holds an open file.
+#: The lock of a folder lies beside it: it is there before that, and goes after it.
 LOCK = ".lock"
 #: So many names for a folder are tried; one is enough, unless somebody removes its lock each time.
 MOST_TRIES = 100
@@ -39,18 +43,16 @@ def home() -> Path:
     refused = []
     for folder in _places():
         try:
-            _make_own(folder)
+            _make_private(folder)
         except OSError as error:
             refused.append(f"{folder}: {error.strerror or error}")
         else:
             return folder
     raise GraderFailure(
-        say(
-            "there is no place for the files of a run ({refused}). Have the first "
-            "of these removed, or set TMPDIR to a folder that only you may write "
-            "into.",
-            refused="; ".join(refused),
-        )
+        "there is no place for the files of a run ({refused}). Have the first "
+        "of these removed, or set TMPDIR to a folder that only you may write "
+        "into.",
+        refused="; ".join(refused),
     )
 
 
@@ -65,11 +67,11 @@ def _places() -> Iterator[Path]:
 
 
 def home_below(folder: Path) -> Path:
-    """What this user's is called in a folder that is everybody's."""
-    return folder / f"turtlesim-grader-{system.user()}"
+    """The path of this user's folder in one that is everybody's."""
+    return folder / f"turtlesim-grader-{os.getuid()}"
 
 
-def _make_own(folder: Path) -> None:
+def _make_private(folder: Path) -> None:
     """Make a folder that only this user may write into, or find that it is one.
 
     Raises:
@@ -80,36 +82,21 @@ def _make_own(folder: Path) -> None:
     found = folder.lstat()
     if not stat.S_ISDIR(found.st_mode):
         kind = "a link" if stat.S_ISLNK(found.st_mode) else "no folder"
-        raise NotADirectoryError(f"it is {kind}, and belongs to {system.owner(found)}")
-    if not system.is_own(found):
-        raise PermissionError(f"it belongs to {system.owner(found)}")
-    if os.name == "posix" and found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        raise NotADirectoryError(f"it is {kind}, and belongs to {_owner(found)}")
+    if found.st_uid != os.geteuid():
+        raise PermissionError(f"it belongs to {_owner(found)}")
+    if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
         folder.chmod(0o700)
 
 
-def take_lock(name: str) -> IO[str] | None:
-    """Take the lock of a name among all of this user's gradings; it is held until it is closed.
+def _owner(found: os.stat_result) -> str:
+    """Whose a file is, for a message: a name, or else a number."""
+    import pwd  # here: Windows lacks it
 
-    The file stays there for the next one. What is in its place and is no lock goes.
-
-    Returns:
-        None where somebody else has it, or where it cannot be had.
-
-    Raises:
-        GraderFailure: there is no place for locks.
-    """
-    path = home() / f"{name}{LOCK}"
-    for _ in range(2):
-        try:
-            file = locks.open_file(path)
-        except OSError:
-            remove(path)
-            continue
-        if locks.take(file) and locks.is_in_place(file, path):
-            return file
-        file.close()
-        break
-    return None
+    try:
+        return pwd.getpwuid(found.st_uid).pw_name
+    except KeyError:
+        return f"user {found.st_uid}"
 
 
 @contextmanager
@@ -126,51 +113,127 @@ def make_folder() -> Iterator[Path]:
     for _ in range(MOST_TRIES):
         path = place / f"{PREFIX}{uuid.uuid4().hex[:12]}"
         beside = path.with_suffix(LOCK)
-        with locks.open_file(beside) as lock:
-            # else another, who looked round between two of our steps, took it for a leftover
-            if locks.take(lock) and locks.is_in_place(lock, beside):
+        with _open_lock(beside) as lock:
+            # else another grader has taken it for a leftover between two of our steps
+            if take(lock) and _is_in_place(lock, beside):
                 path.mkdir(mode=0o700)
                 try:
                     yield path
                 finally:
                     remove(path)
                     _forget(beside)
-                break
-    else:
-        raise GraderFailure(
-            say(
-                "somebody removes the locks of runs in {place}; find out who does",
-                place=str(place),
-            )
-        )
-    _forget(beside)
+                return
+        _forget(beside)
+    raise GraderFailure(
+        "somebody removes the locks of runs in {place}; find out who does", place=str(place)
+    )
 
 
 def _clear(place: Path) -> None:
     """Remove the folders of runs that are no more."""
     with suppress(OSError):
-        for run in {name.removesuffix(LOCK) for name in _names(place) if name.startswith(PREFIX)}:
+        names = [entry.name for entry in place.iterdir() if entry.name.startswith(PREFIX)]
+        for run in {name.removesuffix(LOCK) for name in names}:
             _clear_one(place / run, place / f"{run}{LOCK}")
-
-
-def _names(folder: Path) -> list[str]:
-    return [entry.name for entry in folder.iterdir()]
 
 
 def _clear_one(path: Path, beside: Path) -> None:
     try:
-        with locks.open_file(beside) as lock:
+        with _open_lock(beside) as lock:
             # a folder is made after its lock, and goes before it: one without is left over, too
-            if not locks.take(lock):
-                return
-            remove(path)
-            _forget(beside)
+            if take(lock):
+                remove(path)
+                _forget(beside)
     except OSError:
         remove(beside)
-    _forget(beside)
 
 
 def _forget(lock: Path) -> None:
-    """Remove a lock; on Windows, not while it is open."""
     with suppress(OSError):
         lock.unlink(missing_ok=True)
+
+
+# Locks ----------------------------------------------------------------------------------------
+
+
+def take_lock(name: str) -> IO[str] | None:
+    """Take the lock of a name among all of this user's gradings; it is held until it is closed.
+
+    The file stays there for the next one. What is in its place and is no lock goes.
+
+    Returns:
+        None where somebody else has it, or where it cannot be had.
+
+    Raises:
+        GraderFailure: there is no place for locks.
+    """
+    path = home() / f"{name}{LOCK}"
+    for _ in range(2):
+        try:
+            file = _open_lock(path)
+        except OSError:
+            remove(path)
+            continue
+        if take(file) and _is_in_place(file, path):
+            return file
+        file.close()
+        break
+    return None
+
+
+def lock_folder(folder: Path) -> int | None:
+    """Lock a folder, unless somebody else has it locked; Windows cannot, and lets anybody.
+
+    Returns:
+        A descriptor to be closed, which ends the lock; None where somebody else has it.
+    """
+    if fcntl is None:
+        return os.open(os.devnull, os.O_RDONLY)
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    if _flock(descriptor):
+        return descriptor
+    os.close(descriptor)
+    return None
+
+
+def take(file: IO[str]) -> bool:
+    """Lock an open file, unless somebody else has it locked; held until the file is closed.
+
+    Each `open` counts for itself, also within one process.
+    """
+    return _flock(file.fileno())
+
+
+def _flock(descriptor: int) -> bool:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _open_lock(path: Path) -> IO[str]:
+    """Open the file of a lock, which is made if it is not there, and never changed.
+
+    Raises:
+        OSError: it cannot be opened, or is not an ordinary file of this user's: a link is not
+            followed, and a pipe not waited for.
+    """
+    return open(path, "r+", opener=_open_private, encoding="utf-8")
+
+
+def _open_private(path: str, flags: int) -> int:
+    descriptor = os.open(path, flags | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK, 0o600)
+    found = os.fstat(descriptor)
+    if stat.S_ISREG(found.st_mode) and found.st_uid == os.geteuid():
+        return descriptor
+    os.close(descriptor)
+    raise PermissionError(f"{path} is not an ordinary file of this user's")
+
+
+def _is_in_place(file: IO[str], path: Path) -> bool:
+    """Whether an open file is still the one of this name: another's lock may be on a new one."""
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), path.lstat())
+    except OSError:
+        return False

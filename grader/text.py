@@ -8,11 +8,12 @@ from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import Any
 
-from grader.language.phrase import say
+from grader.message import Message, msg, plain_text
 
 _ESCAPE_SEQUENCES = re.compile(
     r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)?|[@-Z\\^_])"
 )
+_BLANKS = re.compile(r"\s+")
 _LINE_BREAKS = re.compile(r"\r\n?|[\u2028\u2029]")
 #: Control characters (XML 1.0 has none of them), breaks of a line or paragraph, halves of
 #: characters, non-characters, and the marks that turn the direction of the text behind them.
@@ -32,8 +33,8 @@ def without_controls(text: str, sign: str = _REPLACEMENT, keep: str = "") -> str
     Args:
         keep: those of them that may stay.
     """
-    shown, found = _controls_but(keep).subn(lambda _: sign, text)
-    return shown if found else text  # itself: a phrase stays one
+    shown = _controls_but(keep).sub(lambda _: sign, text)
+    return shown
 
 
 @cache
@@ -50,11 +51,6 @@ def plain(text: str) -> str:
     return _COMMANDS.sub(lambda match: f"{match[1]}: :" if match[0].endswith(":") else "# #", text)
 
 
-def plain_phrase(text: str) -> str:
-    """The same; a phrase that is plain already stays one."""
-    return _itself(text, plain(text))
-
-
 def for_terminal(text: str) -> str:
     """The text as it may be printed, however it is wrapped; what colours it must not read it."""
     return _COMMANDS_WRAPPED.sub(lambda match: " ".join(match[0]), plain(text))
@@ -68,6 +64,8 @@ def plain_all(value: Any, limit: int = 1_000_000) -> Any:
     """
     if isinstance(value, str):
         return plain(clip(value, limit))
+    if isinstance(value, Message):
+        return value.map_texts(lambda text: plain(clip(text, limit)))
     if isinstance(value, dict):
         return {plain(clip(key, limit)): plain_all(item, limit) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -82,7 +80,14 @@ def plain_all(value: Any, limit: int = 1_000_000) -> Any:
 
 def one_line(text: str) -> str:
     """The text with every run of white space as one space."""
-    return _itself(text, " ".join(text.split()))
+    return " ".join(text.split())
+
+
+def in_one_line(message: Message) -> Message:
+    """The message with every run of white space as one space, its own around an empty name too."""
+    made = message.map_texts(lambda text: _BLANKS.sub(" ", text))
+    shown = one_line(str(made))
+    return made if str(made) == shown else plain_text(shown)
 
 
 def clip(text: str, limit: int) -> str:
@@ -118,12 +123,7 @@ def number(value: float) -> float | int:
     return int(rounded) if float(rounded).is_integer() else rounded
 
 
-def place(x: float, y: float) -> str:
+def place(x: float, y: float) -> Message:
     """A place in the window [m]: '(5.54, 7.20)'."""
     known = math.isfinite(x) and math.isfinite(y)
-    return say("({x:.2f}, {y:.2f})", x=x, y=y) if known else say("an unknown place")
-
-
-def _itself(text: str, made: str) -> str:
-    """The text itself where nothing was changed: a phrase stays one."""
-    return text if text == made else made
+    return msg("({x:.2f}, {y:.2f})", x=x, y=y) if known else msg("an unknown place")

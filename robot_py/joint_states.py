@@ -1,7 +1,7 @@
 """What joint_state_publisher 2.4.3, Jazzy's, does, without a node.
 
 It reads the description by itself, with other rules than urdfdom: `lower` and `upper` have to be
-there, and much else is not looked at. Of the three formats that the original reads, this reads one,
+there, and much else is not checked. Of the three formats that the original reads, this reads one,
 URDF.
 """
 
@@ -26,8 +26,8 @@ class UnusableDescription(ValueError):
     """Why a description cannot be used; the joints of the one before, if any, are kept."""
 
 
-class Ended(Exception):
-    """Here the original ends with exit code 1; why."""
+class NodeEnded(Exception):
+    """The original ends here with exit code 1; the text explains why."""
 
 
 class Dependence(TypedDict, total=False):
@@ -39,7 +39,7 @@ class Dependence(TypedDict, total=False):
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class JointStateOptions:
     """The node's parameters; what they mean stands in docs/robots.md."""
 
     publish_default_positions: bool = True
@@ -64,7 +64,7 @@ class Values:
 
 @dataclass(slots=True)
 class FreeJoint:
-    """A joint that follows no other; None is what nobody has said yet."""
+    """A joint that follows no other; None where there is no value yet."""
 
     least: float
     most: float
@@ -77,7 +77,7 @@ class FreeJoint:
     def step(self, delta: float) -> None:
         """Go on by `delta`: to and fro between the limits, or round and round."""
         if self.position is None:
-            raise Ended("delta needs publish_default_positions, or positions from a source")
+            raise NodeEnded("delta needs publish_default_positions, or positions from a source")
         if not self.goes_up:
             self.position -= delta
             if self.position < self.least:
@@ -92,8 +92,8 @@ class FreeJoint:
 class JointStates:
     """Where the joints are that nobody moves, and those that a source moves."""
 
-    def __init__(self, options: Options | None = None) -> None:
-        self._options = options or Options()
+    def __init__(self, options: JointStateOptions | None = None) -> None:
+        self._options = options or JointStateOptions()
         self._order: list[str] = []
         self._free: dict[str, FreeJoint] = {}
         # until a description comes, which forgets them: so does the original
@@ -126,10 +126,10 @@ class JointStates:
         self._order, self._free, self._dependent = order, free, dependent
 
     def hear(self, values: Values) -> None:
-        """Take over what a source says of free joints.
+        """Take over a source's values of free joints.
 
         Raises:
-            Ended: one of its arrays is shorter than the names, but not empty.
+            NodeEnded: one of its arrays is shorter than the names, but not empty.
         """
         try:
             for number, name in enumerate(values.names):
@@ -140,13 +140,13 @@ class JointStates:
                 joint.velocity = values.velocities[number] if values.velocities else joint.velocity
                 joint.effort = values.efforts[number] if values.efforts else joint.effort
         except IndexError:
-            raise Ended("a source sent an array that is shorter than its names") from None
+            raise NodeEnded("a source sent an array that is shorter than its names") from None
 
     def tick(self) -> Values | None:
         """What is published now; None where there are no joints.
 
         Raises:
-            Ended: joints follow each other in a circle, or one that is not there.
+            NodeEnded: joints follow each other in a circle, or one that is not there.
         """
         if self._options.delta > 0:
             for joint in self._free.values():
@@ -178,14 +178,14 @@ class JointStates:
         chain = [name]
         while parent in self._dependent:
             if parent in chain:
-                raise Ended(f"{ENDLESS}: {[*chain, parent]}")
+                raise NodeEnded(f"{ENDLESS}: {[*chain, parent]}")
             chain.append(parent)
             rule = self._dependent[parent]
             offset += factor * rule.get("offset", 0.0)
             factor *= rule.get("factor", 1.0)
             parent = rule["parent"]
         if parent not in self._free:
-            raise Ended(f'joint "{chain[-1]}" follows "{parent}", and no such joint moves')
+            raise NodeEnded(f'joint "{chain[-1]}" follows "{parent}", and no such joint moves')
         return self._free[parent], factor, offset
 
     def _limits(self, element: minidom.Element, name: str) -> tuple[float, float]:

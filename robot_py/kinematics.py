@@ -10,11 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_py.model import Joint, JointType, Model, Pose, Vector
+from robot_py.model import Joint, JointType, Model, Origin, Vector
 
 Transform = NDArray[np.float64]
 
@@ -23,7 +24,7 @@ SMALLEST_TRACE = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
-class Tree:
+class LinkTree:
     """How the links hang on each other, as kdl_parser finds it.
 
     Attributes:
@@ -52,15 +53,15 @@ class Tree:
         return {joint.name: joint for joint in sorted(joints, key=lambda joint: joint.name)}
 
 
-def tree(model: Model) -> Tree:
-    """What hangs where."""
+def tree(model: Model) -> LinkTree:
+    """Return how a robot's links hang on each other."""
     holder: dict[str, Joint] = {}
     children: dict[str, list[str]] = {}
     for name in sorted(model.joints):
         joint = model.joints[name]
         holder[joint.child] = joint
         children.setdefault(joint.parent, []).append(joint.child)
-    return Tree(_hanging(model.root, holder), _goes_round(model.root, children))
+    return LinkTree(_hanging(model.root, holder), _is_endless(model.root, children))
 
 
 def _hanging(root: str, holder: Mapping[str, Joint]) -> dict[str, Joint]:
@@ -77,32 +78,29 @@ def _hanging(root: str, holder: Mapping[str, Joint]) -> dict[str, Joint]:
     return hanging
 
 
-def _goes_round(root: str, children: Mapping[str, list[str]]) -> bool:
+def _is_endless(root: str, children: Mapping[str, list[str]]) -> bool:
     """Whether a link below the root is also above itself."""
-    finished: set[str] = set()
-    waiting: list[tuple[str, bool]] = [(root, False)]
-    inside: set[str] = set()
+    below: dict[str, list[str]] = {}
+    waiting = [root]
     while waiting:
-        link, done = waiting.pop()
-        if done:
-            inside.discard(link)
-            finished.add(link)
-        elif link in inside:
-            return True
-        elif link not in finished:
-            inside.add(link)
-            waiting.append((link, True))
-            waiting.extend((child, False) for child in children.get(link, []))
+        link = waiting.pop()
+        if link not in below:
+            below[link] = children.get(link, [])
+            waiting.extend(below[link])
+    try:
+        TopologicalSorter(below).prepare()
+    except CycleError:
+        return True
     return False
 
 
-def matrix(pose: Pose) -> Transform:
-    """A pose as a transform."""
-    return _transform(_rotation_rpy(*pose.rpy), pose.xyz)
+def matrix(origin: Origin) -> Transform:
+    """Return an origin as a transform."""
+    return _transform(_rotation_rpy(*origin.rpy), origin.xyz)
 
 
 def joint_transform(joint: Joint, position: float = 0.0) -> Transform:
-    """From the child's frame to the parent's.
+    """Return the transform from the child's frame to the parent's.
 
     Args:
         position: how far the joint is turned [rad] or pushed out [m]; fixed, planar and floating
@@ -154,7 +152,7 @@ def with_mimics(model: Model, positions: Mapping[str, float]) -> dict[str, float
 
 
 def translation(transform: Transform) -> Vector:
-    """Where the child's frame is [m]."""
+    """Return where the child's frame is [m]."""
     x, y, z = (float(value) for value in transform[:3, 3])
     return x, y, z
 

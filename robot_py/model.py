@@ -28,12 +28,12 @@ class JointType(StrEnum):
 
     @property
     def is_movable(self) -> bool:
-        """Whether one number says where it is; a planar and a floating one are not moved by ROS."""
+        """Whether one number is its position; ROS moves no planar and no floating one."""
         return self in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 
 
 @dataclass(frozen=True, slots=True)
-class Pose:
+class Origin:
     """Where something is [m], turned about fixed axes by roll, then pitch, then yaw [rad]."""
 
     xyz: Vector = (0.0, 0.0, 0.0)
@@ -87,10 +87,10 @@ Geometry = Box | Cylinder | Sphere | Mesh
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """What a link looks like; the material is None where none is named, or none of that name is."""
+    """A shape to show; the material is None where none is named, or there is none of that name."""
 
     name: str
-    origin: Pose
+    origin: Origin
     geometry: Geometry
     material: Material | None = None
 
@@ -100,7 +100,7 @@ class Collision:
     """Where a link bumps into others."""
 
     name: str
-    origin: Pose
+    origin: Origin
     geometry: Geometry
 
 
@@ -108,7 +108,7 @@ class Collision:
 class Inertial:
     """How a link resists: its centre of mass, mass [kg] and moments about it [kg m²]."""
 
-    origin: Pose
+    origin: Origin
     mass: float
     ixx: float
     ixy: float
@@ -160,7 +160,7 @@ class Joint:
     type: JointType
     parent: str
     child: str
-    origin: Pose = Pose()
+    origin: Origin = Origin()
     axis: Vector = (0.0, 0.0, 0.0)
     limit: Limit | None = None
     mimic: Mimic | None = None

@@ -7,15 +7,15 @@ nanoseconds, so a grader can ask afterwards what the node would have done.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 
 from robot_py import kinematics
-from robot_py.findings import Finding
-from robot_py.kinematics import Tree
-from robot_py.logs import Log, Severity
+from robot_py.kinematics import LinkTree
 from robot_py.model import Joint, Model, Vector
 from robot_py.urdf import parse
+from robot_py.urdf.tinyxml import UrdfFinding
 
 NS_PER_MS = 1_000_000
 
@@ -46,14 +46,34 @@ ROOT_INERTIA = (
 UNKNOWN_TYPE = "Converting unknown joint type of joint '{}' into a fixed joint"
 
 
-class RefusedDescription(ValueError):
-    """A description with which robot_state_publisher does not start, or which it does not take.
+class Severity(StrEnum):
+    """The levels of ROS that the two nodes use."""
+
+    WARN = "WARN"
+    ERROR = "ERROR"
+
+
+@dataclass(frozen=True, slots=True)
+class NodeLog:
+    """A line that a node would log.
 
     Attributes:
-        findings: what urdfdom says of it.
+        logger: its logger's name; '' for the node's own.
     """
 
-    def __init__(self, reason: str, findings: tuple[Finding, ...] = ()) -> None:
+    severity: Severity
+    text: str
+    logger: str = ""
+
+
+class RefusedDescription(ValueError):
+    """A description that robot_state_publisher refuses, at its start or later.
+
+    Attributes:
+        findings: what urdfdom prints of it.
+    """
+
+    def __init__(self, reason: str, findings: tuple[UrdfFinding, ...] = ()) -> None:
         super().__init__(reason)
         self.findings = findings
 
@@ -78,7 +98,7 @@ class Parameters:
 
 
 def is_usable_frequency(hertz: float) -> bool:
-    """Whether robot_state_publisher takes it as publish_frequency."""
+    """Whether robot_state_publisher accepts it as publish_frequency."""
     return not (hertz < 0.0 or hertz > 1000.0)
 
 
@@ -103,7 +123,7 @@ class JointState:
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
+class Published:
     """What comes of a joint state.
 
     Attributes:
@@ -112,25 +132,25 @@ class Heard:
     """
 
     transforms: tuple[Placed, ...] | None
-    logs: tuple[Log, ...] = ()
+    logs: tuple[NodeLog, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A description that was accepted, and what there is to say of it."""
+    """A description that was accepted, and what urdfdom prints of it."""
 
     description: str
     model: Model
-    tree: Tree
-    findings: tuple[Finding, ...]
+    tree: LinkTree
+    findings: tuple[UrdfFinding, ...]
 
     @classmethod
     def of(cls, description: str) -> Robot:
         """Read a description.
 
         Raises:
-            RefusedDescription: robot_state_publisher does not take it. What it does not survive, a
-                circle of links, is refused here.
+            RefusedDescription: robot_state_publisher refuses it. A circle of links, which it does
+                not survive, is refused here.
         """
         reading = parse(description)
         if reading.model is None:
@@ -141,7 +161,7 @@ class Robot:
         return cls(description, reading.model, tree, reading.findings)
 
     @property
-    def logs(self) -> tuple[Log, ...]:
+    def logs(self) -> tuple[NodeLog, ...]:
         """What kdl_parser logs of it."""
         texts = []
         if self.model.links[self.model.root].inertial is not None:
@@ -149,7 +169,7 @@ class Robot:
         for joint in self.tree.joints.values():
             if joint.type in ("planar", "floating"):
                 texts.append(UNKNOWN_TYPE.format(joint.name))
-        return tuple(Log(Severity.WARN, text, "kdl_parser") for text in texts)
+        return tuple(NodeLog(Severity.WARN, text, "kdl_parser") for text in texts)
 
     def fixed(self, prefix: str, now_ns: int) -> tuple[Placed, ...]:
         """The transforms for /tf_static, by the alphabet of their joints' names."""
@@ -190,6 +210,7 @@ class RobotState:
 
     Attributes:
         parameters: may be replaced at any time.
+        robot: whose frames are published; `set_robot` replaces it.
     """
 
     def __init__(self, robot: Robot, parameters: Parameters | None = None) -> None:
@@ -198,32 +219,27 @@ class RobotState:
         self._heard_ns = 0
         self.set_robot(robot)
 
-    @property
-    def robot(self) -> Robot:
-        """The robot whose frames are published."""
-        return self._robot
-
     def set_robot(self, robot: Robot) -> None:
         """Publish another robot's frames from now on; stamps are remembered."""
-        self._robot = robot
+        self.robot = robot
         self._moving = robot.tree.moving
 
-    def hear(self, state: JointState, now_ns: int) -> Heard:
+    def hear(self, state: JointState, now_ns: int) -> Published:
         """What is published because of a joint state that arrives now."""
         if len(state.names) != len(state.positions):
-            return Heard(None, (_complaint(state),))
+            return Published(None, (_complaint(state),))
         if state.stamp_ns < 0:
             # the original ends here, by an exception that nobody catches
-            return Heard(None, (Log(Severity.ERROR, NEGATIVE),))
-        logs: tuple[Log, ...] = ()
+            return Published(None, (NodeLog(Severity.ERROR, NEGATIVE),))
+        logs: tuple[NodeLog, ...] = ()
         if self._heard_ns > now_ns:
-            logs = (Log(Severity.WARN, BACKWARDS),)
+            logs = (NodeLog(Severity.WARN, BACKWARDS),)
             self._published_ns.clear()
         self._heard_ns = now_ns
         if not self._is_due(state, now_ns):
-            return Heard(None, logs)
+            return Published(None, logs)
         self._published_ns.update(dict.fromkeys(state.names, state.stamp_ns))
-        return Heard(self._transforms(state), logs)
+        return Published(self._transforms(state), logs)
 
     def _is_due(self, state: JointState, now_ns: int) -> bool:
         """Whether enough time has passed since all of its joints were published, by the stamps.
@@ -238,19 +254,16 @@ class RobotState:
         positions: dict[str, float] = {}
         for name, position in zip(state.names, state.positions, strict=True):
             positions.setdefault(name, position)
-        following = kinematics.with_mimics(self._robot.model, positions)
-        return tuple(self._placed(following, state.stamp_ns))
-
-    def _placed(self, positions: Mapping[str, float], stamp_ns: int) -> list[Placed]:
+        positions = kinematics.with_mimics(self.robot.model, positions)
         prefix = self.parameters.frame_prefix
-        return [
-            placed(self._moving[name], positions[name], stamp_ns, prefix)
+        return tuple(
+            placed(self._moving[name], positions[name], state.stamp_ns, prefix)
             for name in sorted(positions)
             if name in self._moving
-        ]
+        )
 
 
-def _complaint(state: JointState) -> Log:
+def _complaint(state: JointState) -> NodeLog:
     if not len(state.positions):
-        return Log(Severity.WARN, NO_POSITIONS.format(state.names[0]))
-    return Log(Severity.ERROR, INVALID)
+        return NodeLog(Severity.WARN, NO_POSITIONS.format(state.names[0]))
+    return NodeLog(Severity.ERROR, INVALID)

@@ -1,179 +1,214 @@
 #!/usr/bin/env python3
-"""Look for sentences in the code, bring the catalogues of all languages up to date, compile them.
+"""Look for sentences in the code, and bring the catalogues of all languages up to date.
 
-    make catalogues          after a sentence was written or translated
+    make catalogues               after a sentence was written
     scripts/catalogues.py holes   what has no translation yet
 
-Translators edit `grader/language/locale/*/LC_MESSAGES/grader.po`, with any editor for gettext.
+Translators edit `grader/languages/*.json`; what only the simulator's page says is in
+`turtlesim_py/live/page/*.json`.
 """
 
 from __future__ import annotations
 
 import ast
-import io
+import json
+import re
 import sys
-from collections.abc import Iterator
-from datetime import UTC, datetime
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator
+from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
-from babel.messages.catalog import Catalog, Message
-from babel.messages.extract import extract
-from babel.messages.mofile import write_mo
-from babel.messages.pofile import read_po, write_po
-
-_ANY_DAY = datetime(2026, 1, 1, tzinfo=UTC)
 ROOT = Path(__file__).resolve().parents[1]
-LOCALE = ROOT / "grader" / "language" / "locale"
-LANGUAGES = {"fr": "French", "zh": "Chinese"}
-#: What marks a sentence; of a pair the second is for more than one.
-KEYWORDS = {
-    **{"say": None, "tell": None, "marked": None},
-    **{"say_many": (1, 2), "tell_many": (1, 2)},
+LANGUAGES = ("fr", "zh")
+#: How many forms a sentence about a number has.
+FORMS = {"fr": 2, "zh": 1}
+#: The functions that get a sentence; of a pair the second is for more than one.
+ONE = ("msg", "tr", "Rejected", "_misfit", "Mistake", "expect")
+PAIR, IN_CONTEXT = ("msg_many", "tr_many"), "in_context"
+_STRING = r'"((?:[^"\\]|\\.)*)"'
+_IN_TEMPLATE = re.compile(rf"\btr\(\s*{_STRING}")
+_PAIR_IN_TEMPLATE = re.compile(rf"\btr_many\(\s*{_STRING},\s*{_STRING}")
+_IN_SCRIPT = re.compile(rf"\b(?:t|key)\(\s*{_STRING}")
+#: Errors get a sentence, too, where they get its values.
+ERRORS = ("UsageError", "SubmissionError", "ExerciseError", "CheckFailed", "RecordingError")
+ERRORS += ("GraderFailure", "NotNow", "NotOffered")
+#: What is a student's, or another project's.
+NOT_OURS = ("starter", "reference", "right", "__pycache__")
+
+ATTRIBUTES = ("aria-label", "placeholder", "title")
+#: Whose text is the same in all languages, or is said otherwise.
+SAME = ("script", "style", "noscript", "code", "kbd")
+EMPTY = ("meta", "link", "input", "br", "img")
+#: Two letters in a row that are no unit, and no name.
+_WORD = re.compile(r"[A-Za-z]{2}")
+_UNIT = re.compile(r"\[[a-z/]+\]|\$\w+|turtle\d")
+
+#: A sentence, or the two forms of one about a number.
+Sentence = str | tuple[str, str]
+
+
+def of_code(path: Path) -> Iterator[Sentence]:
+    """What functions of these names are given, and titles of checks: their docstrings' first."""
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            texts = [a.value for a in node.args if isinstance(a, ast.Constant)]
+            texts = [text for text in texts if isinstance(text, str)]
+            is_sentence = node.func.id in ONE or (node.func.id in ERRORS and node.keywords)
+            if is_sentence and texts:
+                yield texts[0]
+            elif node.func.id in PAIR and len(texts) > 1:
+                yield texts[0], texts[1]
+            elif node.func.id == IN_CONTEXT and len(texts) > 1:
+                yield f"{texts[0]} ({texts[1]})"
+        if isinstance(node, ast.FunctionDef):
+            calls = [each.func for each in node.decorator_list if isinstance(each, ast.Call)]
+            if any(isinstance(call, ast.Name) and call.id == "checks" for call in calls):
+                yield (ast.get_docstring(node) or "").partition("\n")[0].strip().rstrip(".")
+
+
+def of_template(path: Path) -> Iterator[Sentence]:
+    """What a template of a report renders."""
+    text = path.read_text(encoding="utf-8")
+    yield from map(_literal, _IN_TEMPLATE.findall(text))
+    yield from ((_literal(one), _literal(many)) for one, many in _PAIR_IN_TEMPLATE.findall(text))
+
+
+def of_script(path: Path) -> Iterator[Sentence]:
+    """What a page's script renders in the browser."""
+    yield from map(_literal, _IN_SCRIPT.findall(path.read_text(encoding="utf-8")))
+
+
+def of_html(path: Path) -> Iterator[Sentence]:
+    """The texts that stand in a page, as `language.js` finds them."""
+    reader = _Reader()
+    reader.feed(path.read_text(encoding="utf-8"))
+    for text in reader.found:
+        if _WORD.search(_UNIT.sub("", text)):
+            yield " ".join(text.split())
+
+
+def of_grader() -> Iterator[Sentence]:
+    """All that the grader says, its robots too; not what its player shares with the simulator."""
+    player = ROOT / "grader" / "scenes" / "turtlesim" / "player" / "page"
+    shared = set(of_simulator())
+    yield from (each for each in of_page(player) if each not in shared)
+    readers: dict[str, Callable[[Path], Iterator[Sentence]]] = {
+        ".py": of_code,
+        ".html": of_template,
+    }
+    for path in sorted(p for name in ("grader", "grader_robots") for p in (ROOT / name).rglob("*")):
+        is_ours = not set(path.relative_to(ROOT).parts) & set(NOT_OURS)
+        if is_ours and path.suffix in readers and path.parent != player:
+            yield from readers[path.suffix](path)
+
+
+def of_simulator() -> Iterator[Sentence]:
+    """Everything that the simulator's page says, and what its server answers."""
+    live = ROOT / "turtlesim_py" / "live"
+    yield from of_page(live / "page")
+    for path in sorted(live.glob("*.py")):
+        yield from of_code(path)
+
+
+def of_page(folder: Path) -> Iterator[Sentence]:
+    """What the HTML and the scripts of a page say."""
+    for path in sorted(folder.iterdir()):
+        if path.suffix in (".html", ".js"):
+            yield from (of_html if path.suffix == ".html" else of_script)(path)
+
+
+#: The folders of catalogues, and what finds their sentences.
+CATALOGUES: dict[Path, Callable[[], Iterable[Sentence]]] = {
+    ROOT / "grader" / "languages": of_grader,
+    ROOT / "turtlesim_py" / "live" / "page": of_simulator,
 }
-#: Below grader/: file name ending -> babel's name of who reads it; Python we read ourselves.
-READERS = {".html": "jinja2.ext:babel_extract", ".js": "javascript"}
-#: Of a file's head: dates, which would make each run another file, and who nobody is.
-CHANGING = tuple(
-    f'"{name}'
-    for name in (
-        *("POT-Creation-Date", "PO-Revision-Date", "Generated-By", "Last-Translator"),
-        *("Report-Msgid-Bugs-To", "Language-Team", "Project-Id-Version"),
-    )
-)
-#: What only has to be handed on, or is a student's.
-NOT_OURS = ("starter", "reference", "right", "doubles", "__pycache__")
 
 
-def sentences() -> Iterator[str | tuple[str, str]]:
-    """All marked sentences; a pair has one and many."""
-    for path in sorted((ROOT / "grader").rglob("*")):
-        reader = READERS.get(path.suffix)
-        if not _is_ours(path):
-            continue
-        if path.suffix == ".py":
-            tree = ast.parse(path.read_bytes())
-            yield from _called(tree)
-            yield from _titles(tree)
-        if reader is None:
-            continue
-        source = path.read_bytes()
-        options = {"encoding": "utf-8", "trimmed": "true"}
-        for _, message, _, _ in extract(reader, io.BytesIO(source), KEYWORDS, (), options):
-            if message:
-                yield message if isinstance(message, str) else (message[0], message[1])
-
-
-def _is_ours(path: Path) -> bool:
-    return not set(path.relative_to(ROOT).parts) & set(NOT_OURS)
-
-
-def _called(tree: ast.Module) -> Iterator[str | tuple[str, str]]:
-    """What functions of these names are given; methods called so say something else."""
-    for node in ast.walk(tree):
-        if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
-            continue
-        count = 2 if KEYWORDS.get(node.func.id) else 1
-        texts = [each.value for each in node.args[:count] if isinstance(each, ast.Constant)]
-        if node.func.id in KEYWORDS and len(texts) == count:
-            yield texts[0] if count == 1 else (texts[0], texts[1])
-
-
-def _titles(tree: ast.Module) -> Iterator[str]:
-    """The titles of an exercise's checks, which are the first lines of their docstrings."""
-    for node in ast.walk(tree):
-        if not isinstance(node, ast.FunctionDef):
-            continue
-        calls = [each.func for each in node.decorator_list if isinstance(each, ast.Call)]
-        if any(isinstance(call, ast.Name) and call.id == "checks" for call in calls):
-            yield (ast.get_docstring(node) or "").partition("\n")[0].strip().rstrip(".")
-
-
-@cache
-def template() -> Catalog:
-    """The catalogue of all sentences, without translations."""
-    found = Catalog(domain="grader", project="turtlesim_py", charset="utf-8")
-    for sentence in sentences():
-        found.add(sentence)
+def read(folder: Path, language: str) -> dict[str, Any]:
+    """A catalogue as it is."""
+    found: dict[str, Any] = json.loads((folder / f"{language}.json").read_text(encoding="utf-8"))
     return found
 
 
-def po(language: str) -> Path:
-    """The file that translators edit."""
-    return LOCALE / language / "LC_MESSAGES" / "grader.po"
+def updated(folder: Path, language: str) -> dict[str, Any]:
+    """A catalogue with the sentences that there are now, and no others; "" is a hole."""
+    old, new = read(folder, language), dict[str, Any]()
+    for sentence in CATALOGUES[folder]():
+        if not sentence:
+            continue
+        key = sentence if isinstance(sentence, str) else sentence[0]
+        hole = "" if isinstance(sentence, str) else [""] * FORMS[language]
+        known = old.get(key)
+        if key not in new or isinstance(hole, list):
+            new[key] = known if isinstance(known, type(hole)) else hole
+    return dict(sorted(new.items()))
 
 
-def read(language: str) -> Catalog:
-    """A language's catalogue as it is; empty if there is none."""
-    path = po(language)
-    if not path.exists():
-        return Catalog(locale=language, domain="grader")
-    with path.open("rb") as file:
-        return read_po(file, locale=language, domain="grader")
-
-
-def updated(language: str) -> Catalog:
-    """A language's catalogue with the sentences that there are now, and no others."""
-    old, new = read(language), template()
-    head = f"# {LANGUAGES[language]} sentences of the grader; scripts/catalogues.py keeps them."
-    made = Catalog(
-        *(language, "grader", head),
-        project="turtlesim_py",
-        version="0",
-        charset="utf-8",
-        fuzzy=False,
-    )
-    for message in new:
-        if message.id:
-            known = old.get(message.id)
-            made.add(message.id, known.string if known and not known.fuzzy else "")
-    return made
-
-
-def text(catalog: Catalog) -> bytes:
-    """A catalogue as translators get it: in the order of the sentences, no line numbers."""
-    file = io.BytesIO()
-    write_po(file, catalog, no_location=True, omit_header=False, sort_output=True, width=100)
-    lines = file.getvalue().decode().splitlines(keepends=True)
-    return "".join(line for line in lines if not line.startswith(CHANGING)).encode()
-
-
-def compiled(catalog: Catalog) -> bytes:
-    """A catalogue as gettext reads it."""
-    file = io.BytesIO()
-    catalog.creation_date = catalog.revision_date = _ANY_DAY  # the same file each time
-    write_mo(file, catalog)
-    return file.getvalue()
-
-
-def holes(language: str) -> list[str]:
+def holes(folder: Path, language: str) -> list[str]:
     """The sentences that have no translation."""
-    return [
-        _first(message) for message in updated(language) if message.id and not _is_whole(message)
-    ]
+    found = updated(folder, language).items()
+    return [key for key, said in found if not (said if isinstance(said, str) else all(said))]
 
 
-def _first(message: Message) -> str:
-    return str(message.id if isinstance(message.id, str) else message.id[0])
+def text(catalogue: dict[str, Any]) -> str:
+    """A catalogue as its file has it: a line for each sentence."""
+    lines = (
+        f" {json.dumps(key, ensure_ascii=False)}: {json.dumps(said, ensure_ascii=False)}"
+        for key, said in catalogue.items()
+    )
+    return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def _is_whole(message: Message) -> bool:
-    strings = message.string if isinstance(message.string, tuple | list) else [message.string]
-    return all(strings)
+class _Reader(HTMLParser):
+    """Collects texts that people read."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+        self._open: list[tuple[str, bool]] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Take the attributes that are read; remember whether what is within is translated."""
+        given = dict(attrs)
+        is_same = tag in SAME or given.get("translate") == "no" or self._is_same
+        if not is_same:
+            self.found += [given[name] or "" for name in ATTRIBUTES if name in given]
+        if tag not in EMPTY:
+            self._open.append((tag, is_same))
+
+    def handle_endtag(self, tag: str) -> None:
+        """Leave an element."""
+        opened, _ = self._open.pop()
+        assert opened == tag, f"<{opened}> is closed as </{tag}>"
+
+    def handle_data(self, data: str) -> None:
+        """Take a text."""
+        if not self._is_same:
+            self.found.append(data)
+
+    @property
+    def _is_same(self) -> bool:
+        return bool(self._open) and self._open[-1][1]
+
+
+def _literal(inside: str) -> str:
+    said: str = json.loads(f'"{inside}"')
+    return said
 
 
 def main() -> int:
     """Update, or list the holes."""
-    for language in LANGUAGES:
-        missing = holes(language)
-        if sys.argv[1:] == ["holes"]:
-            print(*(f"{language}: {sentence}" for sentence in missing), sep="\n")
-            continue
-        catalog = updated(language)
-        po(language).parent.mkdir(parents=True, exist_ok=True)
-        po(language).write_bytes(text(catalog))
-        po(language).with_suffix(".mo").write_bytes(compiled(read(language)))
-        print(f"{language}: {len(catalog)} sentences, {len(missing)} of them not translated")
+    for folder in CATALOGUES:
+        for language in LANGUAGES:
+            missing = holes(folder, language)
+            if sys.argv[1:] == ["holes"]:
+                print(*(f"{language}: {sentence}" for sentence in missing), sep="\n")
+                continue
+            made = updated(folder, language)
+            (folder / f"{language}.json").write_text(text(made), encoding="utf-8")
+            name = (folder / f"{language}.json").relative_to(ROOT)
+            print(f"{name}: {len(made)} sentences, {len(missing)} of them not translated")
     return 0
 
 

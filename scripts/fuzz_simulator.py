@@ -1,13 +1,10 @@
-"""Feed a simulator's process with what no program of good will sends, and see whether it lives.
+"""Send a simulator's process what no well-meant program sends, and see whether it survives.
 
-    python scripts/fuzz_simulator.py ros|link|rtps [--seconds N] [--seed N]
+    python scripts/fuzz_simulator.py ros|link [--seconds N] [--seed N]
 
 `ros`: every service, topic and part of an action of a `turtlesim_node`, over DDS, with values that
 are random, huge, or none. `link`: a graded simulator in virtual time, whose student's side sends
-mutated packets and mutated CDR. `rtps`: mutated copies of the packets that DDS itself exchanges, at
-the simulator's UDP ports; that needs a network of its own, and root or a user namespace:
-
-    unshare --user --map-root-user --net sh -c 'ip link set lo up; ... rtps'
+mutated packets and mutated CDR. What lies below DDS, `sends_broken_packets` tries (tests/attacks).
 
 It prints counts, and ends with 1 if a process has died or does not answer any more.
 """
@@ -27,7 +24,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -43,7 +40,7 @@ NAMES = ("background_r", "holonomic", "image_rate", "canvas_folder", "use_sim_ti
 
 
 def scalar(kind: str, chance: random.Random) -> Any:
-    """A value for a field of a basic type; what looks likely to break something, mostly."""
+    """Return a value for a field of a basic type; mostly one that is likely to break something."""
     if kind in ("float", "double"):
         number = chance.choice((*FLOATS, float("nan"), chance.uniform(-12, 12)))
         return number if kind == "double" else struct.unpack("<f", _single(number))[0]
@@ -66,7 +63,7 @@ def _single(number: float) -> bytes:
 
 
 def filled(message: Any, chance: random.Random) -> Any:
-    """A message of this class with a value in each of its fields."""
+    """Return a message of this class with a value in each of its fields."""
     made = message()
     for name, kind in message.get_fields_and_field_types().items():
         setattr(made, name, _value(kind, chance))
@@ -82,12 +79,12 @@ def _value(kind: str, chance: random.Random) -> Any:
     if rest:
         return [_value(element, chance) for _ in range(int(rest.rstrip("]")))]
     if "/" in kind:
-        return filled(_message(*kind.split("/")), chance)
+        return filled(_class(kind), chance)
     return scalar(kind, chance)
 
 
 def mutated(data: bytes, chance: random.Random) -> bytes:
-    """Bytes of which some have changed; also lengths, which are little-endian in 32 bits."""
+    """Change some bytes; also lengths, which are little-endian in 32 bits."""
     changed = bytearray(data)
     for _ in range(chance.choice((0, 1, 1, 2, 8))):
         if not changed:
@@ -110,34 +107,20 @@ def mutated(data: bytes, chance: random.Random) -> bytes:
     return bytes(changed)
 
 
-def _message(package: str, name: str) -> Any:
+def _class(kind: str) -> Any:
+    """Return the class of a type of ROS, of a field ("geometry_msgs/Vector3") or with its folder.
+
+    Also that of a part of an action, as "turtlesim/action/RotateAbsolute_SendGoal".
+    """
+    package, *folder, name = kind.split("/")
     action, _, part = name.partition("_")
-    if part in ("Goal", "Result", "Feedback"):
-        return getattr(getattr(importlib.import_module(f"{package}.action"), action), part)
-    return getattr(importlib.import_module(f"{package}.msg"), name)
+    if not part:
+        return getattr(importlib.import_module(".".join([package, *(folder or ["msg"])])), name)
+    whole = getattr(importlib.import_module(f"{package}.action"), action)
+    return getattr(whole.Impl, f"{part}Service", None) or getattr(whole, part)
 
 
 # Over DDS ---------------------------------------------------------------------------------------
-
-
-@contextmanager
-def simulator(folder: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A `turtlesim_node` in a process of its own."""
-    env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with (
-        (Path(folder) / "log").open("wb") as log,
-        subprocess.Popen(
-            [sys.executable, "-m", "turtlesim_py.ros.node"],
-            cwd=folder,
-            env=env,
-            stdout=log,
-            stderr=log,
-        ) as process,
-    ):
-        try:
-            yield process
-        finally:
-            process.kill()
 
 
 class Caller:
@@ -158,7 +141,7 @@ class Caller:
         self._rclpy.shutdown()
 
     def find(self) -> int:
-        """Look what there is now; how much that is."""
+        """Make clients and publishers for what is served now; return how many clients."""
         with suppress(Exception):  # it is not there yet
             for topic, (kind, *_) in self._node.get_subscriber_names_and_types_by_node(
                 "turtlesim", "/"
@@ -174,7 +157,7 @@ class Caller:
         return len(self._clients)
 
     def send(self) -> None:
-        """One message or request to each."""
+        """Send one message or request to each."""
         for topic, publisher in self._publishers.items():
             publisher.publish(filled(publisher.msg_type, self._chance))
             self.counts[_plain(topic)] += 1
@@ -200,42 +183,45 @@ class Caller:
         return False
 
 
-def _class(kind: str) -> Any:
-    package, folder, name = kind.split("/")
-    module = importlib.import_module(f"{package}.{folder}")
-    if hasattr(module, name):
-        return getattr(module, name)
-    # "RotateAbsolute_SendGoal" of an action
-    action, _, part = name.partition("_")
-    if part in ("SendGoal", "GetResult"):
-        return getattr(getattr(module, action).Impl, f"{part}Service")
-    raise ValueError(f"no such type: {kind}")
-
-
 def _plain(name: str) -> str:
     return "/".join(name.split("/")[2:]) if name.count("/") > 1 else name
 
 
-def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
-    """Call everything; the counts, and what went wrong."""
-    with tempfile.TemporaryDirectory() as folder, simulator(folder) as process:
+@contextmanager
+def simulator(
+    chance: random.Random,
+) -> Iterator[tuple[subprocess.Popen[bytes], Caller, Callable[[], str]]]:
+    """Have a `turtlesim_node` in a process of its own, who calls it, and what reads its log."""
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "turtlesim_py.ros.node"]
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        (Path(folder) / "log").open("wb") as log,
+        subprocess.Popen(command, cwd=folder, env=env, stdout=log, stderr=log) as process,
+    ):
         caller = Caller(chance)
         try:
             until = time.monotonic() + 30
             while not caller.find() and time.monotonic() < until:
                 time.sleep(0.1)
-            until = time.monotonic() + seconds
-            while time.monotonic() < until and process.poll() is None:
-                caller.find()
-                caller.send()
-            alive = process.poll() is None and caller.is_answered()
+            yield process, caller, lambda: (Path(folder) / "log").read_text(errors="replace")
         finally:
             caller.close()
-        log = (Path(folder) / "log").read_text(errors="replace")
-        for line in log.splitlines():
+            process.kill()
+
+
+def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
+    """Call everything; the counts, and what went wrong."""
+    with simulator(chance) as (process, caller, log):
+        until = time.monotonic() + seconds
+        while time.monotonic() < until and process.poll() is None:
+            caller.find()
+            caller.send()
+        alive = process.poll() is None and caller.is_answered()
+        for line in log().splitlines():
             if "Cannot serve [" in line:
                 caller.counts[line[line.index("Cannot") :][:150]] += 1
-        return caller.counts, "" if alive else f"it died or is deaf: {log[-2000:]}"
+        return caller.counts, "" if alive else f"it died or does not answer: {log()[-2000:]}"
 
 
 # On the link ------------------------------------------------------------------------------------
@@ -253,19 +239,23 @@ def fuzz_link(seconds: float, chance: random.Random) -> tuple[Counter[str], str]
 
 
 def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> str:
-    from grader.run.plan import Plan
-    from grader.run.simulator.link import Patience
+    from grader.message import Message
+    from grader.run.handover import Plan
+    from grader.run.limits import Patience
+    from grader.run.observe import account
     from grader.scenes.scene import Limits
 
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     control, controlled = socket.socketpair()
     recording = os.memfd_create("recording")
-    fds = (controlled.fileno(), theirs.fileno(), recording)
+    page = account.make()
+    fds = (controlled.fileno(), theirs.fileno(), recording, page)
     words = [
         *(str(controlled.fileno()), f"/proc/self/fd/{recording}"),
-        *(Plan(Limits(3, 1, 30)).to_json(), str(theirs.fileno()), str(os.getpid()), "-1"),
+        *(Plan(Limits(3, 1, 30)).to_json(), str(theirs.fileno()), str(page)),
+        *(str(os.getpid()), "-1"),
         json.dumps(asdict(Patience(simulator_cpu_s=20.0, all_asleep_s=2.0, asleep_s=1.0))),
-        "",  # nobody looks on
+        "",  # no live feed
     ]
     # a pipe that nobody reads would stop it
     log = tempfile.TemporaryFile()  # noqa: SIM115 - the contexts of both are below
@@ -283,41 +273,51 @@ def _run_on_link(chance: random.Random, counts: Counter[str], until: float) -> s
         controlled.close()
         os.close(recording)
         with suppress(OSError):
-            _converse(ours, chance, counts, until)
+            _converse(ours, page, chance, counts, until)
+        os.close(page)
         ours.close()
-        said = b""
+        output = b""
         with suppress(OSError):
             control.settimeout(60)
             while chunk := control.recv(65536):
-                said += chunk
+                output += chunk
         code = process.wait()
         log.seek(0)
         complaint = log.read()[-3000:]
-    if code != 0 or not said:
-        return f"it ended with {code}, said {said!r}; {complaint.decode(errors='replace')}"
-    message = json.loads(said.splitlines()[-1])
-    counts[f"{message['say']}, {message.get('silence', message.get('reason'))}"] += 1
-    counts.update(flag for flag in message.get("flags", ()) if "on request" not in flag)
-    if "virtual time itself" in message.get("reason", ""):
+    if code != 0 or not output:
+        return f"it ended with {code}, sent {output!r}; {complaint.decode(errors='replace')}"
+    message = json.loads(output.splitlines()[-1])
+    reason = str(Message.parse(message.get("reason", "")))
+    counts[f"{message['say']}, {message.get('silence', reason)}"] += 1
+    flags = [str(Message.parse(flag)) for flag in message.get("flags", ())]
+    counts.update(flag for flag in flags if "on request" not in flag)
+    if "virtual time itself" in reason:
         return f"{message}; {complaint.decode(errors='replace')}"
     return ""
 
 
 def _converse(
-    link: socket.socket, chance: random.Random, counts: Counter[str], until: float
+    link: socket.socket, page: int, chance: random.Random, counts: Counter[str], until: float
 ) -> None:
-    from grader.run.lockstep.link import pieces
-    from grader.run.lockstep.protocol import Advance, Interests, Mail, Parcel, Table, decode, encode
+    from grader.run.lockstep.protocol import (
+        Advance,
+        Interests,
+        Mail,
+        Parcel,
+        Table,
+        decode,
+        encode,
+        pieces,
+    )
 
-    data, fds, _, _ = socket.recv_fds(link, 200_000, 2)
+    data, fds, _, _ = socket.recv_fds(link, 200_000, 1)
     table = decode(data)
     assert isinstance(table, Table)
-    page, mailbox = fds
     readers = [entry for entry in table.added if not entry.writes]
     requests = [(entry.id, *_samples(entry)) for entry in readers]
     channels = tuple(entry.channel for entry in table.added if entry.writes)
     is_rude = chance.random() < 0.5  # also packets that are none, which end the run
-    with socket.socket(fileno=mailbox) as mail:
+    with socket.socket(fileno=fds[0]) as mail:
         mail.setblocking(False)
         for turn in range(400):
             if time.monotonic() > until:
@@ -345,7 +345,6 @@ def _converse(
             link.send(mutated(ask, chance) if is_wrong else ask)
             counts["packets"] += 2
             _drain(link)
-    os.close(page)
 
 
 def _is_sent(mail: socket.socket, piece: bytes) -> bool:
@@ -379,52 +378,7 @@ def _drain(link: socket.socket) -> None:
         patience_s = 0.0
 
 
-# Below DDS --------------------------------------------------------------------------------------
-
-
-def fuzz_rtps(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
-    """Send mutated copies of all UDP packets on loopback to where they went."""
-    counts: Counter[str] = Counter()
-    sniffer = socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM, socket.htons(0x0800))
-    sniffer.bind(("lo", 0))
-    sniffer.setblocking(False)
-    sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    with tempfile.TemporaryDirectory() as folder, simulator(folder) as process, sniffer, sender:
-        caller = Caller(chance)
-        packets: list[tuple[bytes, int]] = []
-        try:
-            until = time.monotonic() + 30
-            while not caller.find() and time.monotonic() < until:
-                time.sleep(0.1)
-            ours = sender.getsockname()[1]
-            until = time.monotonic() + seconds
-            while time.monotonic() < until and process.poll() is None:
-                caller.find()
-                caller.send()
-                with suppress(BlockingIOError):
-                    while True:
-                        data = sniffer.recv(65536)
-                        head = (data[0] & 15) * 4
-                        source, target = struct.unpack_from("!HH", data, head)
-                        if data[9] == 17 and source != ours:
-                            packets.append((data[head + 8 :], target))
-                packets = packets[-3000:]
-                for _ in range(1000 if packets else 0):
-                    data, target = chance.choice(packets)
-                    with suppress(OSError):
-                        sender.sendto(mutated(data, chance), ("127.0.0.1", target))
-                        counts["packets"] += 1
-            time.sleep(1.0)
-            alive = process.poll() is None
-        finally:
-            caller.close()
-        counts["different packets"] = len(set(packets))
-        counts["messages"] = caller.counts.total()
-        log = (Path(folder) / "log").read_text(errors="replace")
-        return counts, "" if alive else f"it died with {process.poll()}: {log[-2000:]}"
-
-
-FUZZERS = {"ros": fuzz_ros, "link": fuzz_link, "rtps": fuzz_rtps}
+FUZZERS = {"ros": fuzz_ros, "link": fuzz_link}
 
 
 def main(argv: Sequence[str]) -> int:

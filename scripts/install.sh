@@ -55,7 +55,7 @@ logged() {
     done
 }
 
-# without byte code, which pip makes on one core: scripts/compile.py uses all
+# without byte code, which pip makes on one core: `byte_code` uses all
 packages() {
     if [ -n "$uv" ]; then
         if logged "$uv" --color never pip install --python "$venv/bin/python" "$@"; then return; fi
@@ -77,6 +77,18 @@ packages() {
         echo "Cannot install: ${uv:-pip} failed, see above and $log" >&2
     fi
     exit 1
+}
+
+# A submission's process may write nowhere: what is not compiled here, each run would compile again.
+# As with pip, a file that is no Python of today's hinders nobody.
+byte_code() {
+    local library
+    "$venv/bin/python" -m compileall -qq -j 0 "$venv"/lib/python*/site-packages || true
+    if [ -n "$uv" ]; then # its Pythons come without byte code; with a system's there is nothing to do
+        library=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("stdlib"))')
+        "$venv/bin/python" -m compileall -qq -j 0 \
+            -x '/(dist-packages|site-packages|idlelib|lib2to3|tests?)/' "$library" || true
+    fi
 }
 
 # what scripts/requirements.py prints; $1 is the name of the stamp, the rest are its arguments
@@ -109,13 +121,13 @@ fi
 requirements installed-requirements
 
 # content, not dates: git changes dates, and a deleted file has none
-sources=$(find turtlesim_py turtlesim_challenge robot_py grader interfaces tf2 launch ros2run LICENSE MANIFEST.in \
+sources=$(find turtlesim_py turtlesim_challenge robot_py grader grader_robots interfaces tf2 launch LICENSE MANIFEST.in \
     README.md package.xml pyproject.toml setup.py -type f ! -name '*.pyc' -print0 |
     LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
 if ! stamped installed-sources "$sources"; then
     say "installing the project (seconds; up to a minute where turtlesim's interfaces are to be compiled)"
     packages --no-build-isolation --no-deps --force-reinstall .
-    "$venv/bin/python" scripts/compile.py
+    byte_code
     stamp installed-sources "$sources"
 fi
 

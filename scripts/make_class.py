@@ -1,4 +1,4 @@
-"""Makes a class of hand-ins out of the test fixtures, as a course system would export it.
+"""Make a class of submissions out of the test fixtures, as a course system would export it.
 
     .venv/bin/python scripts/make_class.py FOLDER [--count 300] [--seed 1]
 
@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import random
 import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -36,45 +35,30 @@ UNUSABLE: dict[str, bytes] = {
     "notes.txt": b"I could not do it.\n",
     "turtle_controller.py": b"import rclpy\ndef main()\n    pass\n",
 }
-#: Of ten hand-ins: (so many, what).
+#: Of ten submissions: (so many, what).
 SHARES = ((5, "right"), (3, "beginner"), (1, "hostile"), (1, "odd"))
 
 
-def right() -> list[str]:
-    """Sources that do what is asked, and those with one thing spoiled."""
-    texts = [each.text() for each in read_solutions(load_exercise("turtlesim_challenge"))]
-    return texts[:1] * (len(texts) // 2) + texts  # not all make a mistake
-
-
-def beginners() -> list[str]:
-    """The mistakes of beginners, but for those that burn a minute of a processor each."""
-    return [changed(n) for n in sorted(CHANGED) if not n.startswith(("loops", "floods"))]
-
-
-def hostile() -> list[str]:
-    """Programs of attackers."""
-    return [(ATTACKS / f"{name}.py").read_text(encoding="utf-8") for name in HOSTILE]
-
-
-def names(chance: random.Random) -> Iterator[str]:
-    """Names of people; some have the same."""
-    while True:
-        yield f"{chance.choice(FIRST)} {chance.choice(LAST)}"
+def programs() -> dict[str, list[str]]:
+    """Return the texts of programs by what they are."""
+    right = [each.text() for each in read_solutions(load_exercise("turtlesim_challenge"))]
+    return {
+        # with one thing spoiled each, but for the first; not all make a mistake
+        "right": right[:1] * (len(right) // 2) + right,
+        # but for those that burn a minute of a processor each
+        "beginner": [changed(n) for n in sorted(CHANGED) if not n.startswith(("loops", "floods"))],
+        "hostile": [(ATTACKS / f"{name}.py").read_text(encoding="utf-8") for name in HOSTILE],
+    }
 
 
 def make(folder: Path, count: int, seed: int) -> None:
     """Write a class into a folder that is not there yet."""
     chance = random.Random(seed)
-    kinds: dict[str, Callable[[], str]] = {}
-    for kind, texts in (
-        ("right", right()),
-        ("beginner", beginners()),
-        ("hostile", hostile()),
-    ):
-        kinds[kind] = lambda texts=texts: chance.choice(texts)  # type: ignore[misc]
+    texts = programs()
     pool = [kind for share, kind in SHARES for _ in range(share)]
     earlier: list[str] = []
-    for number, name in zip(range(count), names(chance), strict=False):
+    for number in range(count):
+        name = f"{chance.choice(FIRST)} {chance.choice(LAST)}"
         at = folder / f"{name}_{100000 + number}_assignsubmission_file_"
         at.mkdir(parents=True)
         kind = chance.choice(pool)
@@ -84,7 +68,7 @@ def make(folder: Path, count: int, seed: int) -> None:
             file = chance.choice(sorted(UNUSABLE))
             (at / file).write_bytes(UNUSABLE[file])
         else:
-            text = f"{kinds[kind]()}\n# {number}\n"
+            text = f"{chance.choice(texts[kind])}\n# {number}\n"
             earlier.append(text)
             (at / "turtle_controller.py").write_text(text, encoding="utf-8")
 
@@ -99,7 +83,7 @@ def main() -> int:
     if args.folder.exists():
         parser.error(f"{args.folder} exists already")
     make(args.folder, args.count, args.seed)
-    print(f"{args.folder}: {args.count} hand-ins")
+    print(f"{args.folder}: {args.count} submissions")
     return 0
 
 

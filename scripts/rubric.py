@@ -1,4 +1,4 @@
-"""Write into docs/rubric.md what the checks of our exercises measure, as they say it."""
+"""Write into docs/rubric.md what the checks of our exercises measure: their rubrics."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from grader.exercise.exercise import Exercise  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
-from grader.exercise.rubric import rubric  # noqa: E402
+from grader.exercise.sheet import rubric, told  # noqa: E402
+from grader.text import points  # noqa: E402
 
 PAGE = ROOT / "docs" / "rubric.md"
 EXERCISES = (
@@ -21,14 +23,28 @@ FIRST, LAST = "<!-- from the checks: python scripts/rubric.py -->", "<!-- so far
 
 
 def page(old: str) -> str:
-    """The page with the rubrics as they are now."""
+    """The page with the rubrics as they are now; what two exercises share is told once."""
     before, _, rest = old.partition(FIRST)
     _, _, after = rest.partition(LAST)
     parts = []
+    told_by: dict[str, str] = {}  # what a check measures -> the exercise that told it first
     for name in EXERCISES:
         exercise = load_exercise(name)
-        parts.append(f"## {exercise.title}\n\n`{name}`\n\n{rubric(exercise)}")
+        texts = {check.name: told(check, exercise.tolerances) for check in exercise.checks}
+        above = {
+            check: told_by[texts[check]] for check in exercise.points if texts[check] in told_by
+        }
+        first = (texts[check] for check in exercise.points if check not in above)
+        told_by |= {text: name for text in first if text}
+        parts.append(f"## {exercise.title!s}\n\n`{name}`\n")
+        if above:
+            parts.append("\n".join(_as_in(exercise, *each) for each in above.items()) + "\n")
+        parts.append(rubric(exercise, above))
     return f"{before}{FIRST}\n\n{chr(10).join(parts)}\n{LAST}{after}"
+
+
+def _as_in(exercise: Exercise, check: str, other: str) -> str:
+    return f"- `{check}`: {points(exercise.points[check])} points, as in `{other}`"
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 
 Random controllers, right ones of many styles and wrong ones with one or two faults, drive the world
 without ROS. What each really did is known from how it was made: the faults that were put in are the
-oracle, and it looks at no check. A wrong one is *killed* if it loses points in a check that its
+oracle, which uses no check. A wrong one is *killed* if it loses points in a check that its
 fault concerns; a right one is *spared* if it keeps all points. Printed are both rates, and every
 controller that was judged wrongly, with the numbers that make it again.
 """
@@ -17,7 +17,7 @@ import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -33,36 +33,22 @@ from turtlesim_py.world.arena import Arena  # noqa: E402
 from turtlesim_py.world.turtle import SIZE_M, TICK_S, Pose  # noqa: E402
 
 CENTRE_M = SIZE_M / 2
-#: Fault -> the checks of which at least one has to take points for it.
-FAULTS: Mapping[str, tuple[str, ...]] = {
-    "never_stops": ("edge_stop",),
-    "stops_early": ("edge_stop",),
-    "silent": ("edge_stop",),
-    "drives_on": ("edge_stop",),
-    "turns_on": ("edge_stop",),
-    "one_wall": ("edge_stop",),
-    "counts": ("edge_stop",),
-    "circle": ("spiral",),
-    "inward": ("spiral",),
-    "line": ("spiral",),
-    "zigzag": ("spiral",),
-    "turns_back": ("spiral",),
-    "jumps": ("spiral",),
-    "off_centre": ("spiral",),
-    "irregular": ("steady_rate",),
-    "pauses": ("steady_rate",),
-    "no_pen": ("pen_per_quadrant",),
-    "pen_off": ("pen_per_quadrant", "picture"),
-    "two_alike": ("pen_per_quadrant", "picture"),
-    "shades": ("pen_per_quadrant", "picture"),
-    "late": ("pen_per_quadrant", "picture"),
-    "wrong_centre": ("pen_per_quadrant", "picture"),
-    "random_colours": ("pen_per_quadrant", "picture"),
-    "by_time": ("pen_per_quadrant", "picture"),
-    "every_pose": ("no_redundant_calls",),
-    "background": ("picture",),
+#: The checks of which at least one has to take points, and the faults for which it has to.
+CONCERNED: Mapping[tuple[str, ...], tuple[str, ...]] = {
+    ("edge_stop",): (
+        *("never_stops", "stops_early", "silent", "drives_on", "turns_on", "one_wall", "counts"),
+    ),
+    ("spiral",): (*("circle", "inward", "line", "zigzag", "turns_back", "jumps", "off_centre"),),
+    ("steady_rate",): ("irregular", "pauses"),
+    ("pen_per_quadrant",): ("no_pen",),
+    ("pen_per_quadrant", "picture"): (
+        *("pen_off", "two_alike", "shades", "late", "wrong_centre", "random_colours", "by_time"),
+    ),
+    ("no_redundant_calls",): ("every_pose",),
+    ("picture",): ("background",),
 }
-#: Colours that anybody tells apart, one from each row.
+FAULTS = {fault: checks for checks, faults in CONCERNED.items() for fault in faults}
+#: Colours that are easily told apart, one from each row.
 PALETTES = (
     ((255, 255, 255), (0, 0, 0), (255, 255, 0)),
     ((255, 0, 0), (200, 0, 0), (255, 100, 100)),
@@ -80,7 +66,7 @@ class Style:
         turn: angular velocity [rad/s], positive to the left.
         speed, growth: the first linear velocity and what each command adds to it [m/s].
         margin_m: it stops when a wall is nearer.
-        one_timer: whether it looks at the pose only when it publishes.
+        one_timer: whether it uses the pose only when it publishes.
         answer: ticks until the pen has changed.
         repeats: whether it goes on publishing zeros.
         backwards: whether it drives backwards.
@@ -215,9 +201,8 @@ class Controller:
         quadrant = self.quadrant_of(tick, pose)
         if quadrant != self.quadrant or self.has("every_pose"):
             self.quadrant = quadrant
-            delay = round(0.95 / abs(self.style.turn) / TICK_S) if self.has("late") else 0
-            if self.has("late"):
-                delay = max(delay, 45)
+            is_late = self.has("late")
+            delay = max(45, round(0.95 / abs(self.style.turn) / TICK_S)) if is_late else 0
             self.due[tick + self.style.answer + delay] = self.color_of(quadrant)
 
     def is_near(self, pose: Pose) -> bool:
@@ -237,7 +222,7 @@ class Controller:
         """Where it believes to be."""
         if self.has("by_time"):
             return int(tick * TICK_S * abs(self.style.turn) / (math.pi / 2)) % 4 + 1
-        centre = CENTRE_M + (1.5 if self.has("wrong_centre") else 0.0)
+        centre = CENTRE_M + 1.5 * self.has("wrong_centre")
         if pose.y >= centre:
             return 1 if pose.x >= centre else 2
         return 3 if pose.x < centre else 4
@@ -267,18 +252,17 @@ class Controller:
 
 
 def judged(style: Style, exercise: Exercise) -> dict[str, tuple[float, str]]:
-    """Check -> the share of its points, and what it says."""
+    """Return for each check the share of its points, and its rationale."""
     ticks = round(exercise.limits.total_s / TICK_S)
-    make: Callable[[], Controller] = lambda: Controller(style)  # noqa: E731
-    runs = [drive(make(), ticks, start) for start in (None, *exercise.starts())]
+    runs = [drive(Controller(style), ticks, start) for start in (None, *exercise.starts())]
     verdicts = judge(
         Recordings(runs[0], tuple(runs[1:])), exercise.checks, exercise.points, exercise.tolerances
     )
-    return {v.check: (v.score / v.max_score, v.rationale) for v in verdicts}
+    return {v.check: (v.score / v.max_score, str(v.rationale)) for v in verdicts}
 
 
 def main() -> None:
-    """Search, and tell what was found."""
+    """Search, and print what was found."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--count", type=int, default=200, help="controllers")
     parser.add_argument("--seed", type=int, default=1)
@@ -299,18 +283,15 @@ def main() -> None:
             print(f"The time is up after {number} controllers.")
             break
         found = judged(style, exercise)
-        lost = {check: said for check, (share, said) in found.items() if share < 1}
-        if style.faults:
-            missed = [f for f in style.faults if lost.keys().isdisjoint((*FAULTS[f], "moves"))]
-            is_right = not missed
-        else:
-            is_right = not lost
+        lost = {check: why for check, (share, why) in found.items() if share < 1}
+        missed = [f for f in style.faults if lost.keys().isdisjoint((*FAULTS[f], "moves"))]
+        is_right = not missed if style.faults else not lost
         kind = "wrong" if style.faults else "right"
         of[kind] += 1
         good[kind] += is_right
         if asked.show or not is_right:
             print(f"{number}: {'as it should be' if is_right else 'JUDGED WRONGLY'}: {style}")
-            print("".join(f"    {check}: {said}\n" for check, said in lost.items()), end="")
+            print("".join(f"    {check}: {why}\n" for check, why in lost.items()), end="")
     print(f"killed: {good['wrong']} of {of['wrong']} wrong ones lose the points of every fault")
     print(f"spared: {good['right']} of {of['right']} right ones keep all points")
 

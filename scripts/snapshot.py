@@ -1,13 +1,19 @@
-"""Grade all fixture submissions with a checkout's grader, and compare two such snapshots.
+"""Grade all fixture submissions with a checkout's grader, and compare such snapshots.
 
     python scripts/snapshot.py take DIR [--grader PATH/TO/grader] [--jobs N] [--only NAME...]
     python scripts/snapshot.py compare BEFORE AFTER
+    python scripts/snapshot.py repeat DIR [--gradings 200] [--at-once 4] [--busy 16] [--seed N]
 
 A change that is to leave behaviour as it is takes a snapshot before and one after. `take` uses
-nothing but the command line, so it serves for any two versions of the grader. Compared are, byte
-for byte, the result, the recordings and every report format; what differs between equal runs (wall
-time, dates and versions) is taken out first, and pictures inside reports are compared by their
-pixels. What ran in real time is compared by its outcome alone.
+nothing but the command line, so it serves for any two versions of the grader. `compare` compares,
+byte for byte, the result, the recordings and every report format; what differs between equal runs
+(wall time, dates and versions) is taken out first, and pictures inside reports are compared by
+their pixels. What ran in real time is compared by its outcome alone.
+
+`repeat` shows that load decides nothing: it grades submissions of a snapshot again, drawn by
+chance, while as many processes as `--busy` says do nothing but use a processor. Compared are the
+score, the hash of every run's trace, how and by which clock it went. What ran in real time is not
+drawn. Both end with 1 where anything differs.
 """
 
 from __future__ import annotations
@@ -18,11 +24,17 @@ import hashlib
 import io
 import json
 import os
+import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+import tempfile
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +51,10 @@ FORMATS = (
 HELPERS = ("beginners.py", "mutants.py", "packages.py")
 #: What of a recording differs between equal runs.
 CIRCUMSTANCES = "circumstances.json"
+#: What is compared of a run that is repeated.
+OF_A_RUN = ("time", "outcome", "exit_code", "ticks", "flags", "trace_sha256")
+#: Ends by itself where whoever started it has gone, however that ended.
+BUSY = "import os, sys\nwhile os.getppid() == int(sys.argv[1]):\n    for _ in range(100_000): pass"
 
 
 def lay_out() -> dict[str, tuple[Path, str]]:
@@ -78,11 +94,15 @@ def take(grader: str, folder: Path, jobs: int, only: list[str]) -> None:
             print(line, flush=True)
 
 
-def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
+def _run(grader: str, case: tuple[Path, str], out: Path) -> subprocess.CompletedProcess[str]:
     path, exercise = case
+    command = [grader, "run", str(path), "--exercise", exercise, "--out", out.name]
     env = {**os.environ, "COLUMNS": "100"}
-    command = [grader, "run", str(path), "--exercise", exercise, "--out", name]
-    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True)
+    return subprocess.run(command, cwd=out.parent, env=env, capture_output=True, text=True)
+
+
+def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
+    done = _run(grader, case, folder / name)
     if done.returncode:
         (folder / name).mkdir(exist_ok=True)
         (folder / name / "failed.txt").write_text(f"{done.returncode}\n{done.stderr}")
@@ -93,15 +113,11 @@ def _grade(grader: str, folder: Path, name: str, case: tuple[Path, str]) -> str:
         run["wall_s"] = 1.0
     result.pop("provenance", None)
     file.write_text(json.dumps(result, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    env = {**os.environ, "COLUMNS": "100"}
     for form in FORMATS:
         command = [grader, "report", f"{name}/result.json", "--format", form]
         report = subprocess.run(command, cwd=folder, env=env, capture_output=True)
         (folder / name / f"report.{form}").write_bytes(report.stdout or report.stderr)
-    (folder / name / "report.html").replace(folder / name / "report.html.as-written")
-    page = subprocess.run([grader, "report", f"{name}/result.json", "--format", "html"],
-                          cwd=folder, env=env, capture_output=True)  # fmt: skip
-    (folder / name / "report.html").write_bytes(page.stdout)
-    (folder / name / "report.html.as-written").unlink()
     hashes = " ".join(run["trace_sha256"][:8] for run in _runs(result))
     return f"{name}: {result['score']} {result['run']['time']} {hashes}"
 
@@ -157,11 +173,12 @@ def _differences(before: Path, after: Path) -> tuple[list[str], int]:
 
 
 def _timeless(path: Path) -> bytes:
-    """A file's bytes without the time that rclpy's own logger prints, which is the machine's.
+    """A file's bytes without the time that rclpy's own logger prints, and where rclpy lies.
 
     A picture inside is what it shows: another encoder's bytes are not another picture.
     """
     data = re.sub(rb"\[\d{10}\.\d{9}\]", b"[time]", path.read_bytes())
+    data = re.sub(rb"/[^\s\"&]*/site-packages/", b"[site]/", data)
     return re.sub(rb"data:image/png;base64,([A-Za-z0-9+/=]+)", _pixels, data)
 
 
@@ -176,23 +193,93 @@ def _result(folder: Path) -> dict[str, Any] | None:
     return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
 
 
+@contextmanager
+def _busy(count: int) -> Iterator[None]:
+    """So many processes that use all the processor they get."""
+    made: list[subprocess.Popen[bytes]] = []
+    try:
+        for _ in range(count):
+            made.append(subprocess.Popen([sys.executable, "-c", BUSY, str(os.getpid())]))
+        yield
+    finally:
+        for process in made:
+            process.kill()
+        for process in made:
+            process.wait()
+
+
+def _again(grader: str, case: tuple[Path, str], expected: dict[str, Any]) -> list[str]:
+    """Grade once more; what differs from the expected result."""
+    with tempfile.TemporaryDirectory(prefix="snapshot-") as folder:
+        done = _run(grader, case, Path(folder) / "out")
+        found = _result(Path(folder) / "out")
+    if done.returncode or found is None:
+        return [f"exit {done.returncode}: {done.stderr[-300:].strip()}"]
+    if len(_runs(found)) != len(_runs(expected)):
+        return [f"{len(_runs(expected))} runs -> {len(_runs(found))}"]
+    pairs = [("score", expected["score"], found["score"])]
+    for number, (one, other) in enumerate(zip(_runs(expected), _runs(found), strict=True)):
+        pairs += [(f"run {number}: {key}", one.get(key), other.get(key)) for key in OF_A_RUN]
+    return [f"{what} {one!r} -> {other!r}" for what, one, other in pairs if one != other]
+
+
+def repeat(grader: str, folder: Path, drawn: int, at_once: int, busy: int, seed: int) -> int:
+    """Grade what is drawn under load, and print what differs; the number of gradings that do."""
+    cases, expected = lay_out(), {path.name: _result(path) for path in folder.iterdir()}
+    possible = {
+        name: result
+        for name, result in sorted(expected.items())
+        if result and all(run["time"] == "virtual" for run in _runs(result))
+    }
+    if not possible:
+        raise SystemExit(f"{folder} holds nothing that was graded in virtual time")
+    print(f"seed {seed}; drawn from {len(possible)} submissions", flush=True)
+    names = random.Random(seed).choices(list(possible), k=drawn)
+    different, load = 0, 0.0
+    with _busy(busy), ThreadPoolExecutor(at_once) as pool:
+        jobs = {pool.submit(_again, grader, cases[name], possible[name]): name for name in names}
+        for number, job in enumerate(as_completed(jobs), 1):
+            different += bool(job.result())
+            load = max(load, os.getloadavg()[0])
+            for fault in job.result():
+                print(f"{jobs[job]}: {fault}", flush=True)
+            if number % 10 == 0:
+                print(f"{number} of {drawn} gradings, {different} differ", flush=True)
+    print(
+        f"{drawn} gradings of {len(set(names))} submissions, {at_once} at once, "
+        f"at a load of up to {load:.1f}: {different} differ"
+    )
+    return different
+
+
 def main() -> int:
-    """Command line; `compare` exits with 1 where something differs."""
+    """Command line; 1 where something differs."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     verbs = parser.add_subparsers(dest="verb", required=True)
-    taking = verbs.add_parser("take")
+    taking, comparing = verbs.add_parser("take"), verbs.add_parser("compare")
+    repeating = verbs.add_parser("repeat")
     taking.add_argument("folder", type=Path)
-    taking.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
     taking.add_argument("--jobs", type=int, default=2)
     taking.add_argument("--only", nargs="*", default=[], metavar="NAME")
-    comparing = verbs.add_parser("compare")
     comparing.add_argument("before", type=Path)
     comparing.add_argument("after", type=Path)
+    repeating.add_argument("folder", type=Path)
+    repeating.add_argument("--gradings", type=int, default=200, help="under load: %(default)s")
+    repeating.add_argument("--at-once", type=int, default=4, help="%(default)s")
+    repeating.add_argument("--busy", type=int, default=16, help="busy processes: %(default)s")
+    repeating.add_argument("--seed", type=int, help="of what is drawn; printed")
+    for each in (taking, repeating):
+        each.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
     args = parser.parse_args()
     if args.verb == "take":
         take(args.grader, args.folder, args.jobs, args.only)
         return 0
-    return int(compare(args.before, args.after) > 0)
+    if args.verb == "compare":
+        return int(compare(args.before, args.after) > 0)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # no busy process is left behind
+    seed = time.time_ns() % 2**32 if args.seed is None else args.seed
+    load = (args.gradings, args.at_once, args.busy, seed)
+    return int(repeat(args.grader, args.folder, *load) > 0)
 
 
 if __name__ == "__main__":

@@ -20,18 +20,18 @@ from pathlib import Path
 
 REFERENCE = "import turtlesim_challenge as c; print(c.__path__[0] + '/turtle_controller.py')"
 # what a shell with ROS, or a Python with the ROS wheels, has left
-FOREIGN = ("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
+LEFT_OUT = ("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
 
 
 def bare(venv: Path) -> dict[str, str]:
     """An environment that finds the programs of `venv` and no others, so no compiler either."""
-    env = {name: value for name, value in os.environ.items() if name not in FOREIGN}
+    env = {name: value for name, value in os.environ.items() if name not in LEFT_OUT}
     return env | {"PATH": str(venv / "bin"), "CC": "/nonexistent", "CXX": "/nonexistent"}
 
 
 @contextmanager
 def step(name: str) -> Iterator[None]:
-    """Say how long it took: by the clock, and what of it was work of this machine."""
+    """Print how long a step took: by the clock, and in processor time."""
     clock, work = time.monotonic(), _cpu_s()
     yield
     seconds = time.monotonic() - clock
@@ -44,7 +44,7 @@ def _cpu_s() -> float:
 
 
 def call(*command: str | Path, env: dict[str, str], cwd: Path) -> str:
-    """Run it to its end, and return its output; what it said is shown only if it fails."""
+    """Run a command to its end, and return its output; if it fails, exit with all of it."""
     done = subprocess.run(command, env=env, cwd=cwd, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{done.stdout}{done.stderr}\nfailed: {' '.join(map(str, command))}")
@@ -52,16 +52,16 @@ def call(*command: str | Path, env: dict[str, str], cwd: Path) -> str:
 
 
 def start_and_stop(program: Path, env: dict[str, str], cwd: Path) -> None:
-    """Run the simulator until it says that it is up, and end it as Ctrl-C does."""
+    """Run the simulator until it prints that it is up, and end it as Ctrl-C does."""
     process = subprocess.Popen([program], env=env, cwd=cwd, stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
-    said = ""
+    output = ""
     for line in process.stderr:
-        said += line
+        output += line
         if "Starting turtlesim" in line:
             process.send_signal(signal.SIGINT)
-    if process.wait() != 0 or "Starting turtlesim" not in said:
-        sys.exit(f"{said}\nfailed: {program}")
+    if process.wait() != 0 or "Starting turtlesim" not in output:
+        sys.exit(f"{output}\nfailed: {program}")
 
 
 def main() -> None:

@@ -17,28 +17,31 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from grader import scratch
 from grader.run.processes import isolation, levels
-from grader.run.processes.family import Student
+from grader.run.processes.fork_server_main import ProcessCommand
+from grader.run.processes.started_process import SubmissionProcess
 
 
 def main(wanted: str, folder: str, *words: str) -> None:
-    with scratch.make_folder() as stage, isolation.obtain_isolation(stage) as isolated:
+    with scratch.make_folder() as run, isolation.obtain_isolation(run) as isolated:
         level = levels.best(isolated)
         print(level.name(), flush=True)
         if level.level != wanted:
             return
-        (stage / "tmp").mkdir()
-        env = {"PATH": os.environ["PATH"], "TMPDIR": str(stage / "tmp"), "GRADER": str(os.getpid())}
-        place = levels.prepare(
-            level, Path(folder), Path(folder), stage, is_apart=bool(isolated.namespaces)
+        (run / "tmp").mkdir()
+        env = {"PATH": os.environ["PATH"], "TMPDIR": str(run / "tmp"), "GRADER": str(os.getpid())}
+        is_apart = bool(isolated.namespaces)
+        confinement = levels.prepare(level, Path(folder), run, is_apart=is_apart)
+        command = ProcessCommand(
+            [sys.executable, "-I", "-S", *words],
+            {**env, **confinement.env},
+            confinement.copy,
+            namespaces=isolated.namespaces,
+            confinement=confinement.order,
         )
-        command = [sys.executable, "-I", "-S", *words]
-        student = Student(
-            *(command, {**env, **place.env}, Path(folder), (), isolated.namespaces),
-            confinement=place.order,
-        )
-        student.wait(60.0)
-        student.end()
-        print(student.output())
+        process = SubmissionProcess(command)
+        process.wait(60.0)
+        process.end()
+        print(process.output())
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PLACE = ROOT / ".pytest_cache" / "d" / "once"  # where pytest has its plugins keep theirs
 #: What decides how a submission is run and judged.
 TREE = (
-    *("grader", "interfaces", "robot_py", "tests/submissions", "tf2"),
+    *("grader", "grader_robots", "interfaces", "robot_py", "tests/submissions", "tf2"),
     *("turtlesim_challenge", "turtlesim_py"),
 )
 OLD_S = 24 * 3600.0  # of another tree: not under the feet of a suite that still runs

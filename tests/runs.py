@@ -17,9 +17,9 @@ from grader.recording import reading, saving
 from grader.recording.recording import Clock, Recording, Recordings
 from grader.result.result import Result
 from grader.run import real_time, virtual_time
+from grader.run.handover import Plan
+from grader.run.limits import Patience
 from grader.run.opening import open_submission
-from grader.run.plan import Plan
-from grader.run.simulator.link import Patience
 from tests import once
 from tests.submissions import beginners
 from tests.submissions.mutants import MUTANTS, REFERENCE
@@ -83,7 +83,7 @@ def recorded(
                 recording = real_time.run(submission, plan)
             else:
                 recording = virtual_time.run(submission, plan, patience=patience or Patience())
-        saving.save(recording, folder)
+        saving.save_all(Recordings(recording), folder)
 
     return reading.load(once.folder(run, "run", name, plan, patience, time, number))
 

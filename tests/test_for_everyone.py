@@ -11,14 +11,15 @@ import pytest
 
 from grader.batch.entry import entries
 from grader.batch.page import html as class_page
-from grader.batch.regrade import html as regrade_page
+from grader.batch.regrade import shown
 from grader.batch.regrade.changes import Failure, Regrade, compared
-from grader.batch.similar import look
+from grader.batch.similar import page
 from grader.exercise.loading import load_exercise
-from grader.reports import ErrorReport, Report
+from grader.reports import ErrorReport
+from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.result.error import ErrorResult
-from grader.scenes.robot.driving import drive as drive_robot
+from grader_robots.scene.driving import drive as drive_robot
 from tests.browser import needs_browser, obstacles, open_browser
 from tests.grader.batch.page.classes import entry, result
 from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in
@@ -26,8 +27,8 @@ from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.page.test_parts import package_trace, page_of
 from tests.grader.reports.samples import evidence, verdict
-from tests.grader.scenes.robot.robots import walks
-from tests.grader.scenes.robot.test_solid import URDF
+from tests.grader_robots.scene.robots import walks
+from tests.grader_robots.scene.test_view import URDF
 
 pytestmark = needs_browser
 
@@ -38,7 +39,7 @@ def report_of_turtles(folder) -> str:
     good = drive(Spiral(), 700)
     verdicts = (verdict("starts", evidence=[evidence("it starts", 0.16)]), FAULT)
     return html.render(
-        Report.read(samples.graded(folder, good, *verdicts, varied=(good, good), output="one"))
+        read_report(samples.graded(folder, good, *verdicts, varied=(good, good), output="one"))
     )
 
 
@@ -46,7 +47,7 @@ def report_of_a_crash(folder) -> str:
     short = drive(Spiral(), 125)
     run = replace(short.run, outcome="crashed", exit_code=1)
     recording = replace(short, run=run, output="Traceback (most recent call last):\nNameError")
-    return html.render(Report.read(samples.graded(folder, recording, FAULT)))
+    return html.render(read_report(samples.graded(folder, recording, FAULT)))
 
 
 def report_of_a_robot(folder) -> str:
@@ -71,8 +72,8 @@ def page_of_what_is_alike(folder) -> str:
     for who, handed_in in list(HONEST.items())[:3]:
         hand_in(folder, who, handed_in, name=f"{who.title()} Ünal")
     hand_in(folder, "copy", HONEST["quick"], name="Zoë")
-    look.write(entries(folder), CHALLENGE, folder)
-    return (folder / look.PAGE).read_text(encoding="utf-8")
+    page.write(entries(folder), CHALLENGE, folder)
+    return (folder / page.PAGE).read_text(encoding="utf-8")
 
 
 def page_of_a_regrade(folder) -> str:
@@ -83,14 +84,14 @@ def page_of_a_regrade(folder) -> str:
     challenge = load_exercise("turtlesim_challenge")
     failure = Failure(before[1], "its recording is damaged")
     found = Regrade(
-        *(folder, challenge, "changed.yaml", tuple(before)),
+        *(folder, challenge, tuple(before)),
         (change,),
         (),
         (failure,),
         1,
         ("A note.",),
     )
-    return regrade_page.render(found, "../..")
+    return shown.page(found, "../..")
 
 
 def page_without_a_result(folder) -> str:

@@ -10,22 +10,52 @@ import pytest
 ROOT = Path(__file__).parents[1]
 #: What -> the text by which it is known, and the only file below grader/ that may have it.
 ONE = {
-    "a file that cannot be written is told": (r'say\(\s*"cannot write', "files.py"),
+    "a file that cannot be written is told": (r'"cannot write', "files.py"),
     "a trace is serialised between processes": (r"np\.savez|np\.load\(", ""),
     "work is done in a limited copy": (r"setitimer\(signal\.ITIMER_PROF", "limited.py"),
     "data of others becomes a dataclass": (r"get_type_hints\(", "strict_json.py"),
-    "what a process uses is looked up": (r"/proc/[^ ]*/stat\"", "usage.py"),
-    "a process of a run is begun": (r"os\.execvpe?\(", "run/processes/forking.py"),
+    "what a process uses is looked up": (r"/proc/[^ ]*/stat\"", "linux.py"),
+    "a process is controlled": (r"\.prctl|\"prctl\"", "linux.py"),
+    "a resource is limited": (r"\.setrlimit\(", "linux.py"),
+    "the C library is called": (r"CDLL\(None", "linux.py"),
+    "a process of a run is begun": (r"os\.execvpe?\(", "run/processes/fork_server_main.py"),
+    "a page between processes is sealed": (r"F_ADD_SEALS", "run/observe/account.py"),
+    "a simulator and the grader speak": (r"\{\"say\": what", "run/simulator/process.py"),
+    "frames of ours are hidden": (r"TracebackType\(", "run/lockstep/faults.py"),
+    "endpoints are paired": (r"def compatible\(", "run/lockstep/registry.py"),
+    "a page's templates are found": (r"jinja2\.Environment\(", "reports/page/templating.py"),
+    "a table is written": (r"csv\.writer\(", "reports/csv.py"),
+    "a zip is written": (r"ZipFile\([^)]*\"w\"", "files.py"),
+    "a run's limits are set": (r"class (RunLimits|Patience|CpuBudget)\b", "run/limits.py"),
 }
+#: The same below grader/run/ and grader/submission/.
+ONE_IN_RUNS = {
+    "a program is started": (
+        r"subprocess\.(Popen|run)\(",
+        {"run/processes/fork_server.py"},
+    ),
+    "a folder is copied": (r"shutil\.copy|copytree\(", set[str]()),
+}
+
+
+def found(pattern: str, *folders: str) -> set[str]:
+    """The modules below these folders of grader/ that have such a text."""
+    grader = ROOT / "grader"
+    return {
+        path.relative_to(grader).as_posix()
+        for folder in folders
+        for path in (grader / folder).rglob("*.py")
+        if re.search(pattern, path.read_text(encoding="utf-8"))
+    }
 
 
 @pytest.mark.parametrize("what", ONE)
 def test_there_is_one(what: str) -> None:
     pattern, where = ONE[what]
-    grader = ROOT / "grader"
-    found = {
-        path.relative_to(grader).as_posix()
-        for path in grader.rglob("*.py")
-        if re.search(pattern, path.read_text(encoding="utf-8"))
-    }
-    assert found == ({where} if where else set())
+    assert found(pattern, ".") == ({where} if where else set())
+
+
+@pytest.mark.parametrize("what", ONE_IN_RUNS)
+def test_runs_have_one(what: str) -> None:
+    pattern, where = ONE_IN_RUNS[what]
+    assert found(pattern, "run", "submission") == where

@@ -1,1 +1,24 @@
-"""The challenge: draw a four-coloured spiral. This package holds the reference solution."""
+"""The challenge: draw a four-coloured spiral. Holds the reference solution and its command."""
+
+from __future__ import annotations
+
+import sys
+
+ABOUT = """\
+usage: turtle_controller [--help] [--ros-args -r FROM:=TO ...]
+
+The reference controller: turtle1 draws a spiral in four colours and stops near the edge. A
+turtlesim_node has to be running. Stop it with Ctrl-C."""
+
+
+def main() -> None:
+    """Run the node until Ctrl-C; --help prints the usage, and nothing is started."""
+    own = sys.argv[1:]
+    if "--ros-args" in own:
+        own = own[: own.index("--ros-args")]
+    if not {"-h", "--help"}.isdisjoint(own):
+        print(ABOUT)
+        return
+    from turtlesim_challenge import turtle_controller
+
+    turtle_controller.main()

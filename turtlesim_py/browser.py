@@ -1,4 +1,4 @@
-"""Shows a page in a browser, where there is one, and says how else it is reached."""
+"""Shows a page in a browser, where there is one, and how else it is reached."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 
 def show(address: str) -> bool:
-    """Open an address, if a browser would show it on this machine's screen; whether one would."""
+    """Open an address if a browser can show it on this machine's screen; return whether one can."""
     if not has_browser():
         return False
     return webbrowser.open(address)
@@ -23,10 +23,10 @@ def has_browser() -> bool:
 
 
 def tunnel(address: str) -> str:
-    """What to type where one sits, so that a page of this machine opens there; '' if nothing.
+    """Return the command that opens this machine's page where the user sits; '' if none is needed.
 
-    Only who has come by ssh needs it. ssh sets SSH_CONNECTION to the addresses and ports of both
-    ends, the other's first.
+    Only a user who has come by ssh needs it: ssh sets SSH_CONNECTION to the addresses and ports of
+    both ends, the other's first.
     """
     page = urlsplit(address)
     ends = os.environ.get("SSH_CONNECTION", "").split()

@@ -6,19 +6,26 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grader.batch import grade, key
+from grader import files
+from grader.batch import grade
 from grader.batch.class_file import CLASS, MACHINE, ClassFile
-from grader.batch.entry import Entry
-from grader.batch.hand_in import HandIn
-from grader.batch.store import STUDENTS, Store
-from grader.batch.task import Answer, Task
+from grader.batch.entry import Entry, HandIn
+from grader.batch.gradebook.write import CSV
+from grader.batch.gradebook.write import write as write_gradebook
+from grader.batch.page import html
+from grader.batch.pool import Done, Task
+from grader.batch.similar import page, sources
+from grader.batch.store import STUDENTS, Store, of_hand_in, of_run
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
-from grader.language.phrase import Phrase, joined, say
+from grader.message import NOTHING, Message, joined, msg
 from grader.recording.recording import Clock
+from grader.result.visible import View
+from grader.translations import tr
 
 #: Does tasks, in any order; `grader.batch.pool.work` with a number of jobs, or a cluster.
-Work = Callable[[Iterable[Task]], Iterator[tuple[Task, Answer]]]
+Work = Callable[[Iterable[Task]], Iterator[Done]]
+PAGE = "index.html"
 
 
 @dataclass(frozen=True)
@@ -47,8 +54,7 @@ class Order:
     @property
     def class_file(self) -> ClassFile:
         """What the folder is for."""
-        found = ClassFile.of(self.exercise, self.time, self.seed)
-        return replace(found, isolation=self.isolation)
+        return ClassFile.of(self.exercise, self.time, self.seed, self.isolation)
 
 
 @dataclass(frozen=True)
@@ -90,25 +96,23 @@ def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
     if not differences:
         return
     raise UsageError(
-        say(
-            "{out} was graded by something else ({differences}). Nothing was changed. {advice}",
-            out=str(store.out),
-            differences=joined(list(differences.values()), "; "),
-            advice=_advice(differences, store),
-        )
+        "{out} was graded by something else ({differences}). Nothing was changed. {advice}",
+        out=str(store.out),
+        differences=joined(list(differences.values()), "; "),
+        advice=_advice(differences, store),
     )
 
 
-def _advice(differences: Mapping[str, str], store: Store) -> str:
+def _advice(differences: Mapping[str, Message], store: Store) -> Message:
     """What to do about a folder of another class."""
     if differences.keys() == {"exercise_sha256"}:
-        return say(
+        return msg(
             "See what the new one would change: grader batch --regrade {out} --exercise ...",
             out=str(store.out),
         )
     if differences.keys() <= MACHINE:
-        return say("Give another --out, or have everything graded by this one: --again all.")
-    return say("Give another --out.")
+        return msg("Give another --out, or have everything graded by this one: --again all.")
+    return msg("Give another --out.")
 
 
 def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
@@ -118,9 +122,7 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
         UsageError: `again` names nobody.
     """
     if order.again not in ("", "all", "failed", *(each.id for each in hand_ins)):
-        raise UsageError(
-            say("--again {again}: there is no hand-in of this name", again=Phrase(order.again))
-        )
+        raise UsageError("--again {again}: there is no hand-in of this name", again=order.again)
     by_key: dict[str, list[HandIn]] = {}
     trivial, done = [], []
     for hand_in, run in _with_keys(hand_ins, order):
@@ -160,7 +162,7 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
         yield from task.hand_ins
 
 
-def _unusable(task: Task, order: Order) -> str:
+def _unusable(task: Task, order: Order) -> Message:
     """Why what was made of a task is none of what was asked for; '' where it is.
 
     Raises:
@@ -170,17 +172,15 @@ def _unusable(task: Task, order: Order) -> str:
         try:
             entry = Entry.read(task.into / STUDENTS / hand_in.id)
         except UsageError as error:
-            return say("what a worker sent back cannot be used: {why}", why=error.message)
+            return msg("what a worker sent back cannot be used: {why}", why=error.message)
         if entry.exercise_sha256 != order.exercise.sha256:
             raise UsageError(
-                say(
-                    "the exercise {name} was changed while a class was graded by it, or a worker "
-                    "of the cluster has another edition of it. What was graded before is kept; see "
-                    "to it that there is one edition, and call again",
-                    name=Phrase(order.exercise.name),
-                )
+                "the exercise {name} was changed while a class was graded by it, or a worker "
+                "of the cluster has another edition of it. What was graded before is kept; see "
+                "to it that there is one edition, and call again",
+                name=order.exercise.name,
             )
-    return ""
+    return NOTHING
 
 
 def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandIn, str]]:
@@ -190,13 +190,13 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
             yield hand_in, ""
             continue
         try:
-            content = key.of_hand_in(hand_in.path, hand_in.filename)
+            content = of_hand_in(hand_in.path, hand_in.filename)
         except OSError as error:
-            why = say("It cannot be read: {why}", why=error.strerror or str(error))
+            why = msg("It cannot be read: {why}", why=error.strerror or str(error))
             yield replace(hand_in, problem=why, path=None), ""
             continue
         seed = order.seed_of(hand_in)
-        yield hand_in, key.of_run(content, order.exercise, order.time, seed)
+        yield hand_in, of_run(content, order.exercise, order.time, seed)
 
 
 def _there(folder: Path) -> Entry | None:
@@ -206,13 +206,11 @@ def _there(folder: Path) -> Entry | None:
         return None  # not there, not finished, or gone bad
 
 
-def _is_asked_again(entry: Entry, again: str) -> bool:
-    return again in ("all", entry.id) or (again == "failed" and entry.state == "failed")
-
-
 def _is_done(entry: Entry | None, hand_in: HandIn, run: str, order: Order) -> bool:
     """Whether what is there is what would be made; of the grader's failures nothing is known."""
-    if entry is None or _is_asked_again(entry, order.again):
+    if entry is None or order.again in ("all", entry.id):
+        return False
+    if order.again == "failed" and entry.state == "failed":
         return False
     is_same = entry.hand_in == replace(hand_in, path=None)
     is_run = entry.state == "failed" or (entry.key == run and (entry.state != "nothing" or not run))
@@ -223,7 +221,7 @@ def _is_done(entry: Entry | None, hand_in: HandIn, run: str, order: Order) -> bo
 def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> Task:
     first = everybody[0]
     assert first.path is not None
-    is_there = store.has(run) and not _is_run_again(everybody, order.again)
+    is_again = order.again in ("all", *(each.id for each in everybody))
     return Task(
         run,
         tuple(everybody),
@@ -232,10 +230,33 @@ def _task(run: str, everybody: Sequence[HandIn], order: Order, store: Store) -> 
         order.exercise_path,
         order.time,
         order.seed_of(first),
-        store.run(run) if is_there else None,
+        store.run(run) if store.has(run) and not is_again else None,
         Path(),
     )
 
 
-def _is_run_again(everybody: Sequence[HandIn], again: str) -> bool:
-    return again == "all" or any(each.id == again for each in everybody)
+def write_outputs(
+    out: Path,
+    entries: Sequence[Entry],
+    exercise: Exercise,
+    view: View = "student",
+    assignment: str = "",
+) -> list[Message]:
+    """Write gradebook and pages.
+
+    Args:
+        view: who reads the feedback: a student before, or after the exercise is over.
+        assignment: what Canvas calls it.
+
+    Returns:
+        Notes, as sentences.
+
+    Raises:
+        UsageError: one of them cannot be written.
+    """
+    page.write(entries, exercise, out)
+    links = {tr("Look at these together"): page.PAGE, tr("Gradebook"): CSV}
+    files.put(out / PAGE, html.render(entries, exercise, links).encode("utf-8"))
+    notes = write_gradebook(out, entries, exercise.title, view, assignment)
+    sources.write_exports(entries, exercise, out)
+    return notes

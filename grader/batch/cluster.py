@@ -18,11 +18,11 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from grader.batch import pool, remote
-from grader.batch.level import OfCluster
-from grader.batch.parcel import Unfit
-from grader.batch.task import Answer, Task
+from grader.batch.class_file import OfCluster
+from grader.batch.pool import Answer, Done, Task
+from grader.batch.store import own_versions
 from grader.errors import UsageError
-from grader.language.phrase import say, say_many
+from grader.message import Message, msg, msg_many
 from grader.requirements import require
 
 if TYPE_CHECKING:
@@ -41,10 +41,9 @@ MOST_BYTES = 1_000_000_000
 #: So long an answer may need from its worker to here, else we look again later [s].
 FETCH_S = 60.0
 LOOK_S = 1.0
-ADVICE = say("Install the same there as where the class is")
+ADVICE = msg("Install the same there as where the class is")
 
-Done = tuple[Task, Answer]
-Tell = Callable[[str], None]
+Tell = Callable[[Message], None]
 
 
 def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: OfCluster) -> Iterator[Done]:
@@ -75,17 +74,15 @@ def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: OfCluster) 
                 losses += 1
                 if losses > MOST_LOSSES:
                     raise UsageError(
-                        say(
-                            "the scheduler at {address} goes again and again: {why}",
-                            address=address,
-                            why=lost.args[0],
-                        )
+                        "the scheduler at {address} goes again and again: {why}",
+                        address=address,
+                        why=lost.args[0],
                     ) from None
                 waiting = chain(session.unfinished(), waiting)
             finally:
                 session.cancel()
         tell(
-            say(
+            msg(
                 "The scheduler at {address} is gone. Waiting for it, {minutes:g} minutes ...",
                 address=address,
                 minutes=AGAIN_S / 60,
@@ -116,19 +113,11 @@ def _connected(address: str, patience_s: float) -> Iterator[Client]:
         except OSError as error:  # also of one that goes as soon as it has come
             if time.monotonic() > end:
                 raise UsageError(
-                    say(
-                        "there is no scheduler at {address}: {why}",
-                        address=address,
-                        why=str(error),
-                    )
+                    "there is no scheduler at {address}: {why}", address=address, why=str(error)
                 ) from None
         except (ValueError, TypeError, RuntimeError) as error:
             raise UsageError(
-                say(
-                    "{address} is no address of a scheduler: {why}",
-                    address=address,
-                    why=str(error),
-                )
+                "{address} is no address of a scheduler: {why}", address=address, why=str(error)
             ) from None
         time.sleep(LOOK_S)
     try:
@@ -160,9 +149,8 @@ class _Session:
         self._client, self._waiting = client, waiting
         self._isolation, self._tell = isolation, tell
         self._underway: dict[Future, _Underway] = {}
-        self._homeless: list[Task] = []
         #: address -> why it gets no task
-        self._unfit: dict[str, str] = {}
+        self._unfit: dict[str, Message] = {}
         self._moved: list[Task] = []
         #: by key of a task
         self._moves: Counter[str] = Counter()
@@ -185,7 +173,7 @@ class _Session:
 
     def unfinished(self) -> list[Task]:
         """What was given to this scheduler, and did not come back."""
-        return [*(each.task for each in self._underway.values()), *self._homeless, *self._moved]
+        return [*(each.task for each in self._underway.values()), *self._moved]
 
     def cancel(self) -> None:
         """Have nothing underway any more."""
@@ -200,22 +188,22 @@ class _Session:
         """Refuse a cluster that would come to other verdicts, before anything is sent to it."""
         level = self._isolation.level
         found = self._ask(lambda: self._client.run(remote.offer, level, on_error="return"))
-        wanted = remote.own_versions()
-        offers = {}
+        wanted = own_versions()
+        offers: dict[str, remote.Offer] = {}
         for address, theirs in found.items():
-            worker = say("the worker at {address}", address=address)
-            if remote.is_offer(theirs):
-                remote.check_versions(wanted, theirs["versions"], worker)
+            worker = msg("the worker at {address}", address=address)
+            if isinstance(theirs, remote.Offer):
+                remote.check_versions(wanted, theirs.versions, worker)
                 offers[address] = theirs
             elif not isinstance(theirs, OSError):  # it has not just gone
                 raise _cannot_grade(worker, theirs)
-        self._isolation.choose(each["isolation"] for each in offers.values())
+        self._isolation.choose(each.isolation for each in offers.values())
         for address, theirs in offers.items():
-            if theirs["isolation"] != self._isolation.level and not theirs["again"]:
-                best = say("the best there is {level!r}", level=theirs["isolation"])
-                self._decline(address, theirs["why"] or best)
+            if theirs.isolation != self._isolation.level and not theirs.again:
+                best = msg("the best there is {level!r}", level=theirs.isolation)
+                self._decline(address, theirs.why or best)
 
-    def _decline(self, address: str, why: str) -> None:
+    def _decline(self, address: str, why: Message) -> None:
         """Give a worker no task any more.
 
         Raises:
@@ -225,7 +213,7 @@ class _Session:
             return
         self._unfit[address], level = why, self._isolation.level
         self._tell(
-            say(
+            msg(
                 "The worker at {address} takes no hand-in: this class is graded with isolation by "
                 "{level} ({why}).",
                 address=address,
@@ -246,8 +234,8 @@ class _Session:
         threads: int = sum(n for address, n in there.items() if address not in self._unfit)
         if bool(threads) != self._has_workers:
             self._has_workers = bool(threads)
-            none = say("The scheduler has no worker. Waiting for one ...")
-            self._tell(say("The scheduler has workers again.") if threads else none)
+            none = msg("The scheduler has no worker. Waiting for one ...")
+            self._tell(msg("The scheduler has workers again.") if threads else none)
         return threads
 
     def _fill(self) -> Iterator[Done]:
@@ -259,17 +247,17 @@ class _Session:
                 return
             try:
                 package = remote.packed(replace(task, isolation=self._isolation.level))
-            except Unfit:  # too large to be a submission: it is refused, not run
+            except remote.Unfit:  # too large to be a submission: it is refused, not run
                 yield task, self._here.done(task)
             except OSError as error:
-                yield task, Answer("failed", say("cannot be sent: {why}", why=str(error)))
+                yield task, Answer("failed", msg("cannot be sent: {why}", why=str(error)))
             else:
                 self._submit(task, package)
 
-    def _submit(self, task: Task, package: bytes) -> None:
+    def _submit(self, task: Task, package: remote.Shipment) -> None:
         import dask
 
-        self._homeless = [task]
+        self._moved.append(task)  # until it is underway: the scheduler may go meanwhile
         quiet = {"distributed.admin.large-graph-warning-threshold": f"{2 * MOST_BYTES}B"}
         to = self._fit() if self._unfit else None  # any: also one that comes later
         with dask.config.set(quiet):
@@ -277,8 +265,8 @@ class _Session:
             future = self._ask(
                 lambda: self._client.submit(remote.graded, package, pure=False, workers=to)
             )
-        self._underway[future] = _Underway(task, len(package), to)
-        self._homeless = []
+        self._underway[future] = _Underway(task, package.size, to)
+        self._moved.pop()
 
     def _move(self, future: Future) -> Iterator[Done]:
         """Have a task wait for others again; after `MOST_MOVES` it is over."""
@@ -307,45 +295,44 @@ class _Session:
         with suppress(TimeoutError, CancelledError):
             wait(list(self._underway), timeout=LOOK_S, return_when="FIRST_COMPLETED")
         if self._client.status not in ("running", "connecting"):
-            raise _SchedulerLost(say("the connection is closed"))
+            raise _SchedulerLost(msg("the connection is closed"))
         # lost: with the worker that had it, and done again elsewhere
         for future in [f for f in self._underway if f.status not in ("pending", "lost")]:
-            try:
-                answer = self._answer(future)
-            except remote.Declined as declined:
-                self._decline(declined.address, declined.message)
+            returned = self._returned(future)
+            if isinstance(returned, remote.Returned) and returned.unfit:
+                self._decline(returned.unfit, returned.answer.message)
                 yield from self._move(future)
-                continue
-            if answer is not None:
-                yield self._underway.pop(future).task, answer
+            elif returned is not None:
+                task = self._underway[future].task
+                answer = remote.unpack(returned, task)
+                del self._underway[future]
+                yield task, answer
         yield from self._move_stranded()
 
-    def _answer(self, future: Future) -> Answer | None:
-        """How a task has ended; None: look again."""
-        task = self._underway[future].task
+    def _returned(self, future: Future) -> object:
+        """What came of a task, for `remote.unpack`; None: look again."""
         if future.status == "error":
-            return self._failure(self._ask(future.exception))
+            return remote.Returned(self._failure(self._ask(future.exception)))
         try:
-            package = future.result(timeout=FETCH_S)
+            return future.result(timeout=FETCH_S)
         except TimeoutError:
             return None
         except Exception as error:
             if future.status in ("error", "lost", "pending"):
                 return None
             raise _SchedulerLost(str(error)) from None
-        return remote.unpack(package, task)
 
     def _failure(self, error: BaseException | None) -> Answer:
-        if isinstance(error, (UsageError, remote.Declined)):  # no task should go there
+        if isinstance(error, UsageError):  # no task should go there
             raise error
         if isinstance(error, ImportError):
-            raise _cannot_grade(say("a worker"), error)
+            raise _cannot_grade(msg("a worker"), error)
         from distributed import KilledWorker
 
         if isinstance(error, KilledWorker):
             return Answer("failed", _lost(error.allowed_failures + 1))
         what = f"{type(error).__name__}: {error}"
-        return Answer("failed", say("a worker failed: {what}", what=what))
+        return Answer("failed", msg("a worker failed: {what}", what=what))
 
     def _ask(self, call: Callable[[], Any]) -> Any:
         """What the scheduler answers.
@@ -361,15 +348,15 @@ class _Session:
             raise _SchedulerLost(str(error) or type(error).__name__) from None
 
 
-def _lost(times: int) -> str:
-    return say_many(
+def _lost(times: int) -> Message:
+    return msg_many(
         "{n:,} worker of the cluster ended while grading it",
         "{n:,} workers of the cluster ended while grading it",
         times,
     )
 
 
-def _cannot_grade(worker: str, why: object) -> UsageError:
+def _cannot_grade(worker: Message, why: object) -> UsageError:
     return UsageError(
-        say("{worker} cannot grade ({why}). {advice}", worker=worker, why=str(why), advice=ADVICE)
+        "{worker} cannot grade ({why}). {advice}", worker=worker, why=str(why), advice=ADVICE
     )

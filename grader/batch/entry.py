@@ -11,16 +11,65 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from datetime import datetime
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, Self
 
 from grader import files, strict_json
-from grader.batch.hand_in import HandIn
 from grader.errors import UsageError
-from grader.language import stored
-from grader.language.phrase import say
+from grader.exercise.verdict import Verdict
+from grader.message import NOTHING, Message, msg
 from grader.result import json_file
 from grader.result.result import RESULT, ROUNDING, Result
+from grader.strict_json import UNSTORED
+
+
+@dataclass(frozen=True)
+class Person:
+    """Somebody of a class.
+
+    Attributes:
+        id: as the course system has it; unique within a class.
+        name: as people read it; '' where nobody has said it.
+        columns: what else the roster or the export says of him, by the names of its columns: what a
+            course system's import asks for.
+    """
+
+    id: str
+    name: str = ""
+    columns: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class HandIn:
+    """The newest attempt of a student or a group, or that there is none.
+
+    Attributes:
+        id: names its folder in the output: made of letters, digits and `._@+-` alone, unique within
+            a class whatever the file system does with capital letters.
+        people: who gets its points; one, or the members of a group.
+        path: the file or the folder that is graded; None where nothing can be. It is that of one
+            machine, and in no file.
+        filename: what it was called before the export gave it another name.
+        attempt: counts from 1.
+        at: when it was handed in, with its time zone; None where the export does not tell.
+        problem: why there is nothing to grade, as a sentence for teacher and student.
+    """
+
+    id: str
+    people: tuple[Person, ...]
+    path: Path | None = field(default=None, metadata=UNSTORED)
+    filename: str = ""
+    attempt: int = 1
+    at: datetime | None = None
+    problem: Message = NOTHING
+
+    @property
+    def name(self) -> str:
+        """For people: the names, else the ids."""
+        return ", ".join(person.name or person.id for person in self.people)
+
 
 SCHEMA = "turtlesim-grader/entry/v1"
 ENTRY = "entry.json"
@@ -50,7 +99,7 @@ class Entry:
     state: State
     max_score: float
     key: str = ""
-    message: str = ""
+    message: Message = NOTHING
     exercise_sha256: str = ""
     result: Result | None = field(default=None, metadata=strict_json.UNSTORED)
     folder: Path = field(default=Path(), metadata=strict_json.UNSTORED)
@@ -67,15 +116,18 @@ class Entry:
             return None
         return 0.0 if self.result is None else self.result.final
 
+    @cached_property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        """Those of its result, by check; none without one."""
+        return {} if self.result is None else {each.check: each for each in self.result.verdicts}
+
     def put(self) -> None:
         """Write entry.json; the result is there already.
 
         Raises:
             UsageError: it cannot be written.
         """
-        data = {"schema": SCHEMA, **strict_json.to_json(self, strict_json.OURS)}
-        if phrases := stored.phrases_in((self.message, self.hand_in.problem)):
-            data["phrases"] = phrases
+        data = {"schema": SCHEMA, **json_file.with_phrases(self)}
         files.put(self.folder / ENTRY, json_file.text(data).encode("utf-8"))
 
     @classmethod
@@ -88,7 +140,7 @@ class Entry:
         path = folder / ENTRY
         entry: Self = json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
         if entry.id != folder.name:
-            raise UsageError(say("{path} is that of another hand-in", path=str(path)))
+            raise UsageError("{path} is that of another hand-in", path=str(path))
         if entry.state == "judged":
             path = folder / RESULT
             data = json_file.read(path, is_ours=True)
@@ -104,28 +156,22 @@ class Entry:
         """
         whose, origin = result.handed_in, result.provenance
         if whose is not None and whose.id != self.id:
-            raise ValueError(say("is that of another hand-in"))
+            raise ValueError(msg("is that of another hand-in"))
         is_same = origin is None or origin.judged.exercise_sha256 == self.exercise_sha256
         if not is_same or abs(result.max_score - self.max_score) > ROUNDING:
-            raise ValueError(say("is that of another exercise"))
+            raise ValueError(msg("is that of another exercise"))
 
     @classmethod
     def _from_json(cls, data: Mapping[str, Any]) -> Self:
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             raise ValueError(
-                say("is no entry of a class: expected the schema {schema}", schema=SCHEMA)
+                msg("is no entry of a class: expected the schema {schema}", schema=SCHEMA)
             )
-        try:
-            entry = json_file.typed(
-                cls, {name: data[name] for name in data if name not in ("schema", "phrases")}
-            )
-            told = (entry.message, entry.hand_in.problem)
-            message, problem = stored.restored(told, data.get("phrases", {}))
-        except (KeyError, TypeError, AttributeError) as error:
-            raise ValueError(say("is damaged: {why}", why=str(error))) from None
+        fields = {name: data[name] for name in data if name not in ("schema", "phrases")}
+        entry = json_file.typed(cls, fields, data.get("phrases"))
         if not re.fullmatch("[0-9a-f]*", entry.key):  # it names a folder
-            raise ValueError(say("is damaged: its {name} is {value}", name="key", value=entry.key))
-        return replace(entry, message=message, hand_in=replace(entry.hand_in, problem=problem))
+            raise ValueError(msg("is damaged: its {name} is {value}", name="key", value=entry.key))
+        return entry
 
 
 def entries(out: Path) -> list[Entry]:

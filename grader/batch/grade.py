@@ -1,41 +1,103 @@
 """One task: run what was handed in, unless that was done; judge it for everybody who handed it in.
 
-Everything comes into the task's own folder. A worker does this (`grader.batch.worker`), on this
+Everything comes into the task's own folder. A worker does this (`grader.batch.pool`), on this
 machine or on another one.
 """
 
 from __future__ import annotations
 
+import errno
 import os
+import queue
 import shutil
+import sys
+import threading
+import traceback
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import IO
 
-from grader import files, grading, judging, scratch
-from grader.batch.entry import Entry
-from grader.batch.find.joining import NOTHING, UNCLEAR
-from grader.batch.hand_in import HandIn
+from grader import files, grading, judging, scratch, strict_json
+from grader.batch.entry import Entry, HandIn, State
+from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR
 from grader.batch.page.thumb import THUMB, thumb
+from grader.batch.pool import Answer, Ending, Task
 from grader.batch.similar import behaviour, sources
 from grader.batch.store import ERROR, RECORDING, RUN, STUDENTS
-from grader.batch.task import Task
-from grader.errors import RecordingError, SubmissionError, UsageError
+from grader.errors import (
+    CheckFailed,
+    GraderError,
+    NotNow,
+    NotOffered,
+    RecordingError,
+    SubmissionError,
+    UsageError,
+)
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
+from grader.message import NOTHING, Message, msg
 from grader.recording.recording import Recordings
 from grader.reports import Report, render
 from grader.result import json_file
 from grader.result.error import ErrorResult
-from grader.result.handed_in import HandedIn
-from grader.result.result import ARTIFACTS, PAGE, RESULT, Result
+from grader.result.result import PAGE, RESULT, HandedIn, Result, artifacts, put_artifacts
 from grader.run.opening import open_submission
-from grader.submission.opening import Submission
-from grader.text import plain_phrase
+from grader.run.processes import levels, started_process
+from grader.submission.start import Submission
+from grader.text import plain
+from grader.translations import use
 
 #: Where a student's traceback says that the hand-in lies.
 SHOWN = "/submission"
+#: What a process may have run out of: another one, or the same a little later, may have it.
+SCARCE = (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
+#: How a task ends with an error, the first that fits.
+_STATES: dict[type[GraderError], Ending] = {
+    CheckFailed: "exercise",
+    NotOffered: "unfit",
+    NotNow: "again",
+    GraderError: "failed",
+}
+
+
+def serve() -> None:
+    """Do what is asked for on standard input, a task a line, until that ends."""
+    # what anything prints by mistake must not look like an answer
+    answers = os.fdopen(os.dup(1), "wb", buffering=0)
+    os.dup2(2, 1)
+    tasks: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks), daemon=True).start()
+    started_process.adopt_orphans()
+    while True:
+        task = strict_json.of_line(Task, tasks.get())
+        answers.write(strict_json.line(done(task)))
+
+
+def done(task: Task) -> Answer:
+    """Do a task; whatever goes wrong is an answer."""
+    try:
+        use(task.language)
+        levels.only(task.isolation)
+        make(task)
+    except GraderError as error:
+        state = next(state for kind, state in _STATES.items() if isinstance(error, kind))
+        return Answer(state, error.message.map_texts(plain))
+    except Exception as error:
+        traceback.print_exc()
+        what = "".join(traceback.format_exception_only(error)).strip()
+        is_scarce = isinstance(error, OSError) and error.errno in SCARCE
+        return Answer(
+            "again" if is_scarce else "failed", msg("unexpected: {what}", what=plain(what))
+        )
+    return Answer("done")
+
+
+def _listen(pipe: IO[bytes], tasks: queue.SimpleQueue[bytes]) -> None:
+    for line in pipe:
+        tasks.put(line)
+    os._exit(0)
 
 
 def make(task: Task) -> None:
@@ -51,11 +113,10 @@ def make(task: Task) -> None:
     found = _loaded(task) or _run(task, exercise)
     for hand_in in task.hand_ins:
         folder = task.into / STUDENTS / hand_in.id
-        files.make_folder(folder)
         if isinstance(found, Recordings):
             _judge(found, exercise, hand_in, task, folder)
         else:
-            _refuse(found, exercise, hand_in, task.key, folder)
+            _put(hand_in, exercise, folder, "unusable", found, task.key)
 
 
 @lru_cache(maxsize=1)
@@ -66,18 +127,16 @@ def _exercise(name_or_path: str) -> Exercise:
 
 def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
     """Fill the folder of somebody who has handed in nothing that can be graded."""
-    files.make_folder(folder)
-    state = "nothing" if hand_in.problem in (NOTHING, UNCLEAR) else "unusable"
-    _entry(hand_in, exercise, folder, state, message=hand_in.problem).put()
+    is_nothing = hand_in.problem in (NOT_HANDED_IN, UNCLEAR)
+    _put(hand_in, exercise, folder, "nothing" if is_nothing else "unusable", hand_in.problem)
 
 
-def failed(hand_in: HandIn, exercise: Exercise, folder: Path, message: str) -> None:
+def failed(hand_in: HandIn, exercise: Exercise, folder: Path, message: Message) -> None:
     """Fill the folder of somebody whose hand-in the grader could not judge."""
-    files.make_folder(folder)
-    _entry(hand_in, exercise, folder, "failed", message=plain_phrase(message)).put()
+    _put(hand_in, exercise, folder, "failed", message.map_texts(plain))
 
 
-def _run(task: Task, exercise: Exercise) -> Recordings | str:
+def _run(task: Task, exercise: Exercise) -> Recordings | Message:
     """What a run has left, which is saved; or why there is nothing to run."""
     place = task.into / RUN
     files.make_folder(place)
@@ -123,7 +182,7 @@ def _without_place(submission: Submission) -> Submission:
     return replace(submission, copy=replace(copy, prefix=str(copy.folder), shown=SHOWN))
 
 
-def _loaded(task: Task) -> Recordings | str | None:
+def _loaded(task: Task) -> Recordings | Message | None:
     """What an earlier run has left; None where that is nothing, or nothing that can be read.
 
     Raises:
@@ -149,35 +208,29 @@ def _judge(
     """Everything about a student; the recording itself is linked when it comes to its place."""
     result = judging.judge(recordings, exercise, submission=hand_in.name)
     whose = HandedIn.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
-    result = replace(result, artifacts=dict(ARTIFACTS), handed_in=whose)
+    result = replace(result, artifacts=artifacts(recordings.nominal), handed_in=whose)
+    files.make_folder(folder)
     result.put(folder / RESULT)
     if not task.judge_only:
         _show(recordings, result, folder)
-    _entry(hand_in, exercise, folder, "judged", task.key).put()
+    _put(hand_in, exercise, folder, "judged", key=task.key)
 
 
 def _show(recordings: Recordings, result: Result, folder: Path) -> None:
     """What people look at."""
-    nominal = recordings.nominal
-    files.put(folder / ARTIFACTS["canvas"], nominal.png["window"])
-    files.put(folder / ARTIFACTS["output"], nominal.output.encode("utf-8", "replace"))
+    put_artifacts(recordings.nominal, folder)
     page = render("html", [Report.of(result, folder, recordings, "whole")])
     files.put(folder / PAGE, page.encode("utf-8"))
 
 
-def _refuse(message: str, exercise: Exercise, hand_in: HandIn, key: str, folder: Path) -> None:
-    _entry(hand_in, exercise, folder, "unusable", key, message).put()
-
-
-def _entry(
-    hand_in: HandIn, exercise: Exercise, folder: Path, state: str, key: str = "", message: str = ""
-) -> Entry:
-    return Entry(
-        hand_in,
-        state,  # type: ignore[arg-type]
-        exercise.max_score,
-        key,
-        message,
-        exercise.sha256,
-        folder=folder,
-    )
+def _put(
+    hand_in: HandIn,
+    exercise: Exercise,
+    folder: Path,
+    state: State,
+    message: Message = NOTHING,
+    key: str = "",
+) -> None:
+    files.make_folder(folder)
+    score, digest = exercise.max_score, exercise.sha256
+    Entry(hand_in, state, score, key, message, digest, folder=folder).put()

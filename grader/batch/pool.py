@@ -1,22 +1,89 @@
-"""Several workers at once on this machine.
+"""Several workers at once on this machine: processes that each grade one task after another.
 
-One that dies takes nothing with it: its task goes to a new one, once more, and is then told as
-failed. So does the task of one that cannot confine it now, or not as asked.
+A task goes as a line of JSON to a process's standard input, its answer comes as a line from what
+was its standard output. A process ends when nobody is there to ask it any more, in the middle of a
+task too: whoever is killed leaves nothing behind that goes on working. One that dies takes nothing
+with it: its task goes to a new one, once more, and is then told as failed. So does the task of one
+that cannot confine it now, or not as asked.
 """
 
 from __future__ import annotations
 
-import queue
 import signal
 import subprocess
 import sys
 import threading
 from collections.abc import Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
-from grader.batch.task import Answer, Task
-from grader.language.phrase import say
+from grader import strict_json
+from grader.batch.entry import HandIn
+from grader.message import NOTHING, Message, Text, msg
+from grader.recording.recording import Clock
+from grader.translations import current
+
+
+@dataclass(frozen=True)
+class Task:
+    """One content, to be run and judged for everybody who has handed it in.
+
+    Attributes:
+        key: the run's; see `grader.batch.store`.
+        hand_ins: everybody's; their paths are not carried along.
+        path: what was handed in; None where nothing is run any more.
+        filename: what it was called there.
+        exercise: its name or path.
+        time: the clock that it lives by.
+        seed: chooses where the varied runs start; None takes the exercise's own.
+        run: the folder of the run, if it is made already; one that cannot be read is made anew.
+        into: an empty folder for what is made; see `grader.batch.store`.
+        judge_only: whether results alone are asked for: no pages, no pictures.
+        isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
+        language: of the pages; that of whoever asks.
+    """
+
+    key: str
+    hand_ins: tuple[HandIn, ...]
+    path: Path | None
+    filename: str
+    exercise: str
+    time: Clock
+    seed: int | None
+    run: Path | None
+    into: Path
+    judge_only: bool = False
+    isolation: str = ""
+    language: str = field(default_factory=current)
+
+
+Ending = Literal["done", "failed", "exercise", "again", "unfit"]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """How a task ended.
+
+    Attributes:
+        state: "done": everything is in its folder. "failed": the grader could not; "exercise":
+            the exercise's own code failed; "again": it could not now, but may the next time;
+            "unfit": it cannot confine submissions as the task asks.
+        message: why.
+    """
+
+    state: Ending
+    message: Message = NOTHING
+
+    @property
+    def why(self) -> Message:
+        """Why it is not done, for people."""
+        if self.state == "exercise":
+            return msg("The exercise's own code failed: {why}", why=self.message)
+        return self.message
+
 
 #: No task takes longer, unless the grader hangs [s].
 MOST_S = 3600.0
@@ -25,7 +92,7 @@ _TRIES = 2
 _COMMAND = (
     *("-P", "-c"),
     "import sys; sys.argv[1] in sys.path or sys.path.insert(0, sys.argv[1]); "
-    "from grader.batch import worker; worker.main()",
+    "from grader.batch import grade; grade.serve()",
     str(Path(__file__).parents[2]),
 )
 
@@ -37,67 +104,33 @@ def work(tasks: Iterable[Task], jobs: int, patience_s: float = MOST_S) -> Iterat
 
     A task is taken from the iterable when a process is free. The processes end with the iterator.
     """
-    waiting = _Waiting(tasks)
-    over: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
-    workers = [_Worker(waiting, over, patience_s) for _ in range(jobs)]
+    waiting = iter(tasks)
+    processes = [Process(patience_s) for _ in range(jobs)]
+    idle = list(processes)
+    running: dict[Future[Answer], tuple[Task, Process]] = {}
+    over: list[Done] = []
     try:
-        for worker in workers:
-            worker.start()
-        working = len(workers)
-        while working:
-            done = over.get()
-            if isinstance(done, BaseException):
-                raise done
-            if done is None:
-                working -= 1
-            else:
-                yield done
+        with ThreadPoolExecutor(jobs) as threads:
+            try:
+                while True:
+                    while idle and (task := next(waiting, None)) is not None:
+                        process = idle.pop()
+                        running[threads.submit(process.done, task)] = task, process
+                    yield from over
+                    if not running:
+                        return
+                    over = []
+                    for future in wait(running, return_when=FIRST_COMPLETED).done:
+                        task, process = running.pop(future)
+                        idle.append(process)
+                        over.append((task, future.result()))
+            finally:
+                if running:
+                    for process in processes:
+                        process.stop()
     finally:
-        for worker in workers:
-            worker.stop()
-        for worker in workers:
-            worker.join()
-
-
-class _Waiting:
-    """Tasks that several threads take."""
-
-    def __init__(self, tasks: Iterable[Task]) -> None:
-        self._tasks = iter(tasks)
-        self._lock = threading.Lock()
-
-    def take(self) -> Task | None:
-        """The next one."""
-        with self._lock:
-            return next(self._tasks, None)
-
-
-class _Worker(threading.Thread):
-    """A process, and who waits for its answers."""
-
-    def __init__(
-        self,
-        waiting: _Waiting,
-        over: queue.SimpleQueue[Done | BaseException | None],
-        patience_s: float,
-    ) -> None:
-        super().__init__(daemon=True)
-        self._waiting, self._over = waiting, over
-        self._process = Process(patience_s)
-
-    def run(self) -> None:
-        try:
-            while not self._process.is_over and (task := self._waiting.take()) is not None:
-                self._over.put((task, self._process.done(task)))
-        except BaseException as error:  # in whoever makes tasks: for the thread that waits
-            self._over.put(error)
-        finally:
-            self._process.end()
-            self._over.put(None)
-
-    def stop(self) -> None:
-        """End it, and whatever it does."""
-        self._process.stop()
+        for process in processes:
+            process.end()
 
 
 class Process:
@@ -121,7 +154,7 @@ class Process:
 
     def done(self, task: Task) -> Answer:
         """Have a task done; whatever becomes of the process is an answer."""
-        ended = ""
+        ended: Text = ""
         answer = None
         for _ in range(_TRIES):
             if self.is_over:
@@ -129,7 +162,7 @@ class Process:
             line = self._ask(task)
             answer = None
             with suppress(ValueError):
-                answer = Answer.from_line(line)
+                answer = strict_json.of_line(Answer, line)
                 if answer.state not in ("again", "unfit"):
                     return answer
             ended = self.end()
@@ -137,7 +170,7 @@ class Process:
             return answer
         return Answer(
             "failed",
-            say("the process that graded it ended ({how}), {times} times", how=ended, times=_TRIES),
+            msg("the process that graded it ended ({how}), {times} times", how=ended, times=_TRIES),
         )
 
     def _ask(self, task: Task) -> bytes:
@@ -153,14 +186,14 @@ class Process:
         patience.start()
         try:
             with suppress(OSError):
-                process.stdin.write(task.to_line())
+                process.stdin.write(strict_json.line(task))
                 process.stdin.flush()
                 return process.stdout.readline()
             return b""
         finally:
             patience.cancel()
 
-    def end(self) -> str:
+    def end(self) -> Text:
         """Have it gone; how it ended."""
         with self._lock:
             process, self._process = self._process, None
@@ -175,7 +208,9 @@ class Process:
                 process.wait(10.0)  # it ends by itself where nobody asks any more
         process.kill()
         code = process.wait()
-        return signal.Signals(-code).name if code < 0 else say("exit code {code}", code=str(code))
+        if code < 0:
+            return signal.Signals(-code).name
+        return msg("exit code {code}", code=str(code))
 
 
 def start() -> subprocess.Popen[bytes]:

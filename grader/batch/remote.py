@@ -1,66 +1,104 @@
 """One task on another machine: everything it needs goes there, everything it made comes back.
 
-What travels is a parcel (`grader.batch.parcel`), with task and answer as JSON in it. `graded` is
-what a cluster calls.
+What travels is plain data, which dask serialises. `graded` is what a cluster calls. A submission's
+links go as links: a run sees to where they lead. Of what comes back nothing is taken but what was
+asked for.
 """
 
 from __future__ import annotations
 
 import asyncio
-import errno
-import json
 import os
 import socket
 import threading
-from collections.abc import Mapping
-from dataclasses import replace
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePosixPath
+from typing import Literal, NamedTuple
 
-from grader import files, scratch, strict_json, versions
-from grader.batch import parcel, pool
-from grader.batch.parcel import Unfit
-from grader.batch.store import RUN, STUDENTS
-from grader.batch.task import Answer, Task
-from grader.errors import GraderFailure, NotNow, NotOffered, UsageError
+from grader import files, scratch
+from grader.batch import pool
+from grader.batch.pool import Answer, Task
+from grader.batch.store import RUN, STUDENTS, below, own_versions
+from grader.errors import GraderFailure, NotNow, UsageError
 from grader.exercise import places
 from grader.exercise.places import CHECKS
-from grader.language.phrase import Phrase, joined, reason, say
+from grader.message import NOTHING, Message, joined, msg, reason
 from grader.run.processes import levels
-from grader.submission.folder import is_generated, is_junk
+from grader.submission.folder import UNREADABLE
 
-TASK, ANSWER, NEEDS = "task.json", "answer.json", "needs.json"
+#: Of all that travels with a task [bytes]: more than a submission may have. And of its files,
+#: folders and links: likewise.
+MOST_BYTES, MOST_ENTRIES = 250_000_000, 20_000
 #: Where all else lies on the worker, below a folder of the task's own.
 SUBMISSION, EXERCISE, STORED, MADE = map(Path, ("submission", "exercise", "stored", "made"))
-
-#: What is wrong with a name in a parcel, and not with the disk.
-_OF_NAMES = (
-    *(errno.ENAMETOOLONG, errno.ENOTDIR, errno.EISDIR, errno.ENOTEMPTY),
-    *(errno.EEXIST, errno.ENOENT, errno.EINVAL),
-)
 
 _of_thread = threading.local()
 
 
-class Declined(NotOffered):
-    """A worker of a cluster cannot confine submissions as all of the class are."""
-
-    def __init__(self, message: str, address: str = "") -> None:
-        super().__init__(message)
-        self.address = address
+class Unfit(Exception):
+    """It is too large to travel; the text says how much may."""
 
 
-def own_versions() -> dict[str, str]:
-    """What has to be the same on all machines that grade one class."""
-    return {
-        "grader": versions.grader(),
-        "python": versions.python(),
-        "rclpy": versions.rclpy(),
-        "ros_distro": versions.ros_distro(),
-    }
+class Shipped(NamedTuple):
+    """Something in a folder: what is in a file, or where a link leads."""
+
+    kind: Literal["file", "program", "link", "folder"]
+    data: bytes = b""
 
 
-def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: str) -> None:
+@dataclass(frozen=True)
+class Shipment:
+    """A task that travels.
+
+    Attributes:
+        task: with paths below the folder that the files will lie in.
+        files: by their names in that folder; a folder comes before what is in it.
+        versions: what the worker has to have, from `own_versions`.
+    """
+
+    task: Task
+    files: Mapping[str, Shipped]
+    versions: Mapping[str, str] = field(default_factory=own_versions)
+
+    @property
+    def size(self) -> int:
+        """Of its files [bytes]."""
+        return sum(len(each.data) for each in self.files.values())
+
+
+@dataclass(frozen=True)
+class Returned:
+    """How a task ended, and what came of it.
+
+    Attributes:
+        files: by their names in the task's folder.
+        unfit: the worker that cannot confine submissions as all of the class are; others may.
+    """
+
+    answer: Answer
+    files: Mapping[str, Shipped] = field(default_factory=dict)
+    unfit: str = ""
+
+
+@dataclass(frozen=True)
+class Offer:
+    """What a worker of a cluster says of its machine.
+
+    Attributes:
+        versions: from `own_versions`.
+        isolation: the level that it offers; '' for none.
+        why: it does not offer more.
+        again: whether it may, another time.
+    """
+
+    versions: Mapping[str, str]
+    isolation: str = ""
+    why: Message = NOTHING
+    again: bool = False
+
+
+def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: Message) -> None:
     """Refuse to grade with others than those of whoever asks.
 
     Args:
@@ -71,51 +109,36 @@ def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: 
         UsageError: they are not the same.
     """
     differences = [
-        say(
+        msg(
             "{name} {there}, and {here} where the class is",
             name=name,
-            there=found.get(name) or say("none"),
-            here=value or say("none"),
+            there=found.get(name) or msg("none"),
+            here=value or msg("none"),
         )
         for name, value in wanted.items()
         if found.get(name) != value
     ]
     if differences:
         raise UsageError(
-            say(
-                "{worker} has other versions: {differences}. Install the same on both",
-                worker=worker,
-                differences=joined(differences, "; "),
-            )
+            "{worker} has other versions: {differences}. Install the same on both",
+            worker=worker,
+            differences=joined(differences, "; "),
         )
 
 
-def is_offer(told: object) -> bool:
-    """Whether something is what `offer` says."""
-    return (
-        isinstance(told, dict)
-        and isinstance(told.get("versions"), dict)
-        and told.get("isolation") in ("", *levels.LEVELS)
-        and isinstance(told.get("why"), str)
-        and isinstance(told.get("again"), bool)
-    )
-
-
-async def offer(level: str) -> dict[str, Any]:
-    """What a worker of a cluster says of its machine: `versions`, `isolation`, and `why` not more.
+async def offer(level: str) -> Offer:
+    """What this machine offers, as a worker of a cluster.
 
     Args:
         level: the one that it should offer; '': its best. See `grader.run.processes.levels`.
     """
-    told = {"versions": own_versions(), "isolation": "", "why": "", "again": False}
     try:  # in a thread: the worker has more to do meanwhile
-        told["isolation"] = (await asyncio.to_thread(levels.here, level)).level
+        return Offer(own_versions(), (await asyncio.to_thread(levels.here, level)).level)
     except GraderFailure as error:
-        told |= {"why": str(error.message), "again": isinstance(error, NotNow)}
-    return told
+        return Offer(own_versions(), "", error.message, isinstance(error, NotNow))
 
 
-def packed(task: Task) -> bytes:
+def packed(task: Task) -> Shipment:
     """A task with what was handed in, the run if there is one and, unless installed, the exercise.
 
     Raises:
@@ -134,89 +157,127 @@ def packed(task: Task) -> bytes:
     if task.run is not None:
         sent = replace(sent, run=Path(STORED, RUN))
         trees[str(sent.run)] = task.run
-    texts = {TASK: sent.to_line(), NEEDS: json.dumps(own_versions()).encode()}
-    return parcel.pack(texts, trees, _is_left_out)
+    return Shipment(sent, _read(trees))
 
 
-def graded(package: bytes) -> bytes:
+def graded(package: Shipment) -> Returned:
     """Do a task that was packed, in a process of its own; returns what `unpack` takes.
 
     Raises:
         UsageError: this machine is not fit for it; no other task should come here either.
-        Declined: the same; others may be fit.
     """
+    worker = msg("the worker {name}", name=socket.gethostname())
+    check_versions(package.versions, own_versions(), worker)
     with scratch.make_folder() as folder:
-        worker = say("the worker {name}", name=Phrase(socket.gethostname()))
         try:
-            texts = parcel.unpack(package, folder, "tar")
+            _write(package.files, folder)
         except OSError as error:
             why = error.strerror or str(error)
-            said = say("{worker} has no room for it: {why}", worker=worker, why=why)
-            return parcel.pack({ANSWER: Answer("failed", said).to_line()}, {})
-        needs = strict_json.loads(texts[NEEDS].decode())
-        check_versions(needs, own_versions(), worker)
-        task = _here(Task.from_line(texts[TASK]), folder)
+            said = msg("{worker} has no room for it: {why}", worker=worker, why=why)
+            return Returned(Answer("failed", said))
+        task = _here(package.task, folder)
         answer = _process().done(task)
         if answer.state == "unfit":
-            raise Declined(answer.message, _address())
+            return Returned(answer, unfit=_address())
         try:
-            return parcel.pack({ANSWER: answer.to_line()}, _made(task))
+            return Returned(answer, _read({"": task.into}, lambda _: False))
         except Unfit as unfit:
-            why = say("what came of it cannot be sent: {why}", why=reason(unfit))
-            answer = Answer("failed", why)
-            return parcel.pack({ANSWER: answer.to_line()}, {})
+            lost = msg("what came of it cannot be sent: {why}", why=reason(unfit))
+            return Returned(Answer("failed", lost))
 
 
-def unpack(package: object, task: Task) -> Answer:
+def unpack(returned: object, task: Task) -> Answer:
     """Put what `graded` has made into a task's folder; how it ended.
 
     Raises:
         UsageError: it cannot be written.
     """
+    if not isinstance(returned, Returned):
+        why = msg("damaged: {why}", why=type(returned).__name__)
+        return Answer("failed", msg("what a worker sent back cannot be used: {why}", why=why))
+    asked = [RUN, *(f"{STUDENTS}/{each.id}" for each in task.hand_ins)]
+    for name, sent in returned.files.items():
+        path = PurePosixPath(name)
+        is_asked = name in (".", STUDENTS) or any(path.is_relative_to(each) for each in asked)
+        if not is_asked or ".." in path.parts or sent.kind == "link":
+            return Answer("failed", msg("a worker sent back what nobody has asked for"))
     try:
-        if not isinstance(package, bytes):
-            raise Unfit(say("damaged: {why}", why=type(package).__name__))
-        texts = parcel.unpack(package, task.into)
-        answer = Answer.from_line(texts.get(ANSWER, b""))
-    except (Unfit, ValueError) as error:
-        why = reason(error)
+        _write(returned.files, task.into)
     except OSError as error:
-        why = error.strerror or str(error)
-        if error.errno not in _OF_NAMES:
-            raise files.cannot_write(task.into, why) from None
-    else:
-        return _as_asked(answer, task)
-    return Answer("failed", say("what a worker sent back cannot be used: {why}", why=why))
-
-
-def _as_asked(answer: Answer, task: Task) -> Answer:
-    """The answer; a failure where more lies in the task's folder than was asked for."""
-    expected = {RUN, *(f"{STUDENTS}/{each.id}" for each in task.hand_ins)}
-    if answer.state == "done" and not _names(task.into) <= expected:
-        return Answer("failed", say("a worker sent back what nobody has asked for"))
-    return answer
+        raise files.cannot_write(task.into, error.strerror or str(error)) from None
+    return returned.answer
 
 
 def _here(task: Task, folder: Path) -> Task:
     """The same task with the places of this machine."""
+    assert task.path is not None
     (folder / MADE).mkdir()
     is_sent = Path(task.exercise).is_relative_to(EXERCISE)
     return replace(
         task,
-        path=None if task.path is None else folder / task.path,
+        path=folder / task.path,
         exercise=str(folder / task.exercise) if is_sent else task.exercise,
         run=None if task.run is None else folder / task.run,
         into=folder / MADE,
     )
 
 
-def _is_left_out(path: Path) -> bool:
-    """Whether something is neither handed in nor part of an exercise, as far as a run sees."""
-    if is_junk(path.name):
-        return True
-    if os.path.islink(path):  # noqa: PTH114  where the path is too long, it is none
-        return False
-    return not os.access(path, os.R_OK) or (path.is_dir() and is_generated(path))
+def _read(
+    trees: Mapping[str, Path], is_left_out: Callable[[Path], bool] | None = None
+) -> dict[str, Shipped]:
+    """Files, folders and links below some folders, or files; by the names that these get.
+
+    Raises:
+        Unfit: they are too large.
+        OSError: something cannot be read.
+    """
+    found: dict[str, Shipped] = {}
+    left = MOST_BYTES
+    for tree, top in trees.items():
+        for name, path in ((".", top), *below(top, is_left_out)):
+            status = path.lstat()
+            left -= 0 if path.is_dir() else status.st_size
+            if left < 0 or len(found) >= MOST_ENTRIES:
+                raise Unfit(
+                    msg(
+                        "it has more than {megabytes:g} MB, or more than {files:,} files",
+                        megabytes=MOST_BYTES / 1e6,
+                        files=MOST_ENTRIES,
+                    )
+                )
+            where = PurePosixPath(tree, name).as_posix()
+            if path.is_symlink():
+                found[where] = Shipped("link", os.fsencode(path.readlink()))
+            elif path.is_dir():
+                found[where] = Shipped("folder")
+            elif path.is_file():  # no pipe, socket or device: it would be waited for
+                kind: Literal["file", "program"] = "program" if status.st_mode & 0o100 else "file"
+                found[where] = Shipped(kind, path.read_bytes())
+    return found
+
+
+def _write(sent: Mapping[str, Shipped], folder: Path) -> None:
+    """Put what `_read` has found into a folder.
+
+    Raises:
+        OSError: something cannot be written.
+    """
+    for name, each in sent.items():
+        path = folder / name
+        try:
+            if each.kind == "folder":
+                path.mkdir(parents=True, exist_ok=True)
+                continue
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if each.kind == "link":
+                path.symlink_to(os.fsdecode(each.data))
+                continue
+            path.write_bytes(each.data)
+            if each.kind == "program":
+                path.chmod(0o755)
+        except OSError as error:  # its path may be longer here than there; a run leaves it out, too
+            if error.errno not in UNREADABLE:
+                raise
 
 
 def _process() -> pool.Process:
@@ -236,13 +297,3 @@ def _address() -> str:
     from distributed import get_worker
 
     return str(get_worker().address)
-
-
-def _made(task: Task) -> dict[str, Path]:
-    return {name: task.into / name for name in sorted(_names(task.into))}
-
-
-def _names(into: Path) -> set[str]:
-    """What is in a task's folder: the run, and each student's folder."""
-    students = {f"{STUDENTS}/{path.name}" for path in into.glob(f"{STUDENTS}/*")}
-    return students | {path.name for path in into.iterdir() if path.name != STUDENTS}

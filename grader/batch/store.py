@@ -4,7 +4,7 @@
                         everybody who has handed it in has too; or error.json
     submissions/ID/     what came of it for one hand-in; see `grader.batch.entry`
     aside/ID/           what is no longer among the submissions
-    before/N/           what a regrade has replaced; see `grader.batch.regrade.applying`
+    before/N/           what a regrade has replaced; see `grader.batch.regrade.judging`
     .unfinished/        what is being made; whatever an interrupted call has left there goes
 
 A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
@@ -12,21 +12,26 @@ A worker fills a folder below .unfinished; only `grader batch` itself moves it t
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import uuid
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from itertools import islice
 from pathlib import Path
 
-from grader import files
+from grader import content, files, versions
 from grader.batch.class_file import CLASS
 from grader.batch.entry import ENTRY, SUBMISSIONS
 from grader.batch.page.thumb import THUMB
 from grader.batch.similar.behaviour import NAME as BEHAVIOUR
 from grader.batch.similar.sources import SOURCE
-from grader.language.phrase import Phrase, say
+from grader.exercise.exercise import Exercise
+from grader.message import msg
+from grader.recording.recording import Clock
 from grader.removal import remove
+from grader.submission.folder import MAX_ENTRIES, is_generated, is_junk
 
 STORE, UNFINISHED, ASIDE, BEFORE = "store", ".unfinished", "aside", "before"
 #: What a worker leaves: one run, and a folder for each hand-in.
@@ -131,18 +136,18 @@ def _check_is_ours(out: Path) -> None:
     """Refuse a folder in which somebody else's files have our names, or links lead out of it."""
     for name in (STORE, SUBMISSIONS, ASIDE, BEFORE):
         if (out / name).is_symlink():
-            raise files.cannot_write(out / name, say("it is a link; expected a folder, or nothing"))
+            raise files.cannot_write(out / name, msg("it is a link; expected a folder, or nothing"))
     if (out / CLASS).is_file():
         return
     for name in (STORE, SUBMISSIONS):
         if (out / name).is_dir() and next((out / name).iterdir(), None) is not None:
             raise files.cannot_write(
                 out,
-                say(
+                msg(
                     "it is no folder of a class ({file} is missing), and there is a folder {name} "
                     "in it already. Give another --out. Nothing was changed.",
                     file=CLASS,
-                    name=Phrase(name),
+                    name=name,
                 ),
             )
 
@@ -187,3 +192,79 @@ def _link(source: str, target: str) -> str:
     except OSError:
         shutil.copy2(source, target)
     return target
+
+
+def own_versions() -> dict[str, str]:
+    """On what a run depends besides; the same on all machines that grade one class."""
+    return {
+        "grader": versions.grader(),
+        "python": versions.python(),
+        "rclpy": versions.rclpy(),
+        "ros_distro": versions.ros_distro(),
+    }
+
+
+def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -> str:
+    """The name of a run.
+
+    Args:
+        submission: the hash of what was handed in, from `of_hand_in`.
+        seed: chooses where the varied runs start; None takes the exercise's own.
+    """
+    depends_on = {
+        "submission": submission,
+        "scene": exercise.scene,
+        "conditions": exercise.conditions,
+        "time": time,
+        "seed": exercise.varied.seed if seed is None else seed,
+        **own_versions(),
+    }
+    if exercise.setting:
+        depends_on["setting"] = content.of_bytes(exercise.setting.encode())
+    return content.of_bytes(json.dumps(depends_on, sort_keys=True).encode())[:32]
+
+
+def of_hand_in(path: Path, filename: str) -> str:
+    """The hash of what was handed in, as it was called there.
+
+    What nobody hands in by intention, as a .git, a __pycache__ or a venv, does not count.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    if path.is_dir():
+        # no pipe, socket or device: they would be waited for
+        found = (each for each in below(path) if each[1].is_symlink() or each[1].is_file())
+        # of so many whoever opens it refuses all
+        return content.of_files({name: _hash(at) for name, at in islice(found, MAX_ENTRIES + 1)})
+    return content.of_files({filename or path.name: content.of_file(path)})
+
+
+def below(
+    top: Path, is_left_out: Callable[[Path], bool] | None = None
+) -> Iterator[tuple[str, Path]]:
+    """What lies in a folder, by its name there; a folder comes before what is in it.
+
+    Args:
+        is_left_out: with all that is in it; else what a run would not see of a submission.
+    """
+    left_out = is_left_out or _is_unseen
+    for at, folders, names in os.walk(top):
+        folders[:] = sorted(name for name in folders if not left_out(Path(at, name)))
+        others = (name for name in sorted(names) if not left_out(Path(at, name)))
+        for path in (Path(at, name) for name in (*folders, *others)):
+            yield path.relative_to(top).as_posix(), path
+
+
+def _is_unseen(path: Path) -> bool:
+    if is_junk(path.name):
+        return True
+    if os.path.islink(path):  # noqa: PTH114  where the path is too long, it is none
+        return False
+    return not os.access(path, os.R_OK) or (path.is_dir() and is_generated(path))
+
+
+def _hash(path: Path) -> str:
+    if path.is_symlink():
+        return content.of_bytes(os.fsencode(path.readlink()))
+    return content.of_file(path)

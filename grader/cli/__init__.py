@@ -15,6 +15,8 @@ from collections.abc import Sequence
 from io import TextIOWrapper
 from typing import Any
 
+from grader.message import Text, msg
+
 # numpy's worker threads would spin a while after its import, and have nothing to do here
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -22,39 +24,39 @@ try:  # somebody may think better of it at once
     import importlib
 
     from grader import system
-    from grader.cli import error_file, language
+    from grader.cli import options
     from grader.errors import CheckFailed, GraderError, GraderFailure, SubmissionError, UsageError
-    from grader.language.phrase import say
-    from grader.language.telling import tell, told
+    from grader.message import msg
     from grader.text import for_terminal
+    from grader.translations import tr, translate
 except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
     sys.exit(130)
 
 #: Each verb with the first line of its module, which is imported where the verb is called.
 VERBS = {
-    "run": say("Run a submission and judge it."),
-    "check": say("Judge a saved recording again."),
-    "view": say(
+    "run": msg("Run a submission and judge it."),
+    "check": msg("Judge a saved recording again."),
+    "view": msg(
         "Play a graded run: the window at every moment, what came in, what the checks say."
     ),
-    "report": say("Show a result in another format."),
-    "new": say(
+    "report": msg("Show a result in another format."),
+    "new": msg(
         "Write the exercise sheet and the starter package of the challenge, or of another exercise."
     ),
-    "batch": say(
-        "Grade a class: find the submissions, grade them in parallel, and look at them together."
-    ),
-    "check-exercise": say(
-        "Try an exercise on its right solutions and mutants: who catches what, and what is to mend."
+    "batch": msg("Grade a class: find the submissions, grade them in parallel, and compare them."),
+    "check-exercise": msg(
+        "Try an exercise on its right solutions and mutants: what each check catches, and what "
+        "to fix."
     ),
 }
 #: What runs submissions; all else works anywhere.
 NEED_LINUX = ("run", "batch", "check-exercise")
-ELSEWHERE = say(
+ELSEWHERE = msg(
     "submissions are run on Linux with /proc, which this is not. Take WSL 2, a devcontainer or "
     "Codespaces (docs/your-machine.md); grader check, view, report and new work here."
 )
+FAILED = msg("The grader failed; this is not the submission's fault:")
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 #: A full disk, a closed folder: where they show is no place in our code.
 _OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
@@ -68,7 +70,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return _main(sys.argv[1:] if argv is None else argv)
     except KeyboardInterrupt:  # before a verb was at work
-        print(tell("{who}: interrupted", who="grader"), file=sys.stderr)
+        print(tr("{who}: interrupted", who="grader"), file=sys.stderr)
         return INTERRUPTED
 
 
@@ -78,62 +80,63 @@ def load(verb: str) -> Any:
 
 
 def _main(words: Sequence[str]) -> int:
-    language.choose(words)  # help and errors of the call are in it, too
+    options.choose_language(words)  # help and errors of the call are in it, too
     if _asked(words) in NEED_LINUX and not system.runs_submissions():
         _say(_who(_asked(words)), ELSEWHERE)
         return UNUSABLE
     try:
         args = _parser(words).parse_args(words)
-    except error_file.Misuse as error:
-        said = tell("{prog}: error: {message}", prog=error.prog, message=error.message)
+    except options.Misuse as error:
+        said = tr("{prog}: error: {message}", prog=error.prog, message=error.message)
         print(f"{error.usage}{for_terminal(said)}", file=sys.stderr)
-        return _misused(error, error_file.look_for(words))
+        return _misused(error, options.look_for(words))
     if system.runs_submissions():
-        from grader.run.processes import watched
+        from grader.run.processes import started_process
 
-        watched.adopt_orphans()
-        watched.end_on_signals()
+        started_process.adopt_orphans()
+        started_process.end_on_signals()
     try:
-        error_file.prepare(args)
+        options.prepare(args)
     except UsageError as error:
         _say(_who(args.verb), error.message)
         return error.exit_code
     try:
         return int(load(args.verb).main(args))
     except KeyboardInterrupt:
-        print(tell("{who}: interrupted", who=f"grader {args.verb}"), file=sys.stderr)
-        return _ended(UsageError(say("interrupted")), args, INTERRUPTED)
-    except (GraderFailure, CheckFailed) as error:
-        if isinstance(error, CheckFailed):
-            _say(say("The exercise failed; this is not the submission's fault:"), error.message)
-        else:
-            _say(say("The grader failed; this is not the submission's fault:"), error.message)
-        return _ended(error, args)
+        print(tr("{who}: interrupted", who=f"grader {args.verb}"), file=sys.stderr)
+        return _ended(UsageError(msg("interrupted")), args, INTERRUPTED)
     except GraderError as error:
-        is_to_mend = isinstance(error, SubmissionError)  # the first line says so, as of a result
-        _say(say("First to mend:") if is_to_mend else _who(args.verb), error.message)
+        _say(_heading(error, args.verb), error.message)
         return _ended(error, args)
     except Exception as error:
         what = "".join(traceback.format_exception_only(error)).strip()
         if isinstance(error, OSError) and error.errno in _OF_THE_MACHINE:
-            _say(say("The grader failed; this is not the submission's fault:"), what)
+            _say(FAILED, what)
         else:
-            _say(say("The grader failed; this is not the submission's fault. Please report:"))
+            _say(msg("The grader failed; this is not the submission's fault. Please report:"))
             print(for_terminal(traceback.format_exc()), end="", file=sys.stderr)
-        return _ended(GraderFailure(say("unexpected: {what}", what=what)), args)
+        return _ended(GraderFailure("unexpected: {what}", what=what), args)
+
+
+def _heading(error: GraderError, verb: str) -> Text:
+    if isinstance(error, SubmissionError):  # as the first line of a result
+        return msg("Fix this first:")
+    if isinstance(error, CheckFailed):
+        return msg("The exercise failed; this is not the submission's fault:")
+    return FAILED if isinstance(error, GraderFailure) else _who(verb)
 
 
 def _who(verb: str) -> str:
-    return tell("{who}:", who=f"grader {verb}")
+    return tr("{who}:", who=f"grader {verb}")
 
 
-def _say(red: str, message: str = "") -> None:
+def _say(red: Text, message: Text = "") -> None:
+    from rich import text
     from rich.console import Console  # here: most calls have nothing to say
-    from rich.text import Text
 
-    said = Text(told(red), "red")
+    said = text.Text(translate(red), "red")
     if message:
-        said.append(f" {for_terminal(told(message))}", "default")
+        said.append(f" {for_terminal(translate(message))}", "default")
     Console(stderr=True, soft_wrap=True, highlight=False).print(said)
 
 
@@ -142,20 +145,19 @@ def _asked(words: Sequence[str]) -> str:
     return next((word for word in words if not word.startswith("-")), "")
 
 
-def _parser(words: Sequence[str]) -> error_file.Parser:
+def _parser(words: Sequence[str]) -> options.Parser:
     """The parser of a call: of the verb that it asks for it knows the arguments."""
     asked = _asked(words)
-    parser = error_file.Parser(prog="grader", description=tell("Grade the turtlesim challenge."))
+    parser = options.Parser(prog="grader", description=tr("Grade the turtlesim challenge."))
     known = _versions() if "--version" in words else ""
-    shows = tell("show program's version number and exit")
+    shows = tr("show program's version number and exit")
     parser.add_argument("--version", action="version", version=known, help=shows)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, summary in VERBS.items():
-        verb = verbs.add_parser(name, help=told(summary), description=told(summary))
+        verb = verbs.add_parser(name, help=translate(summary), description=translate(summary))
         if name == asked:
             load(name).add_arguments(verb)
-            error_file.add_argument(verb)
-            language.add_argument(verb)
+            options.add_arguments(verb)
     return parser
 
 
@@ -167,11 +169,11 @@ def _versions() -> str:
     return f"grader {versions.grader()} (Python {versions.python()}, rclpy {versions.rclpy()}{ros})"
 
 
-def _misused(error: error_file.Misuse, args: Namespace) -> int:
+def _misused(error: options.Misuse, args: Namespace) -> int:
     try:
-        error_file.prepare(args)
+        options.prepare(args)
     except UsageError as unwritable:
-        print(f"grader: {for_terminal(told(unwritable.message))}", file=sys.stderr)
+        print(f"grader: {for_terminal(translate(unwritable.message))}", file=sys.stderr)
         return error.exit_code
     return _ended(error, args)
 
@@ -179,7 +181,7 @@ def _misused(error: error_file.Misuse, args: Namespace) -> int:
 def _ended(error: GraderError, args: Namespace, exit_code: int | None = None) -> int:
     """Write the error as data, if that was asked for; the exit code."""
     try:
-        error_file.write(error, args)
+        options.write(error, args)
     except UsageError as unwritten:
-        print(f"grader: {for_terminal(told(unwritten.message))}", file=sys.stderr)
+        print(f"grader: {for_terminal(translate(unwritten.message))}", file=sys.stderr)
     return error.exit_code if exit_code is None else exit_code

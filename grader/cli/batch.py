@@ -1,4 +1,4 @@
-"""Grade a class: find the submissions, grade them in parallel, and look at them together."""
+"""Grade a class: find the submissions, grade them in parallel, and compare them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,15 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.text import Text
 
-from grader.cli.run import CLOCKS, LEVELS
+from grader.cli.run import LEVELS, add_of_runs
 from grader.errors import UsageError
-from grader.exercise import DEFAULT
-from grader.language.phrase import say
-from grader.language.telling import tell, tell_many, told
+from grader.message import Message, msg, msg_many
 from grader.text import for_terminal
+from grader.translations import tr, translate
 
 if TYPE_CHECKING:
     from grader.batch.batch import Order, Work
-    from grader.batch.find import Found
+    from grader.batch.find.finding import Found
     from grader.batch.store import Store
     from grader.result.visible import View
 
@@ -36,77 +35,59 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "submissions",
         type=Path,
         nargs="?",
-        help=tell(
+        help=tr(
             "the folder or archive that a course system exports, or a folder with "
             "one file, folder or archive a student"
         ),
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help=tell("the folder of the class"))
+    parser.add_argument("--out", type=Path, metavar="DIR", help=tr("the folder of the class"))
     parser.add_argument(
         "--jobs",
         type=processes,
         metavar="N",
-        help=tell("so many gradings at once (as many as cores)"),
+        help=tr("so many gradings at once (as many as cores)"),
     )
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help=tell("grade on the workers of a dask cluster instead"),
+        help=tr("grade on the workers of a dask cluster instead"),
     )
-    parser.add_argument(
-        "--exercise",
-        default=DEFAULT,
-        metavar="NAME|FOLDER|FILE",
-        help=tell("an installed one, the folder of another, or an edited exercise.yaml"),
+    add_of_runs(
+        parser,
+        tr("the clock that submissions live by"),
+        tr("refuse to run submissions confined less well: {levels}", levels=", ".join(LEVELS)),
     )
+    parser.add_argument("--pattern", metavar="P", help=tr("how names tell whose a submission is"))
     parser.add_argument(
-        "--time", choices=CLOCKS, default="virtual", help=tell("the clock that submissions live by")
-    )
-    parser.add_argument(
-        "--seed",
-        type=int,
-        metavar="N",
-        help=tell("where the varied runs start (the exercise's own)"),
-    )
-    parser.add_argument("--pattern", metavar="P", help=tell("how names tell whose a submission is"))
-    parser.add_argument(
-        "--roster", type=Path, metavar="FILE", help=tell("names: a CSV with a column id")
+        "--roster", type=Path, metavar="FILE", help=tr("names: a CSV with a column id")
     )
     parser.add_argument(
         "--again",
         default="",
         metavar="failed|all|ID",
-        help=tell("grade anew: where the grader failed, everything, or one"),
+        help=tr("grade anew: where the grader failed, everything, or one"),
     )
     parser.add_argument(
         "--regrade",
         type=Path,
         metavar="DIR",
-        help=tell("show what --exercise would change in the class of this folder; run nothing"),
+        help=tr("show what --exercise would change in the class of this folder; run nothing"),
     )
     parser.add_argument(
         "--apply",
         action="store_true",
-        help=tell("with --regrade: write it; what was before is kept"),
+        help=tr("with --regrade: write it; what was before is kept"),
     )
     parser.add_argument(
         "--after-due",
         action="store_true",
-        help=tell("students may see now what their exercise hides until it is due"),
+        help=tr("students may see now what their exercise hides until it is due"),
     )
     parser.add_argument(
         "--assignment",
         default="",
         metavar="NAME",
-        help=tell('what Canvas calls the exercise, as in "Spiral (4711)" (its title)'),
-    )
-    parser.add_argument(
-        "--isolation",
-        choices=LEVELS,
-        metavar="LEVEL",
-        help=tell(
-            "refuse to run submissions confined less well: {levels}", levels=", ".join(LEVELS)
-        ),
+        help=tr('what Canvas calls the exercise, as in "Spiral (4711)" (its title)'),
     )
 
 
@@ -122,10 +103,10 @@ def main(args: argparse.Namespace) -> int:
         from grader.run.processes import levels
 
         levels.require(args.isolation)
-    from grader.batch import outputs
+    from grader.batch import batch
     from grader.batch.batch import Order, check_same_class
+    from grader.batch.class_file import begun_at
     from grader.batch.entry import entries
-    from grader.batch.level import begun_at
     from grader.batch.store import Store
     from grader.cli import class_progress
     from grader.exercise.loading import load_exercise
@@ -135,11 +116,11 @@ def main(args: argparse.Namespace) -> int:
     order = Order(exercise, path, args.time, args.seed, args.again)
     messages = Console(stderr=True, highlight=False)
     with _found(args, messages) as found, Store.opened(args.out) as store:
-        order = replace(order, isolation=begun_at(store, args.again, args.isolation or ""))
+        order = replace(order, isolation=begun_at(args.out, args.again, args.isolation or ""))
         check_same_class(store, order.class_file, order.again)
         _grade(args, order, found, store, messages)
         graded = entries(args.out)
-        _tell(messages, outputs.write(args.out, graded, exercise, view, args.assignment))
+        _tell(messages, batch.write_outputs(args.out, graded, exercise, view, args.assignment))
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
 
@@ -148,29 +129,24 @@ def main(args: argparse.Namespace) -> int:
 def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
     """Who has handed in what."""
     from grader.batch.class_file import CLASS
-    from grader.batch.find import find
+    from grader.batch.find.finding import find
 
-    if (args.submissions / CLASS).is_file() or _are_same(args.submissions, args.out):
+    is_same = args.submissions.resolve() == args.out.resolve()
+    if is_same or (args.submissions / CLASS).is_file():
         raise UsageError(
-            say(
-                "{submissions} is the folder of a class, which `grader batch` writes "
-                "into; name the submissions themselves. Nothing was changed.",
-                submissions=args.submissions,
-            )
+            "{submissions} is the folder of a class, which `grader batch` writes "
+            "into; name the submissions themselves. Nothing was changed.",
+            submissions=args.submissions,
         )
     with find(args.submissions, args.pattern, args.roster) as found:
         _tell(messages, found.notes)
         yield found
 
 
-def _are_same(one: Path, other: Path) -> bool:
-    return one.resolve() == other.resolve()
-
-
 def _grade(
     args: argparse.Namespace, order: Order, found: Found, store: Store, messages: Console
 ) -> None:
-    from grader.batch import batch, level
+    from grader.batch import batch, class_file, pool
     from grader.batch.store import ASIDE
     from grader.cli import class_progress
     from grader.submission.folder import listed
@@ -179,12 +155,12 @@ def _grade(
     if args.scheduler:
         work = _on_a_cluster(args, order, store, messages)
     else:
-        work = _on_this_machine(args)
+        work = partial(pool.work, jobs=_jobs_of(args))
         if any(task.run is None for task in planned.tasks):
-            order = replace(order, isolation=level.on_this_machine(order.isolation))
-            level.note(store, order.isolation)
+            order = replace(order, isolation=class_file.on_this_machine(order.isolation))
+            class_file.note(args.out, order.isolation)
     if aside := store.set_aside(hand_in.id for hand_in in found.hand_ins):
-        note = tell_many(
+        note = msg_many(
             "{n:,} hand-in in {out} not among these submissions, and set aside in {aside}: {names}",
             "{n:,} hand-ins in {out} not among these submissions, and set aside in {aside}: "
             "{names}",
@@ -202,11 +178,11 @@ def _grade(
 def _check_words(args: argparse.Namespace) -> None:
     """Refuse a call that asks for two things, or for none."""
     if bool(args.submissions) == bool(args.regrade):
-        raise UsageError(say("name one: the submissions, or a class to --regrade"))
+        raise UsageError(msg("name one: the submissions, or a class to --regrade"))
     if args.apply and not args.regrade:
-        raise UsageError(say("--apply belongs to --regrade DIR"))
+        raise UsageError(msg("--apply belongs to --regrade DIR"))
     if args.out is None and not args.regrade:
-        raise UsageError(say("name a folder for the class: --out DIR"))
+        raise UsageError(msg("name a folder for the class: --out DIR"))
 
 
 def _jobs_of(args: argparse.Namespace) -> int:
@@ -215,32 +191,26 @@ def _jobs_of(args: argparse.Namespace) -> int:
     return args.jobs or max(1, round(cores.share()))
 
 
-def _on_this_machine(args: argparse.Namespace) -> Work:
-    from grader.batch import pool
-
-    jobs = _jobs_of(args)
-    return lambda tasks: pool.work(tasks, jobs)
-
-
 def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages: Console) -> Work:
-    from grader.batch import cluster, level
+    from grader.batch import class_file, cluster
 
-    def tell(note: str) -> None:
-        _tell(messages, [note])
+    def note(text: Message) -> None:
+        _tell(messages, [text])
 
-    isolation = level.OfCluster(order.isolation, args.isolation or "", partial(level.note, store))
-    return lambda tasks: cluster.work(tasks, args.scheduler, tell, isolation)
+    settle = partial(class_file.note, args.out)
+    isolation = class_file.OfCluster(order.isolation, args.isolation or "", settle)
+    return lambda tasks: cluster.work(tasks, args.scheduler, note, isolation)
 
 
-def _tell(console: Console, notes: Sequence[str]) -> None:
+def _tell(console: Console, notes: Sequence[Message]) -> None:
     for note in notes:
-        console.print(Text(for_terminal(told(note))), soft_wrap=True)
+        console.print(Text(for_terminal(translate(note))), soft_wrap=True)
 
 
 def processes(text: str) -> int:
     """A number of processes from the command line."""
     if not re.fullmatch(r"[1-9]\d{0,3}", text):
         raise argparse.ArgumentTypeError(
-            tell("expected a number of processes, found {text}", text=text)
+            tr("expected a number of processes, found {text}", text=text)
         )
     return int(text)

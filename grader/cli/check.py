@@ -9,23 +9,22 @@ from dataclasses import replace
 from pathlib import Path
 
 from grader import files, judging
-from grader.cli import error_file
-from grader.cli.place import Place, find
+from grader.cli import options
+from grader.cli.place import RecordingPlace, find
 from grader.cli.run import points
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
-from grader.language.phrase import say
-from grader.language.telling import tell
+from grader.message import Message, msg
 from grader.recording.folder import WINDOW_PICTURE
-from grader.recording.provenance import Provenance
 from grader.recording.reading import load_all
-from grader.recording.recording import Recordings
+from grader.recording.recording import Provenance, Recordings
 from grader.reports import Report
 from grader.result.result import FAMILY, PAGE, RESULT, Result
 from grader.text import for_terminal
+from grader.translations import tr
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "recording",
         type=Path,
-        help=tell(
+        help=tr(
             "the folder of a result, whose page is then made anew; or the folder "
             "`recording` in it; or a recording anywhere else"
         ),
@@ -41,16 +40,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exercise",
         metavar="NAME|FOLDER|FILE",
-        help=tell(
+        help=tr(
             "an installed one, the folder of another, or an edited exercise.yaml; "
             "default: the one that it was made for"
         ),
     )
     parser.add_argument(
-        "--json", type=Path, metavar="FILE", help=tell("write the result here, and nothing else")
+        "--json", type=Path, metavar="FILE", help=tr("write the result here, and nothing else")
     )
     parser.add_argument(
-        "--fail-under", type=points, metavar="POINTS", help=tell("exit 1 below this score")
+        "--fail-under", type=points, metavar="POINTS", help=tr("exit 1 below this score")
     )
 
 
@@ -59,7 +58,7 @@ def main(args: argparse.Namespace) -> int:
     asked, args.exercise = args.exercise, args.exercise or DEFAULT
     if args.json:
         files.check_writable(args.json)
-        files.check_replaceable(args.json, FAMILY, error_file.inputs(args))
+        files.check_replaceable(args.json, FAMILY, options.inputs(args))
     place = find(args.recording)
     recordings = load_all(place.recording)
     exercise = _exercise(asked, place, recordings)
@@ -85,19 +84,25 @@ def _is_made_for(origin: Provenance | None, exercise: Exercise) -> bool:
 
 
 def _show(
-    args: argparse.Namespace, place: Place, result: Result, recordings: Recordings, is_meant: bool
+    args: argparse.Namespace,
+    place: RecordingPlace,
+    result: Result,
+    recordings: Recordings,
+    is_meant: bool,
 ) -> None:
     """Write what is to be written, and show the result.
 
     Args:
         is_meant: whether the exercise is one by which an older result may be replaced.
     """
-    from grader.cli import showing  # here: what takes long to import
+    from grader.reports import terminal  # here: what takes long to import
 
     page, folder = None, place.recording
     if args.json and not _is_same(args.json, place):
         beside = os.path.relpath(place.recording, args.json.parent)
-        artifacts = {"recording": beside, "canvas": f"{beside}/{WINDOW_PICTURE}"}
+        artifacts = {"recording": beside}
+        if recordings.nominal.canvas:
+            artifacts["canvas"] = f"{beside}/{WINDOW_PICTURE}"
         result = replace(result, artifacts=artifacts)
         result.write(args.json)
     elif place.older is not None and is_meant:
@@ -105,16 +110,16 @@ def _show(
         page = _rewrite(place, result, recordings)
     elif place.older is not None:
         _say_left(
-            say(
+            msg(
                 "the installed exercise {exercise!r} is another one than they were made"
                 " with; say with --exercise which one you mean",
                 exercise=result.exercise,
             )
         )
-    showing.show(Report.of(result, folder, recordings), page)
+    terminal.show_with_page(Report.of(result, folder, recordings), page)
 
 
-def _exercise(asked: str | None, place: Place, recordings: Recordings) -> Exercise:
+def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) -> Exercise:
     """The one that is asked for, else the one that the recording was made for.
 
     Raises:
@@ -126,22 +131,20 @@ def _exercise(asked: str | None, place: Place, recordings: Recordings) -> Exerci
     name = (origin and origin.exercise) or (place.older and place.older.exercise) or DEFAULT
     if name not in names():
         raise UsageError(
-            say(
-                "the recording was made for the exercise {name!r}, which is not "
-                "installed here; give its folder: --exercise FOLDER",
-                name=name,
-            )
+            "the recording was made for the exercise {name!r}, which is not "
+            "installed here; give its folder: --exercise FOLDER",
+            name=name,
         )
     return load_exercise(name)
 
 
-def _is_same(file: Path, place: Place) -> bool:
+def _is_same(file: Path, place: RecordingPlace) -> bool:
     """Whether a file is the result that the recording lies beside."""
     beside = place.folder / RESULT
     return place.older is not None and file.exists() and file.samefile(beside)
 
 
-def _rewrite(place: Place, result: Result, recordings: Recordings) -> Path | None:
+def _rewrite(place: RecordingPlace, result: Result, recordings: Recordings) -> Path | None:
     """Replace the older result and its page; the page, or None where they cannot be written."""
     from grader.reports import render
 
@@ -159,6 +162,6 @@ def _rewrite(place: Place, result: Result, recordings: Recordings) -> Path | Non
     return page
 
 
-def _say_left(why: str) -> None:
-    left = tell("Left as they were: {files}: {why}", files=f"{RESULT}, {PAGE}", why=why)
+def _say_left(why: Message) -> None:
+    left = tr("Left as they were: {files}: {why}", files=f"{RESULT}, {PAGE}", why=why)
     print(for_terminal(left), file=sys.stderr)

@@ -1,4 +1,4 @@
-"""Try an exercise on its right solutions and mutants: who catches what, and what is to mend."""
+"""Try an exercise on its right solutions and mutants: what each check catches, and what to fix."""
 
 from __future__ import annotations
 
@@ -14,30 +14,28 @@ from rich.table import Table
 from grader import files
 from grader.cli.batch import processes
 from grader.exercise.loading import load_exercise
-from grader.language.telling import tell, told
 from grader.testing.checking import Progress, check_exercise
 from grader.testing.examination import Examination
+from grader.translations import tr, translate
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.epilog = tell(
+    parser.epilog = tr(
         "Exit code: 0 all is fine, 1 there is something to mend, 2 it cannot be used."
     )
-    parser.add_argument(
-        "exercise", metavar="NAME|FOLDER", help=tell("an installed one, or a folder")
-    )
+    parser.add_argument("exercise", metavar="NAME|FOLDER", help=tr("an installed one, or a folder"))
     parser.add_argument(
         "--mutants",
         type=Path,
         metavar="FILE",
-        help=tell("the solutions (mutants.yaml in its folder)"),
+        help=tr("the solutions (mutants.yaml in its folder)"),
     )
     parser.add_argument(
-        "--jobs", type=processes, metavar="N", help=tell("so many at once (one a core)")
+        "--jobs", type=processes, metavar="N", help=tr("so many at once (one a core)")
     )
-    parser.add_argument("--json", type=Path, metavar="FILE", help=tell("write all of it here"))
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help=tell("write the table here"))
+    parser.add_argument("--json", type=Path, metavar="FILE", help=tr("write all of it here"))
+    parser.add_argument("--markdown", type=Path, metavar="FILE", help=tr("write the table here"))
 
 
 def main(args: argparse.Namespace) -> int:
@@ -57,32 +55,32 @@ def main(args: argparse.Namespace) -> int:
 
 def _print(examination: Examination, console: Console) -> None:
     table = Table(
-        tell("check"),
-        tell("catches"),
-        title=tell("{exercise}: mutants", exercise=examination.exercise),
+        tr("check"),
+        tr("catches"),
+        title=tr("{exercise}: mutants", exercise=examination.exercise),
         title_justify="left",
     )
     for check, names in examination.catches.items():
-        table.add_row(check, ", ".join(names) or tell("(none)"))
-    table.add_row(tell("nobody"), ", ".join(examination.uncaught) or tell("(none)"))
+        table.add_row(check, ", ".join(names) or tr("(none)"))
+    table.add_row(tr("nobody"), ", ".join(examination.uncaught) or tr("(none)"))
     console.print(table)
     for trial in examination.trials:
         for remark in trial.remarks:
-            console.print(f"{trial.solution.name}: {told(remark)}", markup=False, soft_wrap=True)
+            console.print(
+                f"{trial.solution.name}: {translate(remark)}", markup=False, soft_wrap=True
+            )
     for problem in examination.problems:
-        console.print(
-            tell("To mend: {problem}", problem=str(problem)), markup=False, soft_wrap=True
-        )
-    count = tell(
+        console.print(tr("To fix: {problem}", problem=problem.text), markup=False, soft_wrap=True)
+    count = tr(
         "{checks} checks, {mutants} mutants",
         checks=len(examination.checks),
         mutants=len(examination.mutants),
     )
     if examination.is_fine:
-        console.print(tell("All is fine: {count}, each caught.", count=count), soft_wrap=True)
+        console.print(tr("All is fine: {count}, each caught.", count=count), soft_wrap=True)
     else:
         console.print(
-            tell("{problems} to mend; {count}.", problems=len(examination.problems), count=count),
+            tr("{problems} to fix; {count}.", problems=len(examination.problems), count=count),
             soft_wrap=True,
         )
 
@@ -91,9 +89,9 @@ def _print(examination: Examination, console: Console) -> None:
 def _shown(console: Console, name: str) -> Iterator[Progress]:
     """Show which solution is through; yields the function that is told."""
     if console.is_terminal:
-        with console.status(tell("{name}: running its solutions ...", name=name)) as status:
+        with console.status(tr("{name}: running its solutions ...", name=name)) as status:
             yield lambda count, total, last: status.update(
-                tell(
+                tr(
                     "{name}: {count} of {total}, {last}",
                     name=name,
                     count=count,

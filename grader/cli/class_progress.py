@@ -6,28 +6,29 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from statistics import mean
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 from grader.batch.batch import Planned
-from grader.batch.entry import Entry, State
-from grader.batch.hand_in import HandIn
+from grader.batch.entry import Entry, HandIn, State
 from grader.batch.store import Store
-from grader.language.phrase import say
-from grader.language.telling import tell, tell_many, told
+from grader.message import Message, msg
 from grader.reports.wording import points
 from grader.text import clip, for_terminal
+from grader.translations import tr, tr_many, translate
 
 MINUTE_S = 60.0
-_STATES: dict[State, str] = {
-    "judged": say("judged"),
-    "unusable": say("cannot be started"),
-    "nothing": say("handed in nothing"),
-    "failed": say("where the grader failed"),
+_STATES: dict[State, Message] = {
+    "judged": msg("judged"),
+    "unusable": msg("cannot be started"),
+    "nothing": msg("handed in nothing"),
+    "failed": msg("where the grader failed"),
 }
 
 
@@ -36,14 +37,14 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
     """Show how far it is; yields the function that is told of each that is over."""
     total, before = planned.hand_ins, len(planned.done)
     if planned.alike:
-        alike = tell_many(
+        alike = tr_many(
             "{n:,} hand-in not run: the same content has been run already.",
             "{n:,} hand-ins not run: the same content has been run already.",
             planned.alike,
         )
         console.print(alike)
     if before:
-        graded = tell_many(
+        graded = tr_many(
             "{n:,} hand-in of {total} graded before.",
             "{n:,} hand-ins of {total} graded before.",
             before,
@@ -68,21 +69,33 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
 
 
 @contextmanager
+def bar(
+    console: Console, what: str, total: int, *columns: TextColumn | TimeRemainingColumn, **task: Any
+) -> Iterator[Callable[..., None]]:
+    """A bar in a terminal, behind what is done; yields the function that moves it on by one.
+
+    Args:
+        columns: behind the bar.
+        task: what else is known of it at first; the function takes what is new.
+    """
+    counted = tr("{done} of {total}", done="{task.completed}", total="{task.total}")
+    before = TextColumn(f"{what} {counted}".lstrip())
+    with Progress(before, BarColumn(), *columns, console=console, transient=True) as progress:
+        yield partial(progress.update, progress.add_task("", total=total, **task), advance=1)
+
+
+@contextmanager
 def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[[HandIn], None]]:
     began = time.monotonic()
     over = failed = 0
     columns = (
-        TextColumn(tell("{done} of {total}", done="{task.completed}", total="{task.total}")),
-        BarColumn(),
         TextColumn("{task.fields[rate]}"),
         TextColumn("{task.fields[failed]}", style="red"),
         TimeRemainingColumn(),
         TextColumn("{task.description}"),
     )
-    with Progress(*columns, console=console, transient=True) as progress:
-        task = progress.add_task(
-            "", total=planned.hand_ins, completed=len(planned.done), rate="", failed=""
-        )
+    done, fields = len(planned.done), {"rate": "", "failed": ""}
+    with bar(console, "", planned.hand_ins, *columns, completed=done, **fields) as advance:
 
         def show(hand_in: HandIn) -> None:
             nonlocal over, failed
@@ -90,11 +103,9 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
             entry = Entry.read(store.student(hand_in.id))
             failed += entry.state == "failed"
             a_minute = over * MINUTE_S / max(time.monotonic() - began, 1e-3)
-            progress.update(
-                task,
-                advance=1,
-                rate=tell("{a_minute:.0f} a minute", a_minute=a_minute),
-                failed=tell("{failed} failed", failed=failed) if failed else "",
+            advance(
+                rate=tr("{a_minute:.0f} a minute", a_minute=a_minute),
+                failed=tr("{failed} failed", failed=failed) if failed else "",
                 description=clip(for_terminal(f"{hand_in.id}: {_told(entry)}"), 60),
             )
 
@@ -105,16 +116,16 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
     """Say what came of it."""
     states = Counter(entry.state for entry in entries)
     counts = ", ".join(
-        tell("{number} {state}", number=states[state], state=what)
+        tr("{number} {state}", number=states[state], state=what)
         for state, what in _STATES.items()
         if states[state]
     )
     if counts:
-        all_told = tell_many(
+        all_told = tr_many(
             "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", len(entries), counts=counts
         )
     else:
-        all_told = tell_many("{n:,} hand-in.", "{n:,} hand-ins.", len(entries))
+        all_told = tr_many("{n:,} hand-in.", "{n:,} hand-ins.", len(entries))
     console.print(all_told)
     scores = [
         entry.score for entry in entries if entry.state == "judged" and entry.score is not None
@@ -122,7 +133,7 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
     if scores:
         most = points(entries[0].max_score)
         console.print(
-            tell(
+            tr(
                 "Mean of those judged: {points} of {most}.",
                 points=points(round(mean(scores), 2)),
                 most=most,
@@ -130,24 +141,24 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
         )
     for entry in entries:
         if entry.state == "failed":
-            text = tell(
+            text = tr(
                 "The grader failed for {id}; nobody is to blame for it: {message}",
                 id=entry.id,
                 message=entry.message,
             )
             console.print(Text(for_terminal(text), "red"), soft_wrap=True)
     if states["failed"]:
-        console.print(tell("Once more for these: the same call with --again failed"))
-    console.print(Text(tell("The class: {out}", out=out)), soft_wrap=True)
+        console.print(tr("Once more for these: the same call with --again failed"))
+    console.print(Text(tr("The class: {out}", out=out)), soft_wrap=True)
 
 
 def _told(entry: Entry) -> str:
     if entry.state == "judged" and entry.score is not None:
         score, most = points(entry.score), points(entry.max_score)
-        return tell("{score} of {max_score}", score=score, max_score=most)
+        return tr("{score} of {max_score}", score=score, max_score=most)
     state = _STATES[entry.state]
     return (
-        tell("{state}: {message}", state=state, message=entry.message)
+        tr("{state}: {message}", state=state, message=entry.message)
         if entry.message
-        else told(state)
+        else translate(state)
     )

@@ -11,7 +11,7 @@ import argparse
 import importlib
 import os
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,29 +20,38 @@ from rich.console import Console
 from rich.text import Text
 
 from grader import files, grading, judging
-from grader.cli import error_file, progress
+from grader.cli import options
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.grading import Finished
-from grader.language.phrase import say
-from grader.language.telling import told
 from grader.recording import saving
 from grader.recording.recording import Recording, Recordings
-from grader.result.result import ARTIFACTS, FAMILY, PAGE, RESULT, Result
+from grader.result.result import (
+    ARTIFACTS,
+    FAMILY,
+    PAGE,
+    RESULT,
+    Result,
+    artifacts,
+    put_artifacts,
+)
 from grader.run.opening import open_submission
 from grader.run.processes import cores
-from grader.submission.opening import Submission
+from grader.submission.start import Submission
 from grader.text import for_terminal
+from grader.translations import tr
 
 if TYPE_CHECKING:
     from grader.cli.live import Live
     from grader.reports import Report
 
+#: Where no line can be overwritten, as in a CI log, one is printed this often [simulated s].
+LINE_EVERY_S = 10.0
 #: What is not needed before a run is over.
 LATER = ("grader.recording.bag", "grader.reports.page.html", "grader.reports.terminal")
 
 
-def grade(args: argparse.Namespace, live: Live | None = None) -> int:
+def grade(args: argparse.Namespace, live: Live | None) -> int:
     """Grade once; the exit code."""
     result = graded(args, live)
     return int(args.fail_under is not None and result.score < args.fail_under)
@@ -55,7 +64,7 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
         files.check_leads_nowhere_else(out, Path.cwd())
     handed_in: Path = args.submission
     files.check_leads_nowhere_else(out, handed_in if handed_in.is_dir() else handed_in.parent)
-    _withdraw(out, args.json, error_file.inputs(args))
+    _withdraw(out, args.json, options.inputs(args))
     exercise = load_exercise(args.exercise)
     with ExitStack() as held:
         opening = exercise.opening
@@ -68,9 +77,16 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
 
 
 def out_of(args: argparse.Namespace) -> Path:
-    """The folder of the result."""
+    """The folder of the result.
+
+    By default each submission has its own: alice/turtle_controller.py is not bob's.
+    """
     out: Path | None = args.out
-    return _default_out(args.submission) if out is None else out
+    absolute = Path(os.path.abspath(args.submission))  # noqa: PTH100  a link keeps its own name
+    here = Path.cwd()
+    if out is None and absolute.is_relative_to(here) and absolute != here:
+        return Path("graded") / absolute.relative_to(here)
+    return out or Path("graded") / absolute.parent.name / absolute.name
 
 
 def _run_and_judge(
@@ -84,7 +100,7 @@ def _run_and_judge(
     """Run a submission, judge it, and keep its recordings; `held` holds what is written to."""
     messages = Console(stderr=True, highlight=False)
     messages.print(
-        Text(for_terminal(told(say("Found: {found}", found=submission.found)))),
+        Text(for_terminal(tr("Found: {found}", found=submission.found))),
         soft_wrap=True,
     )
     plans = grading.plan(submission, exercise, args.seed)  # refuses before anything is written
@@ -110,7 +126,7 @@ def _run_and_judge(
     at_once = None if live is None else 1
     with saving.into(out / ARTIFACTS["recording"], len(plans) - 1) as unsaved:
         with (
-            progress.shown(messages, told(say("running"))) as show,
+            _shown(messages, tr("running")) as show,
             grading.start(submission, plans, runner, show, origin, at_once) as runs,
         ):
             if cores.share() > len(plans):
@@ -119,15 +135,15 @@ def _run_and_judge(
             recordings = grading.gather(_kept(runs, len(plans), unsaved, tell))
         result = judging.judge(recordings, exercise, submission=submission.name)
         unsaved.put()
-    return replace(result, artifacts=dict(ARTIFACTS)), recordings
+    return replace(result, artifacts=artifacts(recordings.nominal)), recordings
 
 
 def _how(time: str, is_started: bool) -> str:
     if not is_started:
-        return told(say("Looking at it, and starting nothing ..."))
+        return tr("Looking at it, and starting nothing ...")
     if time == "virtual":
-        return told(say("Running it beside a simulator, in virtual time ..."))
-    return told(say("Running it beside a simulator, in real time ..."))
+        return tr("Running it beside a simulator, in virtual time ...")
+    return tr("Running it beside a simulator, in real time ...")
 
 
 def _kept(
@@ -146,29 +162,17 @@ def _kept(
 
 def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> Report:
     """Write the result and what lies beside it, and show it."""
-    from grader.cli import showing
-    from grader.reports import Report, render
+    from grader.reports import Report, render, terminal
 
-    nominal = recordings.nominal
-    files.put(out / ARTIFACTS["canvas"], nominal.png["window"])
-    files.put(out / ARTIFACTS["output"], nominal.output.encode("utf-8", "replace"))
+    put_artifacts(recordings.nominal, out)
     result.put(out / RESULT)
     if args.json:
         result.write(args.json)
     report = Report.of(result, out, recordings)
     page = out / PAGE
     files.put(page, render("html", [report]).encode("utf-8"))
-    showing.show(report, page)
+    terminal.show_with_page(report, page)
     return report
-
-
-def _default_out(submission: Path) -> Path:
-    """A folder of its own for each submission: alice/turtle_controller.py is not bob's."""
-    absolute = Path(os.path.abspath(submission))  # noqa: PTH100  a link keeps its own name
-    here = Path.cwd()
-    if absolute.is_relative_to(here) and absolute != here:
-        return Path("graded") / absolute.relative_to(here)
-    return Path("graded") / absolute.parent.name / absolute.name
 
 
 def _withdraw(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
@@ -202,3 +206,26 @@ def _make_folders(out: Path, copy: Path | None, held: ExitStack) -> None:
     held.enter_context(files.sole_writer(out))
     files.clear(out / RESULT)  # another grading may have written one meanwhile
     files.clear(out / ARTIFACTS["recording"])
+
+
+@contextmanager
+def _shown(console: Console, what: str) -> Iterator[Callable[[float], None]]:
+    """Show `what` and the simulated seconds; yields the function that takes them."""
+    if console.is_terminal:
+        with console.status(what) as status:
+            yield lambda seconds: status.update(
+                tr("{what}: {seconds:.0f} s simulated", what=what, seconds=seconds)
+            )
+        return
+    due = LINE_EVERY_S
+
+    def line(seconds: float) -> None:
+        nonlocal due
+        if seconds >= due:
+            due = seconds + LINE_EVERY_S
+            console.print(
+                tr("{what}: {seconds:.0f} s simulated", what=what, seconds=seconds),
+                soft_wrap=True,
+            )
+
+    yield line

@@ -20,21 +20,21 @@ from rich.text import Text
 from grader import text as texts
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
-from grader.language.phrase import Phrase, say
-from grader.language.telling import tell
+from grader.message import Message, msg
 from grader.recording.recording import Clock
 from grader.reports import Report, playback
-from grader.run.plan import Plan
-from grader.scenes import load_live
+from grader.run.handover import Plan
 from grader.scenes.live import Grading, LivePage
+from grader.scenes.scene import Scene
 from grader.text import for_terminal
+from grader.translations import tr
 from turtlesim_py import browser
 
 #: What --speed takes -> how many times as fast as in real time, and that in words.
-SPEEDS: Final[Mapping[str, tuple[float | None, Phrase]]] = {
-    "1": (1.0, say("as fast as in real time")),
-    "5": (5.0, say("five times as fast as in real time")),
-    "free": (None, say("as fast as it goes")),
+SPEEDS: Final[Mapping[str, tuple[float | None, Message]]] = {
+    "1": (1.0, msg("as fast as in real time")),
+    "5": (5.0, msg("five times as fast as in real time")),
+    "free": (None, msg("as fast as it goes")),
 }
 #: Where the page is, unless somebody has that port.
 USUAL_PORT: Final = 8080
@@ -81,7 +81,7 @@ class Live:
         if is_first:
             self._page = _serve(exercise)
         name = texts.one_line(texts.plain(submission))
-        title = tell("{submission}, {exercise}", submission=name, exercise=exercise.title)
+        title = tr("{submission}, {exercise}", submission=name, exercise=exercise.title)
         self._change(Grading(title))
         if is_first:
             self._invite(messages)
@@ -89,16 +89,16 @@ class Live:
     def _invite(self, messages: Console) -> None:
         assert self._page is not None
         address = self._page.address
-        said = tell("The runs are to be seen at {address}", address=address)
+        said = tr("See the runs at {address}", address=address)
         messages.print(Text(for_terminal(said)), soft_wrap=True)
         if tunnel := browser.tunnel(address):
-            said = tell("To see it where you are, type there: {command}", command=tunnel)
+            said = tr("To see it on your own machine, run there: {command}", command=tunnel)
             messages.print(Text(for_terminal(said)), soft_wrap=True)
         browser.show(address)
-        wait = tell("Waiting for somebody to look, {most_s:g} s at most ...", most_s=PATIENCE_S)
+        wait = tr("Waiting for the page to be opened, {most_s:g} s at most ...", most_s=PATIENCE_S)
         messages.print(wait)
         if not self._page.await_viewer(PATIENCE_S):
-            messages.print(tell("Nobody looks yet; the run begins."))
+            messages.print(tr("Nobody has opened the page yet; the run begins."))
 
     # An audience ------------------------------------------------------------------------------
 
@@ -106,10 +106,10 @@ class Live:
         """Show an empty window, and which run it is."""
         starts = [each.start for each in self._plans]
         number, varied = starts.index(plan.start), len(starts) - 1
-        pace = say("in real time") if time == "real" else self._pace
-        run = tell("nominal run, {pace}", pace=pace)
+        pace = msg("in real time") if time == "real" else self._pace
+        run = tr("nominal run, {pace}", pace=pace)
         if plan.start is not None:
-            run = tell(
+            run = tr(
                 "varied run {number} of {runs} from {place}, {pace}",
                 number=number,
                 runs=varied,
@@ -129,19 +129,19 @@ class Live:
         """Say so where the run could not be shown to its end."""
         if not is_whole:
             run = self._grading.run
-            self._change(run=tell("{run} (not all of it could be shown)", run=run))
+            self._change(run=tr("{run} (not all of it could be shown)", run=run))
 
     # What comes to be known -------------------------------------------------------------------
 
     def know_of_nominal(self, report: Report) -> None:
         """Show what the nominal run decides while the others still go."""
-        score = tell("The nominal run is over, the others still go.")
+        score = tr("The nominal run is over, the others still go.")
         self._change(score=score, judged=playback.judged(report, 1))
 
     def know(self, report: Report) -> None:
         """Show the verdicts."""
         self._change(
-            score=tell("Score: {score}", score=report.score_text),
+            score=tr("Score: {score}", score=report.score_text),
             first=report.first_line,
             judged=playback.judged(report, len(self._plans)),
             is_over=True,
@@ -151,7 +151,7 @@ class Live:
         """In a terminal, keep the page until Ctrl-C."""
         if self._page is None or not sys.stderr.isatty():
             return
-        said = tell("The page stays at {address}; Ctrl-C ends it.", address=self._page.address)
+        said = tr("The page stays at {address}; Ctrl-C ends it.", address=self._page.address)
         with suppress(KeyboardInterrupt):  # from here on: who reads the line may press at once
             Console(stderr=True, highlight=False).print(Text(for_terminal(said)), soft_wrap=True)
             threading.Event().wait()
@@ -164,26 +164,20 @@ class Live:
 
 
 def _serve(exercise: Exercise) -> LivePage:
-    serve = load_live(exercise.scene)
-    if serve is None:
+    scene, page = exercise.subject, None
+    for port in (USUAL_PORT, 0):
+        try:
+            page = scene.live_page(port) if isinstance(scene, Scene) else None
+            break
+        except OSError as error:
+            why = error.strerror or str(error)
+    else:
+        raise UsageError("--live: no page can be served at 127.0.0.1 ({why})", why=why)
+    if page is None:
         raise UsageError(
-            say(
-                "--live: runs of the exercise {exercise!r} cannot be shown, for its scene "
-                "{scene!r} has no such page; its report.html shows what came of them",
-                exercise=exercise.name,
-                scene=exercise.scene,
-            )
+            "--live: runs of the exercise {exercise!r} cannot be shown, for its scene "
+            "{scene!r} has no such page; its report.html shows what came of them",
+            exercise=exercise.name,
+            scene=exercise.scene,
         )
-    try:
-        return serve(USUAL_PORT)
-    except OSError:
-        pass
-    try:
-        return serve(0)
-    except OSError as error:
-        raise UsageError(
-            say(
-                "--live: no page can be served at 127.0.0.1 ({why})",
-                why=error.strerror or str(error),
-            )
-        ) from None
+    return page

@@ -17,10 +17,8 @@ from grader.exercise import DEFAULT
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.sheet import Start, sheet
-from grader.language.phrase import say
-from grader.language.telling import tell
-from grader.scenes import load_scene
-from grader.scenes.scene import Scene
+from grader.recording.subject import Subject
+from grader.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
@@ -33,15 +31,15 @@ PROGRAM = "my_node.py"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
-    parser.add_argument("folder", type=Path, metavar="DIR", help=tell("a new or empty folder"))
+    parser.add_argument("folder", type=Path, metavar="DIR", help=tr("a new or empty folder"))
     parser.add_argument(
-        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help=tell("which one (the challenge)")
+        "--exercise", default=DEFAULT, metavar="NAME|FOLDER", help=tr("which one (the challenge)")
     )
     parser.add_argument(
         "--ros",
         choices=RELEASES,
         default=os.environ.get("ROS_DISTRO"),
-        help=tell("the ROS 2 release that it is for; default: the sourced one, else as it comes"),
+        help=tr("the ROS 2 release that it is for; default: the sourced one, else as it comes"),
     )
 
 
@@ -56,11 +54,11 @@ def main(args: argparse.Namespace) -> int:
     try:
         if folder.exists() and not folder.is_dir():
             raise UsageError(
-                say("{folder} is a file; give a new folder, nothing was written", folder=folder)
+                "{folder} is a file; give a new folder, nothing was written", folder=folder
             )
         if folder.exists() and any(folder.iterdir()):
             raise UsageError(
-                say("{folder} is not empty; give a new folder, nothing was written", folder=folder)
+                "{folder} is not empty; give a new folder, nothing was written", folder=folder
             )
         with _whole_or_not_at_all(folder) as copy:
             if exercise.starter is None:
@@ -71,28 +69,26 @@ def main(args: argparse.Namespace) -> int:
             if not (copy / SHEET).exists():  # else its author has written one
                 _write_sheet(copy, exercise, _grading(folder.resolve().name, args.exercise))
             if args.ros:
-                _adapt(copy, load_scene(exercise.scene), args.ros)
+                _adapt(copy, exercise.subject, args.ros)
     except shutil.Error as error:
         source, _, why = error.args[0][0]  # (source, target, why) of each file
         raise UsageError(
-            say("cannot copy {source}: {why}; nothing was written", source=source, why=why)
+            "cannot copy {source}: {why}; nothing was written", source=source, why=why
         ) from None
     except OSError as error:
         raise files.cannot_write(folder, error.strerror or str(error)) from None
     has_starter = exercise.starter is not None
     if has_starter:
-        print(tell("The starter package is in {folder}.", folder=folder))
+        print(tr("The starter package is in {folder}.", folder=folder))
     else:
-        print(tell("The exercise sheet is in {folder}.", folder=folder))
-    print(tell("{sheet} says what is asked for and how it is judged.", sheet=SHEET))
+        print(tr("The exercise sheet is in {folder}.", folder=folder))
+    print(tr("{sheet} says what is asked for and how it is judged.", sheet=SHEET))
     to_fill_in = _with_todos(folder)
     if to_fill_in:
-        print(
-            tell("Fill in the TODOs of {to_fill_in}, then run:", to_fill_in=", ".join(to_fill_in))
-        )
+        print(tr("Fill in the TODOs of {to_fill_in}, then run:", to_fill_in=", ".join(to_fill_in)))
     else:
-        then = tell("Write {program} beside it, then run:", program=PROGRAM)
-        print(tell("Then run:") if has_starter else then)
+        then = tr("Write {program} beside it, then run:", program=PROGRAM)
+        print(tr("Then run:") if has_starter else then)
     print(f"    {_grading(str(folder), args.exercise)}")
     return 0
 
@@ -113,7 +109,7 @@ def _write_sheet(folder: Path, exercise: Exercise, grade: str) -> None:
     to_fill_in.sort(key=lambda file: not (folder / file).with_name("__init__.py").exists())
     program = next(iter(to_fill_in), PROGRAM)
     start = Start(program, package[1] if package else "", grade)
-    made = sheet(exercise, load_scene(exercise.scene), start)
+    made = sheet(exercise, exercise.subject, start)
     (folder / SHEET).write_text(made, encoding="utf-8")
 
 
@@ -133,11 +129,11 @@ def _whole_or_not_at_all(folder: Path) -> Iterator[Path]:
     unfinished.rmdir()
 
 
-def _adapt(folder: Path, scene: Scene, ros_distro: str) -> None:
+def _adapt(folder: Path, subject: Subject, ros_distro: str) -> None:
     """Give the files the names that things have in a ROS 2 release."""
     for path in (path for pattern in ADAPTED for path in folder.rglob(pattern)):
         text = path.read_bytes().decode("utf-8", "surrogateescape")
-        path.write_bytes(scene.adapted(text, ros_distro).encode("utf-8", "surrogateescape"))
+        path.write_bytes(subject.adapted(text, ros_distro).encode("utf-8", "surrogateescape"))
 
 
 def _with_todos(folder: Path) -> list[str]:

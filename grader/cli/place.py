@@ -11,7 +11,7 @@ from grader.result.result import ARTIFACTS, RESULT, Result
 
 
 @dataclass(frozen=True)
-class Place:
+class RecordingPlace:
     """Where a recording lies.
 
     Attributes:
@@ -34,13 +34,13 @@ class Place:
         return at.parent.name if at.name == ARTIFACTS["recording"] else at.name
 
 
-def find(given: Path) -> Place:
+def find(given: Path) -> RecordingPlace:
     """What is meant: the folder of a recording, that of its result, or a file in one of them."""
     folder = given if given.is_dir() else given.parent
     if (folder / ARTIFACTS["recording"]).is_dir():
         folder /= ARTIFACTS["recording"]
     elif not given.exists():
-        return Place(given, None)
+        return RecordingPlace(given, None)
     beside = folder.parent / RESULT
     try:
         older = Result.read(beside) if beside.is_file() else None
@@ -48,4 +48,4 @@ def find(given: Path) -> Place:
         older = None
     if older is not None and older.artifacts.get("recording") != folder.name:
         older = None
-    return Place(folder, older)
+    return RecordingPlace(folder, older)

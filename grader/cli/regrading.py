@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import TimeRemainingColumn
 from rich.text import Text
 
 from grader import files
 from grader.batch.entry import Entry
-from grader.batch.regrade import applying, html, judging, shown, table
-from grader.batch.regrade.applying import CHANGES_CSV, CHANGES_PAGE
+from grader.batch.regrade import judging, shown
 from grader.batch.regrade.changes import Regrade
+from grader.batch.regrade.judging import CHANGES_CSV, CHANGES_PAGE
 from grader.batch.store import BEFORE, Store
-from grader.language.telling import tell, tell_many
+from grader.cli import class_progress
 from grader.result.visible import View
-from grader.text import for_terminal
+from grader.translations import tr, tr_many
 
 #: Where the table and the page come, in the folder of the class.
 REGRADE = "regrade"
@@ -41,34 +41,23 @@ def run(args: Namespace, jobs: int, view: View) -> int:
     out: Path = args.regrade
     into: Path = args.out or out / REGRADE
     console, messages = Console(highlight=False), Console(stderr=True, highlight=False)
-    if not args.apply:
-        found = _found(out, args.exercise, jobs, messages)
+    judged = judging.check(out, args.exercise)
+    with Store.opened(out) if args.apply else nullcontext() as store:
+        with _progress(messages, judged, tr("judging")) as show:
+            found = judging.regrade(out, args.exercise, jobs, show, store)
         shown.show(found, console)
         _write(found, into, console)
-        console.print(
-            tell("Nothing of the class was changed. To write it: the same call with --apply")
-        )
-        return GRADER_FAILED if found.failures else DONE
-    judging.check(out, args.exercise)
-    with Store.opened(out) as store:
-        found = _found(out, args.exercise, jobs, messages)
-        shown.show(found, console)
-        _write(found, into, console)
-        with _progress(messages, len(found.entries), tell("writing")) as show:
-            failures = applying.apply(found, store, jobs, show, view, args.assignment)
-        for failure in failures:
-            text = tell("Left as it is: {id}: {why}", id=failure.entry.id, why=failure.why)
-            console.print(Text(for_terminal(text), "red"), soft_wrap=True)
+        if store is None:
+            console.print(
+                tr("Nothing of the class was changed. To write it: the same call with --apply")
+            )
+            return GRADER_FAILED if found.failures else DONE
+        with _progress(messages, len(found.entries), tr("writing")) as show:
+            judging.apply(found, store, show, view, args.assignment)
     console.print(
-        Text(tell("Written. What was before: {before}", before=out / BEFORE)), soft_wrap=True
+        Text(tr("Written. What was before: {before}", before=out / BEFORE)), soft_wrap=True
     )
-    return GRADER_FAILED if found.failures or failures else DONE
-
-
-def _found(out: Path, exercise_path: str, jobs: int, messages: Console) -> Regrade:
-    judged = judging.check(out, exercise_path)
-    with _progress(messages, judged, tell("judging")) as show:
-        return judging.regrade(out, exercise_path, jobs, show)
+    return GRADER_FAILED if found.failures else DONE
 
 
 def _write(found: Regrade, into: Path, console: Console) -> None:
@@ -76,9 +65,9 @@ def _write(found: Regrade, into: Path, console: Console) -> None:
     if into == found.out / REGRADE:
         files.clear(into)  # a link leads somewhere else
     files.make_folder(into)
-    files.put(into / CHANGES_CSV, table.render(found).encode("utf-8"))
-    files.put(into / CHANGES_PAGE, html.render(found, to_class.as_posix()).encode("utf-8"))
-    console.print(Text(tell("Table and page: {into}", into=into)), soft_wrap=True)
+    files.put(into / CHANGES_CSV, shown.table(found).encode("utf-8"))
+    files.put(into / CHANGES_PAGE, shown.page(found, to_class.as_posix()).encode("utf-8"))
+    console.print(Text(tr("Table and page: {into}", into=into)), soft_wrap=True)
 
 
 @contextmanager
@@ -86,16 +75,9 @@ def _progress(console: Console, total: int, what: str) -> Iterator[Callable[[Ent
     """A bar in a terminal, a line in a log."""
     if not console.is_terminal:
         console.print(
-            tell_many("{what} {n:,} recording ...", "{what} {n:,} recordings ...", total, what=what)
+            tr_many("{what} {n:,} recording ...", "{what} {n:,} recordings ...", total, what=what)
         )
         yield lambda _: None
         return
-    columns = (
-        TextColumn(
-            f"{what} " + tell("{done} of {total}", done="{task.completed}", total="{task.total}")
-        ),
-        BarColumn(),
-    )
-    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as progress:
-        task = progress.add_task("", total=total)
-        yield lambda _: progress.update(task, advance=1)
+    with class_progress.bar(console, what, total, TimeRemainingColumn()) as advance:
+        yield lambda _: advance()

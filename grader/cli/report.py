@@ -9,56 +9,44 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grader import files, reports
-from grader.cli import error_file
+from grader.cli import options
 from grader.errors import UsageError
 from grader.exercise.loading import load_exercise
-from grader.language.phrase import say
-from grader.language.telling import tell, told
-from grader.reports import FORMATS, Report
+from grader.message import msg
+from grader.reports import Report
 from grader.result.result import ARTIFACTS
-from grader.result.visible import View, is_hidden
+from grader.result.visible import is_hidden
+from grader.translations import tr, translate
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: options.Parser) -> None:
     """Declare the verb's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    width = max(map(len, FORMATS))
-    parser.epilog = (
-        tell("formats:")
-        + "\n"
-        + "\n".join(f"  {name:{width}}  {told(form.summary)}" for name, form in FORMATS.items())
-    )
+    parser.make_epilog = _formats
     parser.add_argument(
         "result",
         type=Path,
         nargs="+",
         metavar="RESULT.json",
-        help=tell("a result, or what --error-json has written; several only with csv"),
+        help=tr("a result, or what --error-json has written; several only with csv"),
     )
-    parser.add_argument("--format", choices=FORMATS, default="terminal", metavar="NAME")
+    parser.add_argument("--format", choices=reports.names(), default="terminal", metavar="NAME")
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help=tell("write there, not to standard output")
+        "--out", type=Path, metavar="FILE", help=tr("write there, not to standard output")
     )
     parser.add_argument(
         "--exercise",
         metavar="NAME",
-        help=tell("which checks get 0 points for an error; autolab only"),
+        help=tr("which checks get 0 points for an error; autolab only"),
     )
-    who = parser.add_mutually_exclusive_group()
-    who.add_argument(
-        "--after-due",
-        action="store_true",
-        help=tell("what students see when the exercise is over; default: what they see before"),
-    )
-    who.add_argument(
-        "--whole",
-        action="store_true",
-        help=tell("for teachers: also what the exercise hides from students; csv always is whole"),
+    options.add_view(
+        parser,
+        tr("for teachers: also what the exercise hides from students; csv always is whole"),
     )
     parser.add_argument(
         "--github-summary",
         action="store_true",
-        help=tell(
+        help=tr(
             "append the result as Markdown to $GITHUB_STEP_SUMMARY as well, as students see it"
         ),
     )
@@ -66,11 +54,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Show the results; see `grader.cli` for the exit codes."""
-    view: View = "after_due" if args.after_due else "student"
     checks = _checks(args) if args.exercise else ()
     if args.out is not None:
         files.check_is_no_input(args.out, _read(args))
-    shown = [reports.read(path, checks, "whole" if args.whole else view) for path in args.result]
+    shown = [reports.read(path, checks, options.view_of(args)) for path in args.result]
     summary = _summary_file() if args.github_summary else None
     if args.format == "terminal" and args.out is None and len(shown) == 1:
         from rich.console import Console
@@ -89,9 +76,17 @@ def main(args: argparse.Namespace) -> int:
         else:
             _print(content)
     if summary is not None:
-        summed = [reports.read(path, checks, view) for path in args.result] if args.whole else shown
+        whole = args.whole
+        summed = [reports.read(path, checks, "student") for path in args.result] if whole else shown
         _append(summary, "".join(reports.render("markdown", [each]) for each in summed))
     return 0
+
+
+def _formats() -> str:
+    names = reports.names()
+    width = max(map(len, names))
+    lines = (f"  {name:{width}}  {translate(reports.load(name).summary)}" for name in names)
+    return "\n".join((tr("formats:"), *lines))
 
 
 def _checks(args: argparse.Namespace) -> tuple[str, ...]:
@@ -106,7 +101,7 @@ def _checks(args: argparse.Namespace) -> tuple[str, ...]:
 
 def _read(args: argparse.Namespace) -> Iterator[Path]:
     """What a report is made from: the results, and what lies beside them."""
-    for path in error_file.inputs(args):
+    for path in options.inputs(args):
         yield path
         yield from (path.parent / name for name in ARTIFACTS.values())
         yield from (path.parent / ARTIFACTS["recording"]).rglob("*")
@@ -130,7 +125,7 @@ def _summary_file() -> Path:
     name = os.environ.get("GITHUB_STEP_SUMMARY")
     if not name:
         raise UsageError(
-            say(
+            msg(
                 "--github-summary works in a step of GitHub Actions only: "
                 "GITHUB_STEP_SUMMARY is not set"
             )

@@ -5,15 +5,11 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from grader.errors import UsageError
 from grader.exercise import DEFAULT
-from grader.language.phrase import say
-from grader.language.telling import tell
-
-if TYPE_CHECKING:
-    from grader.cli.live import Live
+from grader.message import msg
+from grader.translations import tr
 
 #: `grader.run.processes.levels.LEVELS`; the same.
 LEVELS = ("namespaces", "landlock", "limits")
@@ -26,66 +22,61 @@ SPEEDS = ("1", "5", "free")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the verb's arguments."""
     parser.add_argument(
-        "submission", type=Path, help=tell("a .py file, a folder, a package or a zip")
+        "submission", type=Path, help=tr("a .py file, a folder, a package or a zip")
     )
-    parser.add_argument(
-        "--exercise",
-        default=DEFAULT,
-        metavar="NAME|FOLDER|FILE",
-        help=tell("an installed one, the folder of another, or an edited exercise.yaml"),
-    )
-    parser.add_argument(
-        "--time",
-        choices=CLOCKS,
-        default="virtual",
-        help=tell(
-            "the clock that the submission lives by; virtual takes seconds and is the default"
-        ),
-    )
-    parser.add_argument(
-        "--seed",
-        type=int,
-        metavar="N",
-        help=tell("where the varied runs start (the exercise's own)"),
-    )
-    parser.add_argument("--watch", action="store_true", help=tell("grade again on every save"))
-    parser.add_argument(
-        "--live",
-        action="store_true",
-        help=tell("show the runs, one after the other, in a page while they happen"),
-    )
-    parser.add_argument(
-        "--speed",
-        choices=SPEEDS,
-        help=tell("of --live: as in real time (default), five times as fast, as fast as it goes"),
-    )
-    parser.add_argument("--out", type=Path, metavar="DIR", help=tell("default: below graded/"))
-    parser.add_argument(
-        "--json", type=Path, metavar="FILE", help=tell("write the result here as well")
-    )
-    parser.add_argument("--executable", metavar="NAME", help=tell("which console script to start"))
-    parser.add_argument(
-        "--isolation",
-        choices=LEVELS,
-        metavar="LEVEL",
-        help=tell(
+    add_of_runs(
+        parser,
+        tr("the clock that the submission lives by; virtual takes seconds and is the default"),
+        tr(
             "refuse to run the submission confined less well: {levels} (the best "
             "that this system allows is always taken)",
             levels=", ".join(LEVELS),
         ),
     )
+    parser.add_argument("--watch", action="store_true", help=tr("grade again on every save"))
     parser.add_argument(
-        "--fail-under", type=points, metavar="POINTS", help=tell("exit 1 below this score")
+        "--live",
+        action="store_true",
+        help=tr("show the runs, one after the other, in a page while they happen"),
     )
+    parser.add_argument(
+        "--speed",
+        choices=SPEEDS,
+        help=tr("of --live: as in real time (default), five times as fast, as fast as it goes"),
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help=tr("default: below graded/"))
+    parser.add_argument(
+        "--json", type=Path, metavar="FILE", help=tr("write the result here as well")
+    )
+    parser.add_argument("--executable", metavar="NAME", help=tr("which console script to start"))
+    parser.add_argument(
+        "--fail-under", type=points, metavar="POINTS", help=tr("exit 1 below this score")
+    )
+
+
+def add_of_runs(parser: argparse.ArgumentParser, clock: str, isolation: str) -> None:
+    """Declare what says how submissions are run; the texts are about --time and --isolation."""
+    parser.add_argument(
+        "--exercise",
+        default=DEFAULT,
+        metavar="NAME|FOLDER|FILE",
+        help=tr("an installed one, the folder of another, or an edited exercise.yaml"),
+    )
+    parser.add_argument("--time", choices=CLOCKS, default="virtual", help=clock)
+    parser.add_argument(
+        "--seed",
+        type=int,
+        metavar="N",
+        help=tr("where the varied runs start (the exercise's own)"),
+    )
+    parser.add_argument("--isolation", choices=LEVELS, metavar="LEVEL", help=isolation)
 
 
 def points(text: str) -> float:
     """A number of points from the command line."""
     value = float(text)
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(
-            tell("expected a number of points, found {text}", text=text)
-        )
+        raise argparse.ArgumentTypeError(tr("expected a number of points, found {text}", text=text))
     return value
 
 
@@ -97,18 +88,20 @@ def main(args: argparse.Namespace) -> int:
 
         levels.require(args.isolation)
     # What can begin before a run belongs here: from here on imports take their time.
-    from grader.submission import reader
-
-    reader.warm()
     if args.time == "virtual":
-        from grader.run import zygotes
+        from grader.run import fork_servers
 
-        zygotes.warm()  # they import while we do
+        fork_servers.warm()  # they import while we do
     from grader.cli import grade_one
     from grader.requirements import require
 
     require("rosbags", load=False)  # missing it is told now, not when a run is to be saved
-    grade = _each_save if args.watch else grade_one.grade
+    grade = grade_one.grade
+    if args.watch:
+        require("watchdog")
+        from grader.cli import watch
+
+        grade = watch.grade_each_save
     if not args.live:
         return grade(args, None)
     require("websockets")
@@ -126,28 +119,11 @@ def _check_speed(args: argparse.Namespace) -> None:
         return
     if not args.live:
         raise UsageError(
-            say("--speed is for --live: a run that nobody sees goes as fast as it can")
+            msg("--speed is for --live: a run that nobody sees goes as fast as it can")
         )
     if args.time == "real" and args.speed != SPEEDS[0]:
         raise UsageError(
-            say(
-                "--speed {speed} needs virtual time: a run in real time goes as fast as the wall "
-                "clock; leave out --speed or --time real",
-                speed=args.speed,
-            )
+            "--speed {speed} needs virtual time: a run in real time goes as fast as the wall "
+            "clock; leave out --speed or --time real",
+            speed=args.speed,
         )
-
-
-def _each_save(args: argparse.Namespace, live: Live | None) -> int:
-    """Grade again and again, until Ctrl-C."""
-    from grader.requirements import require
-
-    require("watchdog")
-    from grader.cli import grade_one
-    from grader.cli.rounds import Rounds
-    from grader.cli.watch import each_save
-
-    rounds = Rounds(args, live)
-    for _ in each_save(args.submission, grade_one.out_of(args)):
-        rounds.grade()
-    return 0

@@ -6,19 +6,19 @@ import argparse
 from pathlib import Path
 
 from grader import files
-from grader.cli import error_file
-from grader.cli.place import Place, find
+from grader.cli import options
+from grader.cli.place import RecordingPlace, find
 from grader.errors import UsageError
-from grader.language.phrase import say
-from grader.language.telling import tell
+from grader.message import Message, msg
+from grader.recording.playback import Playback
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
+from grader.recording.subject import load_subject
 from grader.reports import Report, playback
 from grader.result.result import ARTIFACTS, PAGE, RESULT
 from grader.result.visible import View
-from grader.scenes import load_player
-from grader.scenes.playback import Playback
 from grader.text import for_terminal
+from grader.translations import tr
 from turtlesim_py import browser
 
 #: What the page is called that lies beside a result.
@@ -30,13 +30,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "recording",
         type=Path,
-        help=tell("the folder of a result, the result in it, or a recording anywhere else"),
+        help=tr("the folder of a result, the result in it, or a recording anywhere else"),
     )
     parser.add_argument(
         "--compare",
         type=Path,
         metavar="OTHER",
-        help=tell(
+        help=tr(
             "another one, as a last attempt: both ways in one window, how far "
             "apart, and the first input that differs"
         ),
@@ -45,33 +45,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="FILE",
-        help=tell("default: {name} beside the result", name=NAME),
+        help=tr("default: {name} beside the result", name=NAME),
     )
     parser.add_argument(
         "--no-open",
         action="store_true",
-        help=tell("do not show the page in a browser, only write it"),
+        help=tr("do not show the page in a browser, only write it"),
     )
-    who = parser.add_mutually_exclusive_group()
-    who.add_argument(
-        "--after-due",
-        action="store_true",
-        help=tell("what students see when the exercise is over; default: what they see before"),
-    )
-    who.add_argument(
-        "--whole", action="store_true", help=tell("for teachers: also what the exercise hides")
-    )
+    options.add_view(parser, tr("for teachers: also what the exercise hides"))
 
 
 def main(args: argparse.Namespace) -> int:
     """Write the page, and show it; see `grader.cli` for the exit codes."""
-    seen: View = "whole" if args.whole else "after_due" if args.after_due else "student"
+    seen = options.view_of(args)
     place = find(args.recording)
     if args.out is not None:
         files.check_writable(args.out)
         _check_is_no_part(args.out, args)
     recordings = load_all(place.recording)
-    render = load_player(recordings.nominal.scene)
+    render = load_subject(recordings.nominal.scene).player
     if render is None:
         raise UsageError(_not_played(place, recordings))
     other = None if args.compare is None else _other(args.compare, recordings, seen)
@@ -81,7 +73,7 @@ def main(args: argparse.Namespace) -> int:
         files.put(page, content.encode("utf-8"))
     else:
         files.write(page, content)
-    print(for_terminal(tell("The page that plays it: {page}", page=page)))
+    print(for_terminal(tr("The page that plays it: {page}", page=page)))
     if not args.no_open and page.is_file():
         browser.show(page.resolve().as_uri())
     return 0
@@ -89,21 +81,21 @@ def main(args: argparse.Namespace) -> int:
 
 def _check_is_no_part(out: Path, args: argparse.Namespace) -> None:
     """Refuse to write over what the page is made from."""
-    for given in error_file.inputs(args):
+    for given in options.inputs(args):
         place = find(given)
         beside = (place.folder / name for name in (RESULT, PAGE, *ARTIFACTS.values()))
         files.check_is_no_input(out, [given, *beside, *place.recording.rglob("*")])
 
 
-def _not_played(place: Place, recordings: Recordings) -> str:
+def _not_played(place: RecordingPlace, recordings: Recordings) -> Message:
     scene = recordings.nominal.scene
     page = place.folder / PAGE
     instead = (
-        say("look at {page}", page=page)
+        msg("look at {page}", page=page)
         if page.is_file()
-        else say("{page} beside its result shows it", page=PAGE)
+        else msg("{page} beside its result shows it", page=PAGE)
     )
-    return say(
+    return msg(
         "a recording of the scene {scene!r} cannot be played; {instead}",
         scene=scene,
         instead=instead,
@@ -115,17 +107,17 @@ def _other(given: Path, recordings: Recordings, seen: View) -> Playback:
     other = load_all(place.recording)
     if other.nominal.scene != recordings.nominal.scene:
         raise UsageError(
-            say(
-                "cannot compare recordings of the scenes {scene!r} and {other!r}; give"
-                " two of one scene",
-                scene=recordings.nominal.scene,
-                other=other.nominal.scene,
-            )
+            "cannot compare recordings of the scenes {scene!r} and {other!r}; give"
+            " two of one scene",
+            scene=recordings.nominal.scene,
+            other=other.nominal.scene,
         )
     return _playback(place, other, seen, None)
 
 
-def _playback(place: Place, recordings: Recordings, seen: View, other: Playback | None) -> Playback:
+def _playback(
+    place: RecordingPlace, recordings: Recordings, seen: View, other: Playback | None
+) -> Playback:
     older = place.older
     report = None if older is None else Report.of(older, place.folder, recordings, seen)
     origin = recordings.nominal.provenance

@@ -1,21 +1,34 @@
-"""Wait for a submission to be saved again; imported by `grader run --watch` only."""
+"""Grade a submission whenever it is saved; imported by `grader run --watch` only."""
 
 from __future__ import annotations
 
+import argparse
 import os
 import platform
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING
 
+from rich.console import Console
+from rich.text import Text
 from watchdog.events import FileSystemEvent, FileSystemEventHandler
 from watchdog.observers import Observer
 from watchdog.observers.api import BaseObserver
 from watchdog.observers.polling import PollingObserver
 
-from grader.errors import UsageError
-from grader.language.phrase import say
+from grader.cli import grade_one, options
+from grader.errors import GraderError, UsageError
+from grader.reports.wording import points as shown
+from grader.result.result import Result
+from grader.result.visible import student_view
+from grader.text import for_terminal
+from grader.translations import tr, translate
+
+if TYPE_CHECKING:
+    from grader.cli.live import Live
 
 #: Files whose change can change a verdict. What the grader writes has other names.
 SUFFIXES = (".py", ".cfg", ".toml", ".xml", ".zip")
@@ -42,11 +55,9 @@ def each_save(submission: Path, out: Path | None = None) -> Iterator[None]:
     folder = (submission if is_folder else submission.parent).absolute()
     if not folder.is_dir():
         raise UsageError(
-            say(
-                "cannot watch {submission}: {folder} does not exist",
-                submission=submission,
-                folder=folder,
-            )
+            "cannot watch {submission}: {folder} does not exist",
+            submission=submission,
+            folder=folder,
         )
     saves = Saves(folder, None if is_folder else submission.name, out and out.absolute())
     observer = _watching(saves, folder, is_folder)
@@ -135,3 +146,48 @@ def _start(observer: BaseObserver, saves: Saves, folder: Path, recursive: bool) 
     observer.schedule(saves, str(folder), recursive=recursive)
     observer.start()
     return observer
+
+
+def grade_each_save(args: argparse.Namespace, live: Live | None) -> int:
+    """Grade again and again, until Ctrl-C."""
+    last = None
+    for number, _ in enumerate(each_save(args.submission, grade_one.out_of(args))):
+        last = grade_again(args, live, last, clears=number > 0)
+    return 0
+
+
+def grade_again(
+    args: argparse.Namespace, live: Live | None, last: Result | None, *, clears: bool
+) -> Result | None:
+    """Grade once more, and return what is compared with the next time.
+
+    What cannot be used now may be usable after the next save.
+    """
+    console, messages = Console(highlight=False), Console(stderr=True, highlight=False)
+    if clears and console.is_terminal:
+        console.clear()
+    options.prepare(args)
+    try:
+        seen = student_view(grade_one.graded(args, live))
+        said = f"{time.strftime('%H:%M:%S')}  {change(last, seen)}"
+        console.print(Text(said, "bold"), soft_wrap=True)
+        last = seen
+    except GraderError as error:
+        messages.print(Text(for_terminal(translate(error.message))), soft_wrap=True)
+        options.write(error, args)
+    messages.print(tr("Waiting for the next save; Ctrl-C ends."), style="dim")
+    return last
+
+
+def change(last: Result | None, result: Result) -> str:
+    """What a score is compared with the last one: '62 -> 80 (+18)'."""
+    score = shown(result.score)
+    if last is None:
+        return tr("{score} of {max_score}", score=score, max_score=shown(result.max_score))
+    by = round(result.score - last.score, 2)
+    sign = "+" if by > 0 else ""
+    return (
+        f"{shown(last.score)} -> {score} ({sign}{shown(by)})"
+        if by
+        else tr("{score}, as before", score=score)
+    )

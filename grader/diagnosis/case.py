@@ -1,17 +1,21 @@
-"""A run as the rules see it, and how they put a place, a time and a foreign text into words."""
+"""A run as the rules see it, and how they put a place, a time and a foreign text into words.
+
+Where a process has told nothing of itself, its output tells of its end. What a program prints is as
+untrusted as what it tells.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import PurePath
 
-from grader.diagnosis import printed
-from grader.language.phrase import Phrase, joined, say
-from grader.recording.conduct import Conduct, End, EndKind, Place, Raised, Stop
+from grader.message import NOTHING, Message, joined, msg
+from grader.recording.observations import End, EndKind, Observations, Raised, SourceLine, Standstill
 from grader.recording.recording import Recording, Run
-from grader.scenes import load_scene
-from grader.scenes.scene import Endpoint, EndpointKind
+from grader.recording.subject import Endpoint, EndpointKind, load_subject
 from grader.text import clip, one_line, plain
 
 #: What an end of the submission's has to meet, to be of any use.
@@ -24,6 +28,23 @@ OPPOSITE: dict[EndKind, EndpointKind] = {
 _LONGEST = 200
 #: Shown as 0.0 [s].
 _AT_ONCE_S = 0.05
+#: So much of the end of an output is looked at [characters].
+_LOOKED_AT = 65_536
+# blanks of one line only: lines of nothing would be gone through again from each of them
+_FRAME = re.compile(
+    r'^[^\S\n]*File "(?P<file>[^"\n]{1,1000})", line (?P<line>\d{1,9})'
+    r"(?:, in (?P<function>[^\n]{1,200}))?"
+    r'(?:\n[^\S\n]{3,40}(?!\s|File ")(?P<text>[^\n]{0,1000}))?',
+    re.MULTILINE,
+)
+_ERROR = re.compile(r"^(?P<name>[A-Za-z_][\w.]{0,200})(?:: (?P<text>.*))?$")
+#: As far as the line that begins with the exception's name.
+_IN_THREAD = re.compile(
+    r"^Exception in thread [^\n]{0,200}:\n(Traceback [^\n]*\n(?:[ \t][^\n]*\n)+[^\n]*)",
+    re.MULTILINE,
+)
+#: Of Python's, of ROS's and of our own files; no submission's.
+_LIBRARIES = ("/site-packages/", "/dist-packages/", "/lib/python3", "/grader/run/", "<frozen ")
 
 
 @dataclass(frozen=True)
@@ -38,46 +59,48 @@ class Case:
         return self.recording.run
 
     @property
-    def conduct(self) -> Conduct:
+    def observed(self) -> Observations:
         """What its process has told of itself."""
-        return self.recording.conduct
+        return self.recording.observations
+
+    @property
+    def tail(self) -> str:
+        """The end of its output, as far as that is looked at."""
+        return self.recording.output[-_LOOKED_AT:]
+
+    @property
+    def last_line(self) -> str:
+        """The last line of its output with anything in it; '' for none."""
+        return next((line for line in reversed(self.tail.splitlines()) if line.strip()), "")
 
     @cached_property
     def raised(self) -> Raised | None:
         """The exception or signal that ended it; only for a run that ended so."""
         if self.run.outcome not in ("crashed", "killed"):
             return None
-        if self.conduct.is_told and self.conduct.raised is not None:
-            return self.conduct.raised
-        if self.run.outcome == "killed":
-            return printed.fatal_signal(self.recording.output)
-        return printed.last_exception(self.recording.output)
+        if self.observed.is_known and self.observed.raised is not None:
+            return self.observed.raised
+        crashed = self.run.outcome == "crashed"
+        return last_exception(self.tail) if crashed else None
 
-    @cached_property
-    def stop(self) -> Stop | None:
+    @property
+    def stop(self) -> Standstill | None:
         """Where it got stuck."""
-        if self.conduct.is_told and self.conduct.stop is not None:
-            return self.conduct.stop
-        return printed.stuck(self.recording.output) if self.run.outcome == "stalled" else None
+        return self.observed.stop if self.observed.is_known else None
 
     @property
     def ended_s(self) -> float | None:
         """When the program came to its end by itself, without an error; None if it did not."""
-        conduct = self.conduct
-        if conduct.is_told and conduct.raised is not None and self.run.outcome == "exited":
-            return conduct.raised.time_s  # sys.exit()
-        return conduct.returned_s if conduct.is_told else None
-
-    @property
-    def knows_when(self) -> bool:
-        """Whether times are known; in an output they are not."""
-        return self.conduct.is_told
+        observed = self.observed
+        if observed.is_known and observed.raised is not None and self.run.outcome == "exited":
+            return observed.raised.time_s  # sys.exit()
+        return observed.returned_s if observed.is_known else None
 
     @cached_property
     def ends(self) -> tuple[End, ...]:
         """The submission's ends of topics, services and actions, as far as they are known."""
-        if self.conduct.is_told:
-            return self.conduct.ends
+        if self.observed.is_known:
+            return self.observed.ends
         listened = {e.name for e in self.scene_has if e.kind == "subscription"}
         return tuple(
             End("publisher", topic.topic, topic.type, topic.topic in listened, 1)
@@ -87,54 +110,94 @@ class Case:
     @cached_property
     def scene_has(self) -> Sequence[Endpoint]:
         """What the scene publishes, listens to and serves."""
-        scene = load_scene(self.recording.scene)
+        scene = load_subject(self.recording.scene)
         return scene.endpoints(self.recording.trace, self.run.interfaces)
 
     @cached_property
-    def the_thing(self) -> str:
+    def the_thing(self) -> Message:
         """What is driven, with its article: 'the robot'."""
-        return load_scene(self.recording.scene).the_thing
+        return load_subject(self.recording.scene).the_thing
 
 
-def told(text: str) -> Phrase:
+def told(text: str) -> str:
     """A text of the submission's as it may stand in a line of ours; the same in any language."""
-    return Phrase(clip(one_line(plain(text[: 4 * _LONGEST])), _LONGEST))
+    return clip(one_line(plain(text[: 4 * _LONGEST])), _LONGEST)
 
 
-def sentences(*texts: str) -> Phrase:
-    """One behind the other; those that are '' are left out."""
+def sentences(*texts: Message) -> Message:
+    """One behind the other; what says nothing is left out."""
     return joined([text for text in texts if text], " ")
 
 
-def line(place: Place | None) -> str:
+def line(place: SourceLine | None) -> Message:
     """' (drive.py, line 39)', with a space before it; '' for no place."""
     if place is None:
-        return ""
-    return say(" ({file}, line {line})", file=told(place.file), line=place.line)
+        return NOTHING
+    return msg(" ({file}, line {line})", file=told(place.file), line=place.line)
 
 
-def function(place: Place | None) -> str:
+def function(place: SourceLine | None) -> str:
     """'on_pose()'; '' for no function."""
     name = told(place.function).rpartition(".")[2] if place is not None else ""
     return f"{name}()" if name else ""
 
 
-def at(time_s: float | None) -> str:
+def at(time_s: float | None) -> Message:
     """' at 6.0 s', ' right at the start'; '' for no time."""
     if time_s is None:
-        return ""
+        return NOTHING
     if time_s < _AT_ONCE_S:
-        return say(" right at the start")
-    return say(" at {time_s:.1f} s", time_s=time_s)
+        return msg(" right at the start")
+    return msg(" at {time_s:.1f} s", time_s=time_s)
 
 
-def after(time_s: float) -> str:
+def after(time_s: float) -> Message:
     """'after 6.0 s'."""
-    return say("after {time_s:.1f} s", time_s=time_s) if time_s >= _AT_ONCE_S else say("at once")
+    return msg("after {time_s:.1f} s", time_s=time_s) if time_s >= _AT_ONCE_S else msg("at once")
 
 
-def since(time_s: float) -> str:
+def since(time_s: float) -> Message:
     """' from 1.5 s on', ' from the start'."""
     if time_s < _AT_ONCE_S:
-        return say(" from the start")
-    return say(" from {time_s:.1f} s on", time_s=time_s)
+        return msg(" from the start")
+    return msg(" from {time_s:.1f} s on", time_s=time_s)
+
+
+# Output -------------------------------------------------------------------------------------
+
+
+def is_library(file: str) -> bool:
+    """Whether a file is of Python's, of ROS's or our own, and no submission's."""
+    return any(part in file for part in _LIBRARIES)
+
+
+def thread_exception(text: str) -> Raised | None:
+    """The first exception that ended a thread, as Python tells of it."""
+    found = _IN_THREAD.search(text)
+    return last_exception(found[0]) if found else None
+
+
+def last_exception(text: str) -> Raised | None:
+    """The exception of the last traceback, with the last line of the submission's own in it."""
+    start = text.rfind("Traceback (most recent call last)")
+    # a SyntaxError in the file that was started has no traceback of its own
+    part = text[max(start, 0) :]
+    frames = list(_FRAME.finditer(part))
+    if not frames:
+        return None
+    lines = part[frames[-1].end() :].splitlines()
+    error = next((match for line in lines if (match := _ERROR.match(line))), None)
+    if error is None:
+        return None
+    return Raised(error["name"], error["text"] or "", 0.0, _own_place(frames))
+
+
+def _own_place(frames: list[re.Match[str]]) -> SourceLine | None:
+    """The last of the frames that is no library's."""
+    own = (f for f in reversed(frames) if not is_library(f["file"]))
+    frame = next(own, None)
+    if frame is None:
+        return None
+    function, text = (frame["function"] or "").strip(), (frame["text"] or "").strip()
+    function = "" if function.startswith("<") else function
+    return SourceLine(PurePath(frame["file"]).name, int(frame["line"]), function, text)

@@ -1,4 +1,4 @@
-"""Rules about names and types: what the submission publishes, hears and calls, and who is there.
+"""Rules about connections: what the submission publishes, hears and calls, and who is there.
 
 A rule speaks only where it can name what was meant: something of the scene's that nearly has this
 name, or has this type. A program that has the right end as well tries several, and is let be.
@@ -6,6 +6,7 @@ name, or has this type. A program that has the right end as well tries several, 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from difflib import SequenceMatcher
 
@@ -13,19 +14,31 @@ from grader.diagnosis import standstill
 from grader.diagnosis.case import OPPOSITE, Case, line, since, told
 from grader.diagnosis.crash import misses_message
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.language.phrase import say
-from grader.recording.conduct import End, EndKind
-from grader.scenes.scene import Endpoint
+from grader.message import Message, msg
+from grader.recording.observations import End, EndKind
+from grader.recording.subject import Endpoint
 
 #: So alike two names have to be, 0 to 1, for one to be meant by the other.
 _ALIKE = 0.75
 #: A longer name is nobody's mistake.
 _LONGEST_NAME = 100
+#: rclpy's warning that two ends of a topic do not fit, from either side.
+_UNFIT = re.compile(
+    r"New (?P<other>subscription|publisher) discovered on topic '(?P<topic>[\w/~]{1,256})', "
+    r"(?:requesting|offering) incompatible QoS\.[^\n]{0,100}"
+    r"Last incompatible policy: (?P<policy>\w{1,40})"
+)
+#: A policy -> what the publisher has of it, and what the subscription has that this is too little
+#: for.
+_TOO_LITTLE = {
+    "RELIABILITY": ("BEST_EFFORT", "RELIABLE"),
+    "DURABILITY": ("VOLATILE", "TRANSIENT_LOCAL"),
+}
 
 
 def waits_in_vain(case: Case) -> Diagnosis | None:
     """It waits to the end for a service or an action that nobody offers."""
-    for wait in case.conduct.waits:
+    for wait in case.observed.waits:
         if wait.lasted_s is not None or "/msg/" in wait.type:
             continue
         there = [e for e in case.scene_has if e.kind in ("service", "action")]
@@ -35,27 +48,27 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
         if near is not None and near.name == wait.name:
             if near.type == wait.type:
                 continue
-            rest = say(
+            rest = msg(
                 " as {type}, but it is of type {wanted}", type=told(wait.type), wanted=near.type
             )
         elif any(e.name == wait.name for e in there):
             continue
         elif near is not None:
-            rest = say(", which nobody offers; there is {name}", name=near.name)
+            rest = msg(", which nobody offers; there is {name}", name=near.name)
         else:
-            rest = say(", which nobody offers")
+            rest = msg(", which nobody offers")
         named = (each.place for each in case.ends if (each.kind, each.name) == (kind, wait.name))
         place = next(named, None) or wait.place  # where the name stands is what is to be mended
         return Diagnosis(
             "waits_in_vain",
-            say(
+            msg(
                 "You wait for {what}{since}{rest}{where}.",
                 what=_served(kind, wait.name),
                 since=since(wait.since_s),
                 rest=rest,
                 where=line(place),
             ),
-            _mending(end, near) if near else say("Compare the name with `ros2 service list`."),
+            _mending(end, near) if near else msg("Compare the name with `ros2 service list`."),
             time_s=wait.since_s,
             place=place,
         )
@@ -65,9 +78,9 @@ def waits_in_vain(case: Case) -> Diagnosis | None:
 def publishes_to_nobody(case: Case) -> Diagnosis | None:
     """It publishes under a name or with a type that the scene does not listen to."""
 
-    def told_of(end: End, near: Endpoint) -> str:
+    def told_of(end: End, near: Endpoint) -> Message:
         if end.name == near.name:
-            return say(
+            return msg(
                 "You publish {type} on {name}, but {the_thing} listens to {wanted} there{where}.",
                 type=told(end.type),
                 name=near.name,
@@ -75,7 +88,7 @@ def publishes_to_nobody(case: Case) -> Diagnosis | None:
                 wanted=near.type,
                 where=line(end.place),
             )
-        return say(
+        return msg(
             "You publish {type} on {name}, where nobody listens; {the_thing} listens to "
             "{wanted}{where}.",
             type=told(end.type),
@@ -91,9 +104,9 @@ def publishes_to_nobody(case: Case) -> Diagnosis | None:
 def hears_nobody(case: Case) -> Diagnosis | None:
     """It subscribes under a name or with a type that nobody publishes."""
 
-    def told_of(end: End, near: Endpoint) -> str:
+    def told_of(end: End, near: Endpoint) -> Message:
         if end.name == near.name:
-            return say(
+            return msg(
                 "You subscribe to {name} as {type}, but {wanted} is published there, so no "
                 "message reaches you{where}.",
                 name=near.name,
@@ -101,7 +114,7 @@ def hears_nobody(case: Case) -> Diagnosis | None:
                 wanted=near.type,
                 where=line(end.place),
             )
-        return say(
+        return msg(
             "You subscribe to {name}, which nobody publishes; there is {wanted}{where}.",
             name=told(end.name),
             wanted=_near(end, near),
@@ -121,19 +134,22 @@ def misses_what_it_hears(case: Case) -> Diagnosis | None:
 def calls_nobody(case: Case) -> Diagnosis | None:
     """It calls a service or an action under a name or with a type that nobody offers."""
 
-    def told_of(end: End, near: Endpoint) -> str:
-        words = {"what": _served(end.kind, end.name), "where": line(end.place)}
+    def told_of(end: End, near: Endpoint) -> Message:
+        words: dict[str, str | Message] = {
+            "what": _served(end.kind, end.name),
+            "where": line(end.place),
+        }
         if end.name == near.name:
             words |= {"type": told(end.type), "wanted": near.type}
             if end.used:
-                return say("You call {what} as {type}, but it is {wanted}{where}.", **words)
-            return say(
+                return msg("You call {what} as {type}, but it is {wanted}{where}.", **words)
+            return msg(
                 "You have a client for {what} as {type}, but it is {wanted}{where}.", **words
             )
         words |= {"wanted": _near(end, near)}
         if end.used:
-            return say("You call {what}, which nobody offers; there is {wanted}{where}.", **words)
-        return say(
+            return msg("You call {what}, which nobody offers; there is {wanted}{where}.", **words)
+        return msg(
             "You have a client for {what}, which nobody offers; there is {wanted}{where}.", **words
         )
 
@@ -143,7 +159,7 @@ def calls_nobody(case: Case) -> Diagnosis | None:
 
 
 def _first(
-    case: Case, kind: EndKind, key: str, told_of: Callable[[End, Endpoint], str]
+    case: Case, kind: EndKind, key: str, told_of: Callable[[End, Endpoint], Message]
 ) -> Diagnosis | None:
     """About the first end of a kind that meets nobody, and is near to what the scene has."""
     for end in case.ends:
@@ -158,6 +174,54 @@ def _first(
             continue  # somebody has published
         return Diagnosis(key, told_of(end, near), _mending(end, near), place=end.place)
     return None
+
+
+def has_unfit_qos(case: Case) -> Diagnosis | None:
+    """An end of a topic that nothing goes through, for its QoS does not fit the other's."""
+    for found in _UNFIT.finditer(case.tail):
+        kind: EndKind = "publisher" if found["other"] == "subscription" else "subscription"
+        topic = found["topic"]
+        if not any(e.kind == OPPOSITE[kind] and e.name == topic for e in case.scene_has):
+            continue
+        mine = [end for end in case.observed.ends if (end.kind, end.name) == (kind, topic)]
+        place = mine[0].place if mine else None
+        return Diagnosis(
+            "has_unfit_qos",
+            _unfit(case, kind, topic, found["policy"], line(place)),
+            msg("Write 10 instead of the QoS profile."),
+            place=place,
+        )
+    return None
+
+
+def _unfit(case: Case, kind: EndKind, topic: str, policy: str, where: Message) -> Message:
+    """In what a publisher or subscription and the other end differ."""
+    sends, wants = _TOO_LITTLE.get(policy, ("", ""))
+    words = {"topic": topic, "where": where, "sends": sends, "wants": wants, "policy": policy}
+    if kind == "publisher" and sends:
+        return msg(
+            "Your publisher on {topic}{where} is {sends}, {the_thing} listens {wants}: nothing "
+            "arrives.",
+            the_thing=case.the_thing,
+            **words,
+        )
+    if sends:
+        return msg(
+            "Your subscription on {topic}{where} asks for {wants}, but it is published {sends}: "
+            "nothing reaches you.",
+            **words,
+        )
+    if kind == "publisher":
+        return msg(
+            "Your publisher on {topic}{where} does not fit the other end's, by its {policy}: "
+            "nothing arrives.",
+            **words,
+        )
+    return msg(
+        "Your subscription on {topic}{where} does not fit the other end's, by its {policy}: "
+        "nothing arrives.",
+        **words,
+    )
 
 
 def nearest(end: End, case: Case) -> Endpoint | None:
@@ -197,29 +261,29 @@ def _meets_itself(case: Case, end: End) -> bool:
     return any(each.kind == other and each.name == end.name for each in case.ends)
 
 
-def _served(kind: EndKind, name: str) -> str:
+def _served(kind: EndKind, name: str) -> Message:
     """What a client of this kind is for: 'the service /spawn'."""
     if kind == "action_client":
-        return say("the action {name}", name=told(name))
-    return say("the service {name}", name=told(name))
+        return msg("the action {name}", name=told(name))
+    return msg("the service {name}", name=told(name))
 
 
-def _near(end: End, near: Endpoint) -> str:
+def _near(end: End, near: Endpoint) -> str | Message:
     """The scene's own, with its type where that is another one."""
     if end.type == near.type:
         return near.name
-    return say("{name} of type {type}", name=near.name, type=near.type)
+    return msg("{name} of type {type}", name=near.name, type=near.type)
 
 
-def _mending(end: End, near: Endpoint) -> str:
+def _mending(end: End, near: Endpoint) -> Message:
     """What to write instead."""
     package, kind, name = near.type.split("/")
     imported = f"`from {package}.{kind} import {name}`"
     if end.type == near.type:
-        return say("Write '{name}' there.", name=near.name)
+        return msg("Write '{name}' there.", name=near.name)
     if end.name == near.name:
-        return say("Make it with {type}: {imported}.", type=name, imported=imported)
-    return say(
+        return msg("Make it with {type}: {imported}.", type=name, imported=imported)
+    return msg(
         "Write '{name}' there, and make it with {type}: {imported}.",
         name=near.name,
         type=name,

@@ -6,11 +6,11 @@ import re
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis import printed, slips, usual
-from grader.diagnosis.case import Case, at, line, sentences, told
+from grader.diagnosis import slips, usual
+from grader.diagnosis.case import Case, at, line, sentences, thread_exception, told
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.language.phrase import Phrase, marked, say
-from grader.recording.conduct import Place, Raised
+from grader.message import NOTHING, Message, msg, plain_text
+from grader.recording.observations import Raised, SourceLine
 from grader.text import clip
 
 #: What generated messages say of a value that they refuse.
@@ -23,14 +23,13 @@ _PLACE = re.compile(r" \([^()]*, line \d+\)$")
 _LONGEST_ERROR = 120
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
 _NONE = "'NoneType'"
-_REMARK = marked("{remark}.")
 #: For people who do not know the kernel's words.
 _SIGNALS = {
-    "SIGABRT": say("a library gave up on a value that it cannot take"),
-    "SIGSEGV": say("it reached into memory that is not its own"),
-    "SIGXCPU": say("it used more processor time than a run may"),
-    "SIGXFSZ": say("it wrote a larger file than a run may"),
-    "SIGKILL": say("somebody killed it, or it took too much"),
+    "SIGABRT": msg("a library gave up on a value that it cannot take"),
+    "SIGSEGV": msg("it reached into memory that is not its own"),
+    "SIGXCPU": msg("it used more processor time than a run may"),
+    "SIGXFSZ": msg("it wrote a larger file than a run may"),
+    "SIGKILL": msg("somebody killed it, or it took too much"),
 }
 
 
@@ -41,46 +40,45 @@ def unreadable(case: Case) -> Diagnosis | None:
         return None
     text = told(raised.text)
     if "null bytes" in text and raised.type in (*_NOT_READ, "ValueError"):
-        cause = say(
+        cause = msg(
             "Python cannot read your file{where}: it holds NUL bytes, as text in UTF-16 does.",
             where=line(raised.place),
         )
         return _saved_wrongly(cause, raised)
     if raised.type in (*_NOT_READ, "UnicodeDecodeError") and any(e in text for e in _ENCODING):
-        if raised.type == "UnicodeDecodeError" and case.conduct.ends:
+        if raised.type == "UnicodeDecodeError" and case.observed.ends:
             return None  # it read something else while it ran
-        cause = say(
+        cause = msg(
             "Python cannot read your file{where}: it is not UTF-8 text ({text}).",
             where=line(raised.place),
             text=text,
         )
         return _saved_wrongly(cause, raised)
     if raised.type in _NOT_READ:
-        cause = say(
+        cause = msg(
             "Python cannot read your file: {type}: {text}{where}.",
             type=raised.type,
-            text=Phrase(_PLACE.sub("", text)),
+            text=_PLACE.sub("", text),
             where=line(raised.place),
         )
-        help_ = say(
+        help_ = msg(
             "Look at that line and the one above it: a bracket, quote or colon that"
             " is missing is noticed only where something else begins."
         )
         if raised.type != "SyntaxError":
-            help_ = say(
-                "Look at the blanks at the beginning of that line and the one above it:"
-                " what belongs together begins in the same column, with blanks or with "
-                "tabs, not both."
+            help_ = msg(
+                "Look at the spaces at the beginning of that line and the one above it: lines "
+                "of one block begin in the same column, with spaces or with tabs, not both."
             )
         return Diagnosis("unreadable", cause, help_, place=raised.place)
     return None
 
 
-def _saved_wrongly(cause: str, raised: Raised) -> Diagnosis:
+def _saved_wrongly(cause: Message, raised: Raised) -> Diagnosis:
     return Diagnosis(
         "unreadable",
         cause,
-        say("Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."),
+        msg("Save the file as UTF-8: editors have that under 'Save with encoding' or 'Save as'."),
         place=raised.place,
     )
 
@@ -89,12 +87,12 @@ def wrong_value(case: Case) -> Diagnosis | None:
     """It gives a field of a message a value of the wrong type, or out of its range."""
     raised = case.raised
     # a program may have caught the exception, and printed what it says
-    found = _FIELD.search(printed.end(case.recording.output) if raised is None else raised.text)
+    found = _FIELD.search(case.tail if raised is None else raised.text)
     if found is None:
         return None
     when, place = (None, None) if raised is None else (_when(case, raised), raised.place)
     what, help_ = _wanted(found["field"], told(found["what"]), place)
-    cause = say(
+    cause = msg(
         "The field {field} of a message must be {what}; something else was given{at}{where}.",
         field=told(found["field"]),
         what=what,
@@ -104,7 +102,7 @@ def wrong_value(case: Case) -> Diagnosis | None:
     return Diagnosis("wrong_value", cause, help_, time_s=when, place=place)
 
 
-def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
+def _wanted(field: str, what: str, place: SourceLine | None) -> tuple[Message, Message]:
     """What a field must be, and how to make it so."""
     text = place.text if place is not None else ""
     literal = re.search(rf"\b{field}\s*=\s*([-+]?\d{{1,20}}(?:\.\d{{0,20}})?)(?![\w.])", text)
@@ -112,10 +110,10 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
     if limits := _RANGE.search(what):
         low, high = limits.groups()
         return (
-            say("a whole number from {low} to {high}", low=low, high=high),
+            msg("a whole number from {low} to {high}", low=low, high=high),
             sentences(
-                say("{number} is not.", number=number) if number else "",
-                say(
+                msg("{number} is not.", number=number) if number else NOTHING,
+                msg(
                     "Give it one from {low} to {high}: min() and max() keep what is calculated "
                     "within.",
                     low=low,
@@ -124,17 +122,17 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
             ),
         )
     if "sequence" in what and "'float'" in what:
-        return say("a list of floats"), say("Give it numbers in brackets, as [0.0, 1.5].")
+        return msg("a list of floats"), msg("Give it numbers in brackets, as [0.0, 1.5].")
     if "sequence" in what and "'str'" in what:
-        return say("a list of texts"), say("Give it texts in brackets, as ['one', 'two'].")
+        return msg("a list of texts"), msg("Give it texts in brackets, as ['one', 'two'].")
     if "'float'" in what:
-        return say("a float"), say(
+        return msg("a float"), msg(
             "Write {whole}.0 instead of {whole}, and float(...) around what may be an int.",
             whole=number if number and "." not in number else "2",
         )
     if "'int'" in what:
         number = number or "255.0"
-        return say("an int"), say(
+        return msg("an int"), msg(
             "Write {whole} instead of {number}, and int(...) around what is calculated.",
             whole=number.partition(".")[0],
             number=number,
@@ -143,13 +141,13 @@ def _wanted(field: str, what: str, place: Place | None) -> tuple[str, str]:
         kind = re.search(r"'(\w+)'", what)
         name = kind[1] if kind else "message"
         if name in ("Time", "Duration"):
-            return say("a {name} message", name=name), say(
+            return msg("a {name} message", name=name), msg(
                 "Write .to_msg() behind it: a clock's now().to_msg()."
             )
-        return say("a {name}", name=name), say(
+        return msg("a {name}", name=name), msg(
             "Set the parts of {field} one by one, as in msg.{field}.x = 2.0.", field=told(field)
         )
-    return Phrase(what.rstrip(".")), say(
+    return plain_text(what.rstrip(".")), msg(
         "`ros2 interface show TYPE` lists the fields of a message."
     )
 
@@ -159,7 +157,7 @@ def ended_itself(case: Case) -> Diagnosis | None:
     if case.run.outcome != "crashed":
         return None
     raised = case.raised
-    help_ = say(
+    help_ = msg(
         "Look for sys.exit(), exit() or a return code of main(): a node that is"
         " to go on stays in rclpy.spin(node)."
     )
@@ -167,21 +165,21 @@ def ended_itself(case: Case) -> Diagnosis | None:
         when = _when(case, raised)
         said = told(raised.text)
         value = said if said.isdecimal() else repr(said)
-        cause = say(
+        cause = msg(
             "Your program ended itself{at} by sys.exit({value}){where}.",
             at=at(when),
-            value=Phrase(value),
+            value=value,
             where=line(raised.place),
         )
         return Diagnosis("ended_itself", cause, help_, time_s=when, place=raised.place)
     if raised is not None:
         return None
     exit_code = case.run.exit_code
-    cause = say(
+    cause = msg(
         "Your program ended with exit code {exit_code}, by no exception.", exit_code=exit_code
     )
-    if last := printed.last_line(case.recording.output):
-        cause = say(
+    if last := case.last_line:
+        cause = msg(
             "Your program ended with exit code {exit_code}, by no exception; the last that it "
             "printed is: {last!r}.",
             exit_code=exit_code,
@@ -199,7 +197,7 @@ def crashed(case: Case) -> Diagnosis | None:
     said = slips.explains(case, raised) or usual.known(raised)
     place = said.place if said is not None and said.place is not None else raised.place
     at_line = place if said is not None and said.text else raised.place
-    cause = say(
+    cause = msg(
         "Your node crashed{at}{error}{where}.",
         at=at(when),
         error=_error(raised, said),
@@ -211,11 +209,11 @@ def crashed(case: Case) -> Diagnosis | None:
 
 def thread_crashed(case: Case) -> Diagnosis | None:
     """An exception ended one of its threads, and the rest went on."""
-    raised = case.raised or printed.in_thread(case.recording.output)
+    raised = case.raised or thread_exception(case.tail)
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
     said = usual.known(raised)
-    cause = say(
+    cause = msg(
         "A thread of your program crashed{error}{where}.",
         error=_error(raised, said),
         where=line(raised.place),
@@ -233,20 +231,20 @@ def misses_message(case: Case) -> bool:
     )
 
 
-def _error(raised: Raised, said: usual.Said | None) -> str:
+def _error(raised: Raised, said: usual.Said | None) -> Message:
     """': TypeError: what it says', or ' (TypeError): ' and what we say instead."""
     name, text = told(raised.type).rpartition(".")[2], told(raised.text).rstrip(".")
     if said is not None and said.text:
-        return say(" ({name}): {error}", name=Phrase(name), error=clip(said.text, _LONGEST_ERROR))
+        return msg(" ({name}): {error}", name=name, error=said.text)
     text = clip(text, _LONGEST_ERROR)
-    return say(": {error}", error=Phrase(f"{name}: {text}" if text else name))
+    return msg(": {error}", error=f"{name}: {text}" if text else name)
 
 
-def _mending(raised: Raised, said: usual.Said | None) -> str:
-    whole = say("The whole traceback is in output.txt.")
+def _mending(raised: Raised, said: usual.Said | None) -> Message:
+    whole = msg("The whole traceback is in output.txt.")
     help_ = said.help if said is not None else usual.meaning(raised)
     if not help_ and raised.place is None:
-        help_ = say("None of its lines is in your own files.")
+        help_ = msg("None of its lines is in your own files.")
     return sentences(help_, whole)
 
 
@@ -259,11 +257,11 @@ def killed(case: Case) -> Diagnosis | None:
     name = told(raised.type) if raised is not None else _signal(run.exit_code)
     when = None if raised is None else _when(case, raised)
     place = None if raised is None else raised.place
-    signal = say(" by the signal {name}", name=Phrase(name)) if name else ""
+    signal = msg(" by the signal {name}", name=name) if name else ""
     words = {"at": at(when), "signal": signal, "where": line(place)}
-    cause = say("Your program was killed{at}{signal}{where}.", **words)
+    cause = msg("Your program was killed{at}{signal}{where}.", **words)
     if name in _SIGNALS:
-        cause = say(
+        cause = msg(
             "Your program was killed{at}{signal}{where}: {why}.", why=_SIGNALS[name], **words
         )
     cause = sentences(cause, _limit(case))
@@ -279,33 +277,29 @@ def _signal(exit_code: int | None) -> str:
     return str(-exit_code)
 
 
-def _after(signal: str) -> str:
+def _after(signal: str) -> Message:
     if signal == "SIGABRT":
-        return say(
+        return msg(
             "Look at the values that this line gives to a message: 2.0 for a float,"
             " 255 for an int, and nothing beyond the range of its type."
         )
     if signal in ("SIGKILL", "SIGTERM"):
-        return say(
+        return msg(
             "Look for os.kill() and for lists that grow without end; output.txt may tell more."
         )
-    return say("output.txt may tell more, and the remarks on the run below.")
+    return msg("output.txt may tell more, and the remarks on the run below.")
 
 
-def _limit(case: Case) -> str:
-    """A sentence of the run's remarks on what it was refused; '' for none."""
+def _limit(case: Case) -> Message:
+    """A sentence of the run's remarks on what it was refused; nothing for none."""
     for flag in case.run.flags:
-        if flag.startswith("the node ended with "):
-            known = flag.values.get("limit") if isinstance(flag, Phrase) else None
-            return _remark(flag.partition(": ")[2], known or flag)
-        if case.run.outcome == "killed" and flag.startswith(("the node ", "the whole grading ")):
-            return _remark(flag, flag)
-    return ""
-
-
-def _remark(text: str, remark: str) -> Phrase:
-    return Phrase(f"{told(text).capitalize()}.", _REMARK, {"remark": remark})
+        if limit := flag.values.get("limit"):
+            return msg("{remark!u}.", remark=limit)
+        is_why = str(flag).startswith(("the node ", "the whole grading "))
+        if is_why and case.run.outcome == "killed":
+            return msg("{remark!u}.", remark=flag)
+    return NOTHING
 
 
 def _when(case: Case, raised: Raised) -> float | None:
-    return raised.time_s if case.knows_when and raised is case.conduct.raised else None
+    return raised.time_s if case.observed.is_known and raised is case.observed.raised else None

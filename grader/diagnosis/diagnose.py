@@ -13,14 +13,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
-from grader.diagnosis import caught, connections, crash, imports, slips, standstill, timers, warned
+from grader.diagnosis import connections, crash, imports, slips, standstill, unnoticed
 from grader.diagnosis.case import Case, line, sentences, told
-from grader.diagnosis.costliest import costliest
-from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.verdict import Verdict
-from grader.language.phrase import say
+from grader.message import msg
 from grader.recording.recording import Recordings
-from grader.text import one_line
+from grader.text import in_one_line
 
 Rule = Callable[[Case], Diagnosis | None]
 #: What keeps a run from going on.
@@ -34,10 +33,10 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.sends_too_much,
     crash.killed,
     crash.thread_crashed,
-    caught.ended_by_caught,
+    unnoticed.ended_by_caught,
     connections.waits_in_vain,
     connections.publishes_to_nobody,
-    warned.has_unfit_qos,
+    connections.has_unfit_qos,
     connections.hears_nobody,
     connections.calls_nobody,
     standstill.does_nothing,
@@ -49,13 +48,13 @@ RULES: Final[tuple[Rule, ...]] = (
     standstill.spins_in_loop,
     standstill.never_spins,
     standstill.ends_early,
-    timers.waits_for_timer,
+    unnoticed.waits_for_timer,
 )
 #: What only disturbs it; asked when nothing keeps any run from going on.
 DISTURBING: Final[tuple[Rule, ...]] = (
-    caught.hides_errors,
-    warned.never_awaits,
-    timers.makes_timers,
+    unnoticed.hides_errors,
+    unnoticed.never_awaits,
+    unnoticed.makes_timers,
     standstill.publishes_without_waiting,
     standstill.slow_callback,
     standstill.hears_once,
@@ -91,7 +90,7 @@ def _in_run(found: Diagnosis, number: int) -> Diagnosis:
     """What was found in a run, fit to be shown."""
     cause = found.cause
     if number:
-        cause = say("In varied run {number}: {cause}", number=number, cause=cause)
+        cause = msg("In varied run {number}: {cause}", number=number, cause=cause)
     return _shown(replace(found, run=number, cause=cause))
 
 
@@ -100,11 +99,12 @@ def _shown(found: Diagnosis) -> Diagnosis:
     if place is not None:
         place = replace(
             place,
-            file=str(told(place.file)),
-            function=str(told(place.function)),
-            text=str(told(place.text)),
+            file=told(place.file),
+            function=told(place.function),
+            text=told(place.text),
         )
-    return replace(found, cause=one_line(found.cause), help=one_line(found.help), place=place)
+    cause, help_ = in_one_line(found.cause), in_one_line(found.help)
+    return replace(found, cause=cause, help=help_, place=place)
 
 
 def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
@@ -115,34 +115,38 @@ def _with_source(found: Diagnosis, case: Case) -> Diagnosis:
     return _shown(_with_unused(found, case) or _with_place(found, case))
 
 
+def _text(found: Diagnosis) -> str:
+    return f"{found.cause!s} {found.help!s}"
+
+
 def _with_unused(found: Diagnosis, case: Case) -> Diagnosis | None:
     """The finding with the end that it speaks of, where that was never used."""
-    if case.conduct.spun_s is None:
+    if case.observed.spun_s is None:
         return None
     there = {(each.name, each.type) for each in case.scene_has}
-    for end in case.conduct.ends:
-        is_meant = (end.name, end.type) in there and end.name in f"{found.cause} {found.help}"
+    for end in case.observed.ends:
+        is_meant = (end.name, end.type) in there and end.name in _text(found)
         if not is_meant or end.used or end.kind not in ("publisher", "client"):
             continue
         if end.kind == "publisher":
-            unsent = say("Your publisher{where} has sent no message.", where=line(end.place))
+            unsent = msg("Your publisher{where} has sent no message.", where=line(end.place))
             return replace(found, help=sentences(found.help, unsent), place=end.place)
-        unsent = say("Your client{where} has sent no request.", where=line(end.place))
+        unsent = msg("Your client{where} has sent no request.", where=line(end.place))
         said = sentences(found.cause, unsent)
         made = slips.unsent(case)
         if made is None:
             return replace(found, cause=said, place=end.place)
-        help_ = say("Send the request that you make: call_async(request).")
+        help_ = msg("Send the request that you make: call_async(request).")
         return replace(found, cause=said, help=help_, place=made)
     return None
 
 
 def _with_place(found: Diagnosis, case: Case) -> Diagnosis:
     """The finding with the line that sends what its text speaks of first."""
-    text = f"{found.cause} {found.help}"
+    text = _text(found)
     driven_by = {(each.name, each.type) for each in case.scene_has if each.kind == "subscription"}
     first, place = len(text), found.place
-    for end in case.conduct.ends:
+    for end in case.observed.ends:
         words = [end.name.rpartition("/")[2], end.type.rpartition("/")[2]]
         patterns = [rf"\b{re.escape(word)}\b" for word in words if word]
         if end.kind == "publisher" and (end.name, end.type) in driven_by:

@@ -1,11 +1,15 @@
-"""What a diagnosis is: one cause, for the first line of a report."""
+"""What a diagnosis is: one cause, for the first line of a report; at worst the costliest check."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from grader.recording.conduct import Place
+from grader.exercise.verdict import Verdict
+from grader.message import Message, msg
+from grader.recording.observations import SourceLine
 from grader.strict_json import SPARSE
+from grader.text import in_one_line
 
 #: The key of a diagnosis that repeats the finding of a check.
 CHECK = "check"
@@ -26,9 +30,37 @@ class Diagnosis:
     """
 
     key: str
-    cause: str
-    help: str
+    cause: Message
+    help: Message
     run: int = 0
     time_s: float | None = field(default=None, metadata=SPARSE)
-    place: Place | None = field(default=None, metadata=SPARSE)
+    place: SourceLine | None = field(default=None, metadata=SPARSE)
     check: str = field(default="", metadata=SPARSE)
+
+
+def costliest(verdicts: Sequence[Verdict]) -> Diagnosis | None:
+    """The finding of the check that costs most, with those that wait for it."""
+    failed = [verdict for verdict in verdicts if verdict.status == "failed"]
+    failed = failed or [verdict for verdict in verdicts if not verdict.passed]
+    if not failed:
+        return None
+    worst = max(failed, key=lambda verdict: _cost(verdict, verdicts))  # the first of equals
+    first = worst.evidence[0] if worst.evidence else None
+    return Diagnosis(
+        CHECK,
+        in_one_line(worst.rationale) or msg("{title}: not as asked for.", title=worst.title),
+        in_one_line(worst.help),
+        run=first.run if first is not None else 0,
+        time_s=first.time_s if first is not None else None,
+        check=worst.check,
+    )
+
+
+def _cost(failed: Verdict, verdicts: Sequence[Verdict]) -> float:
+    """What it costs, and all that is not judged because of it [points]."""
+    lost = {failed.check: failed.max_score - failed.score}
+    for _ in verdicts:  # one that waits may be waited for
+        for verdict in verdicts:
+            if verdict.status == "not_judged" and not lost.keys().isdisjoint(verdict.depends_on):
+                lost.setdefault(verdict.check, verdict.max_score)
+    return sum(lost.values())

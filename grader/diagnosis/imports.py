@@ -7,8 +7,8 @@ import sys
 
 from grader.diagnosis.case import Case, line, told
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.language.phrase import Phrase, say
-from grader.recording.conduct import Raised
+from grader.message import msg
+from grader.recording.observations import Raised
 
 #: What Python adds to some texts, and nobody needs.
 _PATH = re.compile(r" \((/[^()]*|unknown location)\)$")
@@ -29,19 +29,19 @@ def not_importable(case: Case) -> Diagnosis | None:
     if hidden is not None:
         return hidden
     text = _PATH.sub("", told(raised.text))
-    cause = say(
+    cause = msg(
         "Your program cannot import what it needs: {type}: {text}{where}.",
         type=raised.type,
-        text=Phrase(text),
+        text=text,
         where=line(raised.place),
     )
-    help_ = say(
+    help_ = msg(
         "Compare the name with the one in the exercise or in ROS's "
         "documentation. A module of your own has to be in what you hand in, "
         "beside the file or in its package."
     )
     if _INTERFACES.match(text):
-        help_ = say(
+        help_ = msg(
             "Compare the name. If it is right, this package is not installed where "
             "your node was graded: take std_msgs, std_srvs or geometry_msgs "
             "instead, or ask whoever runs the grader to install it."
@@ -60,19 +60,19 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
         return None
     name = told(name)
     which = (
-        say("Your file is itself called {name}.py", name=name)
+        msg("Your file is itself called {name}.py", name=name)
         if is_named_so
-        else say("A file of your own is called {name}.py", name=name)
+        else msg("A file of your own is called {name}.py", name=name)
     )
     return Diagnosis(
         "not_importable",
-        say(
+        msg(
             "{which}, and so hides the package {name} from which you import{where}.",
             which=which,
             name=name,
             where=line(raised.place),
         ),
-        say("Give {name}.py another name.", name=name),
+        msg("Give {name}.py another name.", name=name),
         place=raised.place,
     )
 
@@ -80,9 +80,8 @@ def _hides_package(raised: Raised) -> Diagnosis | None:
 def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
     """What it asks for is in its own package."""
     file = raised.place.file if raised.place else ""
-    found = (
-        each for each in case.conduct.slips if each.kind == "beside" and each.place.file == file
-    )
+    beside = (each for each in case.observed.lint_findings if each.kind == "beside")
+    found = (each for each in beside if each.place.file == file)
     slip = next((each for each in found if f"'{each.name}'" in raised.text), None)
     if slip is None:
         return None
@@ -94,14 +93,14 @@ def _lies_beside(case: Case, raised: Raised) -> Diagnosis | None:
         instead = written.replace(f"from {name} ", f"from {near} ", 1)
     return Diagnosis(
         "not_importable",
-        say(
+        msg(
             "Your program cannot import {name}: it lies beside, in the package "
             "{package}, and in a package its name is {near}{where}.",
             name=name,
-            package=Phrase(package),
+            package=package,
             near=near,
             where=line(raised.place),
         ),
-        say("Write `{instead}` there.", instead=instead),
+        msg("Write `{instead}` there.", instead=instead),
         place=raised.place,
     )

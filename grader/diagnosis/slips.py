@@ -1,7 +1,7 @@
 """What a look at the source has shown, where it explains what went wrong.
 
-A slip is nothing wrong by itself (`Slip` says what each is): an exception explains it, or a check
-that lost points stands beside it.
+A lint finding is nothing wrong by itself (`LintFinding` says what each is): an exception explains
+it, or a check that lost points stands beside it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from dataclasses import replace
 from grader.diagnosis.case import Case, function, line, sentences, told
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.diagnosis.standstill import never_spins
+from grader.diagnosis.unnoticed import NOT_CAUGHT
 from grader.diagnosis.usual import Said
-from grader.language.phrase import Phrase, say
-from grader.recording.conduct import Place, Raised, Slip, SlipKind
+from grader.message import Message, as_message, msg
+from grader.recording.observations import LintFinding, LintKind, Raised, SourceLine
 
 #: So much of an exception's text is looked at [characters].
 _LONGEST = 1000
@@ -30,8 +31,8 @@ def explains(case: Case, raised: Raised) -> Said | None:
     return next((said for rule in _RULES if (said := rule(case, raised)) is not None), None)
 
 
-def _of_kind(case: Case, *kinds: SlipKind) -> Iterator[Slip]:
-    return (slip for slip in case.conduct.slips if slip.kind in kinds)
+def _of_kind(case: Case, *kinds: LintKind) -> Iterator[LintFinding]:
+    return (slip for slip in case.observed.lint_findings if slip.kind in kinds)
 
 
 def _not_global(case: Case, raised: Raised) -> Said | None:
@@ -41,18 +42,18 @@ def _not_global(case: Case, raised: Raised) -> Said | None:
     for slip in _of_kind(case, "global"):
         if slip.name == found[1]:
             word = told(slip.near)
-            outside = say("outside")
+            outside = msg("outside")
             if word.startswith("global"):
-                outside = say("at the top of the file")
-            here = function(raised.place) or say("this function")
+                outside = msg("at the top of the file")
+            here = as_message(function(raised.place)) or msg("this function")
             return Said(
-                say(
+                msg(
                     "Write `{word}` as the first line of {here}: without it that is another"
                     " variable, which has no value yet.",
                     word=word,
                     here=here,
                 ),
-                say(
+                msg(
                     "`{name}` is assigned {outside} (line {line}) and in {here}: add `{word}`",
                     name=told(slip.name),
                     outside=outside,
@@ -74,7 +75,7 @@ def _without_self(case: Case, raised: Raised) -> Said | None:
             rest = written.partition("(")[2].lstrip()
             comma = "" if rest.startswith(")") else ", "
             return Said(
-                say(
+                msg(
                     "A method takes self before all else: write `{written}`.",
                     written=f"{written.partition('(')[0]}(self{comma}{rest}",
                 ),
@@ -90,7 +91,7 @@ def _hidden_method(case: Case, raised: Raised) -> Said | None:
         name = told(slip.name)
         if f"self.{name}(" in raised.place.text:
             return Said(
-                say(
+                msg(
                     "self.{name} is set to something else{where}, and that hides the method "
                     "{name}(): give one of them another name.",
                     name=name,
@@ -106,14 +107,14 @@ def _class_given(case: Case, raised: Raised) -> Said | None:
         if place is not None and ("spin" in place.text or place.line == slip.place.line):
             call, name = told(slip.near), told(slip.name)
             return Said(
-                say(
-                    "The brackets are missing: node = {name}(), then {call}(node).",
+                msg(
+                    "The parentheses are missing: node = {name}(), then {call}(node).",
                     name=name,
                     call=call,
                 ),
-                say(
+                msg(
                     "{call} was given a class, not a node that was made of it",
-                    call=Phrase(call.rpartition(".")[2]),
+                    call=call.rpartition(".")[2],
                 ),
                 slip.place,
             )
@@ -132,8 +133,8 @@ def _service_for_request(case: Case, raised: Raised) -> Said | None:
     if name not in services:
         return None
     return Said(
-        say("Write {name}.Request(...) there: that is what a request is made of.", name=told(name)),
-        say("{name} is the service, not a request to it", name=told(name)),
+        msg("Write {name}.Request(...) there: that is what a request is made of.", name=told(name)),
+        msg("{name} is the service, not a request to it", name=told(name)),
     )
 
 
@@ -145,20 +146,20 @@ _RULES: tuple[Callable[[Case, Raised], Said | None], ...] = (
 def called_at_once(case: Case) -> Diagnosis | None:
     """What was to run in a thread runs in the main program, which gets no further."""
     for slip in _of_kind(case, "called"):
-        if never_spins(case) is None and case.conduct.spun_s is not None:
+        if never_spins(case) is None and case.observed.spun_s is not None:
             continue
         name = told(slip.name)
         return Diagnosis(
             "called_at_once",
-            say(
+            msg(
                 "{called}{where} calls {name}() at once, in the main program, and what comes "
                 "after waits until it returns.",
                 called=f"{told(slip.near)}{name}())",
                 where=line(slip.place),
                 name=name,
             ),
-            say(
-                "Hand it over by its name, without brackets: {handed}.",
+            msg(
+                "Pass it by its name, without parentheses: {handed}.",
                 handed=f"{told(slip.near)}{name})",
             ),
             place=slip.place,
@@ -167,64 +168,73 @@ def called_at_once(case: Case) -> Diagnosis | None:
 
 
 def beside(found: Diagnosis, case: Case) -> Diagnosis:
-    """The finding of a check, behind a slip that may be its cause."""
+    """The finding of a check, with a slip that may be its cause."""
     for slip in _of_kind(case, "uncalled", "unread", "local"):
         text, help_ = _told(slip)
         cause = sentences(text, found.cause)
         return replace(found, cause=cause, help=help_, place=slip.place)
+    for slip in _of_kind(case, "swallows"):
+        hides = msg(
+            "`{code}`{where} hides every error in {name}().",
+            code=told(slip.place.text),
+            where=line(slip.place),
+            name=told(slip.name),
+        )
+        cause, help_ = sentences(found.cause, hides), sentences(found.help, NOT_CAUGHT)
+        return replace(found, cause=cause, help=help_, place=slip.place)
     return found
 
 
-def _told(slip: Slip) -> tuple[str, str]:
+def _told(slip: LintFinding) -> tuple[Message, Message]:
     name, near, where = told(slip.name), told(slip.near), line(slip.place)
     if slip.kind == "unread":
         return (
-            say(
+            msg(
                 "`self.{name}` is set and never read; what is read is `self.{near}`{where}.",
                 name=name,
                 near=near,
                 where=where,
             ),
-            say("Write self.{near} there, if that is what you mean.", near=near),
+            msg("Write self.{near} there, if that is what you mean.", near=near),
         )
     if slip.kind == "local" and near.startswith("self."):
         return (
-            say(
+            msg(
                 "`{name}` is a variable of this function and never read; what is read "
                 "elsewhere is `{near}`{where}.",
                 name=name,
                 near=near,
                 where=where,
             ),
-            say("Write {near} = ... there.", near=near),
+            msg("Write {near} = ... there.", near=near),
         )
     if slip.kind == "local":
         return (
-            say(
+            msg(
                 "`{name}` is set in this function only, and never read; outside there "
                 "is another `{name}`{where}.",
                 name=name,
                 where=where,
             ),
-            say("Write `{near}` as the first line of the function.", near=near),
+            msg("Write `{near}` as the first line of the function.", near=near),
         )
     text = slip.place.text.lstrip()
     if text.partition(";")[0].rstrip() == slip.name:
-        return say(
-            "`{name}` stands there without brackets, and does nothing{where}.",
+        return msg(
+            "`{name}` stands there without parentheses, and does nothing{where}.",
             name=name,
             where=where,
-        ), say("Write {name}().", name=name)
+        ), msg("Write {name}().", name=name)
     return (
-        say(
-            "`{name}` stands there without brackets: a function as such is always true{where}.",
+        msg(
+            "`{name}` stands there without parentheses: a function itself is always true{where}.",
             name=name,
             where=where,
         ),
-        say("Write {name}().", name=name),
+        msg("Write {name}().", name=name),
     )
 
 
-def unsent(case: Case) -> Place | None:
+def unsent(case: Case) -> SourceLine | None:
     """Where a request is made that nobody ever sends."""
     return next((slip.place for slip in _of_kind(case, "unsent")), None)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from grader.diagnosis import printed
 from grader.diagnosis.case import Case, after, function, line, sentences, since, told
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.language.phrase import say, say_many
-from grader.recording.conduct import Place
+from grader.message import NOTHING, Message, msg, msg_many
+from grader.recording.observations import SourceLine
 from grader.text import clip
 
 #: A program that comes to its end by itself before this has hardly spun [s].
@@ -22,9 +21,9 @@ _FLOOD_PER_S = 500.0
 _LONG_S, _LONG_IN_LOOP_S, _ONCE = 5.0, 1.0, 2
 #: So much of a line of code, or of what was printed, is shown [characters].
 _LONGEST_CODE = 60
-_SPIN = say(
-    "Make the node and then call rclpy.spin(node): it hands out messages "
-    "and timers until the node ends."
+_SPIN = msg(
+    "Create the node, then call rclpy.spin(node): it handles messages and timers until the node "
+    "ends."
 )
 
 
@@ -33,21 +32,21 @@ def stuck_in_callback(case: Case) -> Diagnosis | None:
     stop = case.stop
     if stop is None or stop.kind != "callback":
         return None
-    who = function(stop.place) or say("a callback")
-    cause = say(
-        "Your node is stuck in {who}{where}{since}: it waits in this "
-        "callback{in_call}, and meanwhile no answer, message or timer is handed out.",
+    who = function(stop.place) or msg("a callback")
+    cause = msg(
+        "Your node is stuck in {who}{where}{since}: it waits in this callback{in_call}, and "
+        "meanwhile no answer, message or timer is handled.",
         who=who,
         where=line(stop.place),
         since=since(stop.time_s),
         in_call=_in_call(stop.call),
     )
-    help_ = say(
+    help_ = msg(
         "Do not wait in a callback: send the request by call_async(request), "
         "and go on without waiting for the answer."
     )
     if "sleep" in stop.call:
-        help_ = say("Do not sleep in a callback: return, and let create_timer() call you later.")
+        help_ = msg("Do not sleep in a callback: return, and let create_timer() call you later.")
     return Diagnosis("stuck_in_callback", cause, help_, time_s=stop.time_s, place=stop.place)
 
 
@@ -56,7 +55,7 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
     stop = case.stop
     if stop is None or stop.kind != "call":
         return None
-    cause = say(
+    cause = msg(
         "Your program is stuck{since}{where}: it waits{in_call} while nobody spins "
         "the node, so nothing can reach it.",
         since=since(stop.time_s),
@@ -64,12 +63,12 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
         in_call=_in_call(stop.call),
     )
     if "Rate" in stop.call or "sleep" in stop.call:
-        help_ = say(
-            "A Rate needs somebody who spins: use create_timer() with a callback "
-            "and rclpy.spin(node), or spin in another thread."
+        help_ = msg(
+            "A Rate needs a node that spins: use create_timer() with a callback and "
+            "rclpy.spin(node), or spin in another thread."
         )
     elif stop.call.startswith("Client."):
-        help_ = say(
+        help_ = msg(
             "Use call_async() and rclpy.spin_until_future_complete(node, future), "
             "or spin in another thread."
         )
@@ -81,24 +80,24 @@ def stuck_in_call(case: Case) -> Diagnosis | None:
 def endless_loop(case: Case) -> Diagnosis | None:
     """It computes without end."""
     stop = case.stop
-    help_ = say(
+    help_ = msg(
         "Nothing else of your node can happen while a loop runs. Let a timer "
         "(create_timer) call you again and again, or call rclpy.spin_once(node)"
         " in the loop."
     )
     if stop is not None and stop.kind == "loop":
         name = function(stop.place)
-        inside = say(" in {name}", name=name) if name else ""
-        cause = say(
-            "Your program never comes out of a loop{inside}{where}: it goes round "
-            "without waiting for anything{since}.",
+        inside = msg(" in {name}", name=name) if name else NOTHING
+        cause = msg(
+            "Your program never leaves a loop{inside}{where}: it repeats without waiting for "
+            "anything{since}.",
             inside=inside,
             where=line(stop.place),
             since=since(stop.time_s),
         )
         return Diagnosis("endless_loop", cause, help_, time_s=stop.time_s, place=stop.place)
-    if case.run.outcome == "stalled" and any(_WITHOUT_WAITING in f for f in case.run.flags):
-        cause = say(
+    if case.run.outcome == "stalled" and any(_WITHOUT_WAITING in str(f) for f in case.run.flags):
+        cause = msg(
             "Your program computes without end: it used processor time, and never waited for ROS."
         )
         return Diagnosis("endless_loop", cause, help_)
@@ -107,28 +106,28 @@ def endless_loop(case: Case) -> Diagnosis | None:
 
 def stays_in_init(case: Case) -> Diagnosis | None:
     """It makes its node, and never gets to what comes after: the rest of it, or the spin."""
-    stop, conduct = case.stop, case.conduct
+    stop, observed = case.stop, case.observed
     if stop is None or stop.kind != "init" or stop.place is None:
         return None
-    publishers = [end for end in conduct.ends if end.kind == "publisher"]
+    publishers = [end for end in observed.ends if end.kind == "publisher"]
     is_mute = bool(publishers) and not any(end.used for end in publishers)
     if not is_mute and never_spins(case) is None:
         return None
-    cause = say(
+    cause = msg(
         "Your program never leaves __init__(): it stays at {code}{where}, and "
         "what comes after is never reached.",
         code=_code(stop.place),
         where=line(stop.place),
     )
-    help_ = say(
+    help_ = msg(
         "Let __init__ only make the publisher, the subscription and a timer, "
         "and return; main() then calls rclpy.spin(node), and create_timer() "
         "lets you act again and again."
     )
     if "spin(" in stop.place.text:
-        help_ = say(
-            "spin() comes back only when the program ends. A loop of your own calls"
-            " rclpy.spin_once(self, timeout_sec=0.01) each time instead. Or: {other_help}",
+        help_ = msg(
+            "spin() returns only when the program ends. In a loop of your own call "
+            "rclpy.spin_once(self, timeout_sec=0.01) each time instead. Or: {other_help}",
             other_help=help_,
         )
     return Diagnosis("stays_in_init", cause, help_, place=stop.place)
@@ -137,77 +136,75 @@ def stays_in_init(case: Case) -> Diagnosis | None:
 def spins_in_loop(case: Case) -> Diagnosis | None:
     """A loop that would send something calls spin() first, which does not come back."""
     stop = case.stop
-    publishers = [end for end in case.conduct.ends if end.kind == "publisher"]
+    publishers = [end for end in case.observed.ends if end.kind == "publisher"]
     if stop is None or stop.kind != "spin" or not publishers or any(e.used for e in publishers):
         return None
     cause = (
-        say(
-            "The loop round {code}{where} never goes round: spin() comes back only "
-            "when the program ends, and nothing behind it is reached.",
+        msg(
+            "The loop around {code}{where} never repeats: spin() returns only when the program "
+            "ends, and nothing after it is reached.",
             code=_code(stop.place),
             where=line(stop.place),
         )
         if stop.place
-        else say("A loop calls spin(), which comes back only when the program ends.")
+        else msg("A loop calls spin(), which returns only when the program ends.")
     )
-    help_ = say(
-        "A loop of your own calls rclpy.spin_once(node, timeout_sec=0.01) each "
-        "time. Or let create_timer() call what the loop does, and call "
-        "rclpy.spin(node) once, without a loop."
+    help_ = msg(
+        "In a loop of your own call rclpy.spin_once(node, timeout_sec=0.01) each time. Or let "
+        "create_timer() call what the loop does, and call rclpy.spin(node) once, without a loop."
     )
     return Diagnosis("spins_in_loop", cause, help_, place=stop.place)
 
 
 def does_nothing(case: Case) -> Diagnosis | None:
     """It came to its end without having made anything of ROS."""
-    if case.ended_s is None or case.conduct.ends or case.conduct.spun_s is not None:
+    if case.ended_s is None or case.observed.ends or case.observed.spun_s is not None:
         return None
-    cause = say(
+    cause = msg(
         "Your program ended {after} without a publisher, a subscription or a "
         "client: is main() ever called?",
         after=after(case.ended_s),
     )
-    help_ = say("Let the file end with: if __name__ == '__main__': main()")
+    help_ = msg("Let the file end with: if __name__ == '__main__': main()")
     return Diagnosis("does_nothing", cause, help_, time_s=case.ended_s)
 
 
 def is_deaf(case: Case) -> Diagnosis | None:
     """Nobody ever spins its node, and it has a subscription."""
-    has_subscription = any(end.kind == "subscription" for end in case.conduct.ends)
+    has_subscription = any(end.kind == "subscription" for end in case.observed.ends)
     return never_spins(case) if has_subscription else None
 
 
 def never_spins(case: Case) -> Diagnosis | None:
     """Nobody ever spins its node, and something of it waits for that."""
-    conduct = case.conduct
-    if not conduct.is_told or conduct.spun_s is not None:
+    observed = case.observed
+    if not observed.is_known or observed.spun_s is not None:
         return None
-    deaf = [end for end in conduct.ends if end.kind == "subscription" and not end.used]
-    sends = [end for end in conduct.ends if end.kind == "publisher" and end.used]
-    if not conduct.ends or (sends and not deaf):
+    deaf = [end for end in observed.ends if end.kind == "subscription" and not end.used]
+    sends = [end for end in observed.ends if end.kind == "publisher" and end.used]
+    if not observed.ends or (sends and not deaf):
         return None
-    none = say("none of its subscriptions and timers is ever called")
+    none = msg("none of its subscriptions and timers is ever called")
     place = deaf[0].place if deaf else None
     help_ = _SPIN
     if (loop := _loop_at_end(case)) is not None:
         place = loop
-        help_ = say(
-            "Instead of the loop take create_timer() with a callback, and then "
-            "rclpy.spin(node): it hands out messages and timers until the node "
-            "ends."
+        help_ = msg(
+            "Replace the loop by create_timer() with a callback, then call rclpy.spin(node): it "
+            "handles messages and timers until the node ends."
         )
-        cause = say(
+        cause = msg(
             "Your program stays in the loop {code}{where} and never spins its node, so {none}.",
             code=_code(loop),
             where=line(loop),
             none=none,
         )
     elif case.ended_s is None:
-        cause = say(
+        cause = msg(
             "Your program never spins its node, so {none}{where}.", none=none, where=line(place)
         )
     else:
-        cause = say(
+        cause = msg(
             "Your program ended {after} and never spun its node, so {none}.",
             after=after(case.ended_s),
             none=none,
@@ -220,25 +217,25 @@ def ends_early(case: Case) -> Diagnosis | None:
     ended_s = case.ended_s
     if ended_s is None or ended_s > _SOON_S or case.run.outcome not in ("exited", "finished"):
         return None
-    sent = sum(end.used for end in case.conduct.ends if end.kind == "publisher")
-    what = say("nothing")
+    sent = sum(end.used for end in case.observed.ends if end.kind == "publisher")
+    what = msg("nothing")
     if sent:
-        what = say_many("one message", "{n} messages", sent)
-    if last := printed.last_line(case.recording.output):
-        what = say(
+        what = msg_many("one message", "{n} messages", sent)
+    if last := case.last_line:
+        what = msg(
             "{what}, and the last that it printed is: {last!r}",
             what=what,
             last=clip(told(last), _LONGEST_CODE),
         )
-    raised = case.conduct.raised
+    raised = case.observed.raised
     place = raised.place if raised is not None else None
-    cause = say(
+    cause = msg(
         "Your program ended {after}, by itself{where}; until then it had published {what}.",
         after=after(ended_s),
         where=line(place),
         what=what,
     )
-    help_ = say(
+    help_ = msg(
         "rclpy.spin_once(node) handles one message and returns: "
         "rclpy.spin(node) goes on. If it does spin, look for what ends it: "
         "shutdown(), sys.exit(), a loop that is left too soon."
@@ -250,21 +247,21 @@ def slow_callback(case: Case) -> Diagnosis | None:
     """A callback lets time pass, again and again."""
     least_s = _SLOW_S if case.run.time == "virtual" else _SLOW_REAL_S
     slow = max(
-        (s for s in case.conduct.slow if s.longest_s >= least_s and s.times >= _SLOW_TIMES),
+        (s for s in case.observed.slow if s.longest_s >= least_s and s.times >= _SLOW_TIMES),
         key=lambda s: s.longest_s * s.times,
         default=None,
     )
     if slow is None:
         return None
-    who = function(slow.place) or say("A callback")
-    cause = say(
-        "{who} lets up to {longest_s:.2g} s pass each time that it is "
-        "called{where}; meanwhile your node hears no message and no timer.",
+    who = function(slow.place) or msg("A callback")
+    cause = msg(
+        "{who} takes up to {longest_s:.2g} s each time it is called{where}; meanwhile your node "
+        "handles no message and no timer.",
         who=who,
         longest_s=slow.longest_s,
         where=line(slow.place),
     )
-    help_ = say(
+    help_ = msg(
         "Do not sleep or wait in a callback: do what is to be done now, and "
         "return. The next message comes by itself, and create_timer() calls you"
         " later."
@@ -277,12 +274,12 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
     run_s = case.run.simulated_s
     for end in case.ends:
         rate = end.used / max(run_s, 1.0)
-        if end.kind != "publisher" or not case.conduct.is_told or rate < _FLOOD_PER_S:
+        if end.kind != "publisher" or not case.observed.is_known or rate < _FLOOD_PER_S:
             continue
         loop = _loop_at_end(case)
         words = {"sent": end.used, "topic": told(end.name), "run_s": run_s}
         if loop is not None:
-            cause = say(
+            cause = msg(
                 "You published {sent} messages on {topic} in {run_s:.0f} s: nothing in the loop "
                 "{code}{where} waits.",
                 code=_code(loop),
@@ -290,13 +287,13 @@ def publishes_without_waiting(case: Case) -> Diagnosis | None:
                 **words,
             )
         else:
-            cause = say(
+            cause = msg(
                 "You published {sent} messages on {topic} in {run_s:.0f} s{where}: nothing in "
                 "that loop waits.",
                 where=line(end.place),
                 **words,
             )
-        help_ = say(
+        help_ = msg(
             "A few commands a second are enough: publish in the callback of "
             "create_timer(), and let rclpy.spin(node) call it."
         )
@@ -316,7 +313,7 @@ def hears_once(case: Case) -> Diagnosis | None:
     run_s = case.run.simulated_s
     loop = _loop_at_end(case)
     least_s = _LONG_S if loop is None else _LONG_IN_LOOP_S
-    if not case.conduct.is_told or case.ended_s is not None or run_s < least_s:
+    if not case.observed.is_known or case.ended_s is not None or run_s < least_s:
         return None
     published = {(e.name, e.type) for e in case.scene_has if e.kind == "publisher"}
     heard = [end for end in case.ends if end.kind == "subscription"]
@@ -326,44 +323,44 @@ def hears_once(case: Case) -> Diagnosis | None:
         if asked_once or not is_alone:
             continue
         if (end.name, end.type) in published and 0 < end.used <= _ONCE:
-            cause = say(
-                "Your node has heard {topic} hardly more than once in {run_s:.0f} "
-                "s{where}, though it is published all the time.",
+            cause = msg(
+                "Your node received {topic} hardly more than once in {run_s:.0f} s{where}, "
+                "though it is published all the time.",
                 topic=told(end.name),
                 run_s=run_s,
                 where=line(end.place),
             )
             if loop is not None:
-                cause = say(
-                    "Your node stays in the loop {code}{where}, so it has heard {topic} "
-                    "hardly more than once in {run_s:.0f} s.",
+                cause = msg(
+                    "Your node stays in the loop {code}{where}, so it received {topic} hardly "
+                    "more than once in {run_s:.0f} s.",
                     code=_code(loop),
                     where=line(loop),
                     topic=told(end.name),
                     run_s=run_s,
                 )
-            help_ = say(
-                "The next message is handed out when the callback has returned: no loop"
-                " may wait in it; let create_timer() call you."
+            help_ = msg(
+                "The next message is handled only after the callback has returned: don't wait "
+                "in a loop there; let create_timer() call you."
             )
             if loop is None or function(loop) in ("", "main()"):
-                more = say("And rclpy.spin(node) has to go on meanwhile.")
+                more = msg("And rclpy.spin(node) has to go on meanwhile.")
                 help_ = sentences(help_, more)
             return Diagnosis("hears_once", cause, help_, place=loop or end.place)
     return None
 
 
-def _loop_at_end(case: Case) -> Place | None:
+def _loop_at_end(case: Case) -> SourceLine | None:
     """The loop that its main thread was in when the run ended."""
     stop = case.stop
     return stop.place if stop is not None and stop.kind == "going" else None
 
 
-def _code(place: Place) -> str:
+def _code(place: SourceLine) -> str:
     """'`while True:`', a line as it stands there."""
     return f"`{clip(told(place.text), _LONGEST_CODE)}`"
 
 
-def _in_call(call: str) -> str:
+def _in_call(call: str) -> Message:
     """' in Client.call()'; '' where that is not known."""
-    return say(" in {call}()", call=told(call)) if call else ""
+    return msg(" in {call}()", call=told(call)) if call else NOTHING

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from grader.diagnosis.case import told
-from grader.language.phrase import say
-from grader.recording.conduct import Place, Raised
+from grader.message import NOTHING, Message, msg
+from grader.recording.observations import Caught, Raised, SourceLine
 
 #: So much of an exception's text is looked at [characters].
 _LONGEST = 1000
@@ -36,28 +36,27 @@ _IN_ORDER = {
     "create_client": "create_client(SetPen, '/service')",
     "create_service": "create_service(SetPen, '/service', self.on_request)",
 }
-_NOT_CALLED = say(
-    "A callback is handed over by its name, without brackets: self.NAME, "
-    "not self.NAME(), which calls it at once and hands over what it "
-    "returns."
+_NOT_CALLED = msg(
+    "Pass a callback by its name, without parentheses: self.NAME, not self.NAME(), which calls "
+    "it at once and passes what it returns."
 )
 #: What may be said of an exception of which no more is known.
 _MEANING = {
-    "KeyError": say(
+    "KeyError": msg(
         "What that line looks into has no such entry: compare it with those that it has."
     ),
-    "IndexError": say(
+    "IndexError": msg(
         "That line asks for an element beyond the end of a list, or of an empty one."
     ),
-    "ZeroDivisionError": say("That line divides by what can be 0: look at it before dividing."),
-    "UnboundLocalError": say(
+    "ZeroDivisionError": msg("That line divides by what can be 0: look at it before dividing."),
+    "UnboundLocalError": msg(
         "On the way that was taken the variable was given no value before that line: give it one "
         "at the start of the function, or write self. before it where it is the node's."
     ),
-    "NameError": say("Import it, define it above, or write self. before it."),
-    "ValueError": say("That line was given a value of the right type that it cannot take."),
-    "TypeError": say("That line was given something of another type, or another number of values."),
-    "RecursionError": say("A function goes on calling itself: look for what should end that."),
+    "NameError": msg("Import it, define it above, or write self. before it."),
+    "ValueError": msg("That line was given a value of the right type that it cannot take."),
+    "TypeError": msg("That line was given something of another type, or another number of values."),
+    "RecursionError": msg("A function goes on calling itself: look for what should end that."),
 }
 
 
@@ -71,40 +70,40 @@ class Said:
         place: where to mend it; None where that is where it was raised.
     """
 
-    help: str
-    text: str = ""
-    place: Place | None = None
+    help: Message
+    text: Message = NOTHING
+    place: SourceLine | None = None
 
 
-def known(raised: Raised) -> Said | None:
+def known(raised: Raised | Caught) -> Said | None:
     """What is known of an exception; None where only its name is."""
     name, text = raised.type.rpartition(".")[2], raised.text[:_LONGEST]
     return next((said for rule in _RULES if (said := rule(name, text, raised.place))), None)
 
 
-def meaning(raised: Raised) -> str:
+def meaning(raised: Raised | Caught) -> Message:
     """What an exception of this name means; '' where that says no more than its name."""
-    return _MEANING.get(raised.type.rpartition(".")[2], "")
+    return _MEANING.get(raised.type.rpartition(".")[2], NOTHING)
 
 
-def _without_init(name: str, text: str, _: Place | None) -> Said | None:
+def _without_init(name: str, text: str, _: SourceLine | None) -> Said | None:
     """ROS or the node has not been started."""
     if name == "NotInitializedException" or "rclpy.init() has not been called" in text:
         return Said(
-            say("Call rclpy.init() at the start of main(), before the node is made."),
-            say("rclpy.init() has not been called"),
+            msg("Call rclpy.init() at the start of main(), before the node is made."),
+            msg("rclpy.init() has not been called"),
         )
     if name == "AttributeError" and re.search(f"has no attribute {_NODE_ATTRIBUTE}", text):
         return Said(
-            say("super().__init__('name_of_the_node') must come first in __init__."),
-            say("the Node is not made yet when that line uses it"),
+            msg("super().__init__('name_of_the_node') must come first in __init__."),
+            msg("the Node is not made yet when that line uses it"),
         )
     if "__init__() missing" in text and "'node_name'" in text:
-        return Said(say("Give the node a name: super().__init__('name_of_the_node')."))
+        return Said(msg("Give the node a name: super().__init__('name_of_the_node')."))
     return None
 
 
-def _taken_name(_: str, text: str, __: Place | None) -> Said | None:
+def _taken_name(_: str, text: str, __: SourceLine | None) -> Said | None:
     """An attribute that can only be read."""
     found = re.search(r"property '(\w{1,60})' of .{1,80} object has no setter", text) or re.search(
         r"can't set attribute '?(\w{1,60})", text
@@ -113,96 +112,96 @@ def _taken_name(_: str, text: str, __: Place | None) -> Said | None:
         return None
     if found[1] in _OF_A_NODE:
         return Said(
-            say(
+            msg(
                 "A Node has a `{name}` of its own: choose another name, as self.my_{name}.",
                 name=told(found[1]),
             )
         )
     return Said(
-        say(
+        msg(
             "`{name}` can only be read: choose another name for what you keep.",
             name=told(found[1]),
         )
     )
 
 
-def _class_for_instance(name: str, text: str, place: Place | None) -> Said | None:
+def _class_for_instance(name: str, text: str, place: SourceLine | None) -> Said | None:
     """A class stands where something that was made of it has to."""
     line = place.text if place is not None else ""
     got = re.search(r"got <class '[\w.]{0,100}\.Metaclass_(\w{1,60})'>", text)
     if got is not None:
         return Said(
-            say("The brackets are missing: {type}() makes a message.", type=told(got[1])),
-            say("publish() was given the class {type} itself, not a message", type=told(got[1])),
+            msg("The parentheses are missing: {type}() makes a message.", type=told(got[1])),
+            msg("publish() was given the class {type} itself, not a message", type=told(got[1])),
         )
     wrong = re.search(r"Expected <class '[\w.]+\.(\w{1,60})'>, got <class '([\w.]{1,100})'>", text)
     if wrong is not None:
         wanted, was = told(wrong[1]), told(wrong[2].rpartition(".")[2])
         return Said(
-            say("Give it a {wanted}.", wanted=wanted),
-            say("{wanted} is what can be sent there, it was given: {was}", wanted=wanted, was=was),
+            msg("Give it a {wanted}.", wanted=wanted),
+            msg("{wanted} is what can be sent there, it was given: {was}", wanted=wanted, was=was),
         )
     if name == "TypeError" and not text and "call" in line:
         return Said(
-            say(
-                "Are brackets missing where the request is made? SetPen.Request() makes"
-                " one, SetPen.Request is only its class."
+            msg(
+                "Are parentheses missing where the request is made? SetPen.Request() makes one, "
+                "SetPen.Request is only its class."
             ),
-            say("the call was given something that is no request of this service"),
+            msg("the call was given something that is no request of this service"),
         )
     if "'property' object" in text or "'getset_descriptor' object" in text:
         if "spin" in line:
             return Said(
-                say("The brackets are missing where the node is made: node = MyNode()."),
-                say("spin was given a class, not a node that was made of it"),
+                msg("The parentheses are missing where the node is made: node = MyNode()."),
+                msg("spin was given a class, not a node that was made of it"),
             )
-        return Said(say("The brackets are missing where the message is made, as in Twist()."))
+        return Said(msg("The parentheses are missing where the message is made, as in Twist()."))
     return None
 
 
-def _no_node(_: str, text: str, place: Place | None) -> Said | None:
+def _no_node(_: str, text: str, place: SourceLine | None) -> Said | None:
     """Something is spun that is no node."""
     found = re.search(r"'([\w.]{1,60})' object has no attribute '(subscriptions|executor)'", text)
     if found is None or place is None or "spin" not in place.text:
         return None
     return Said(
-        say("Make a node and spin that: node = MyNode(), then rclpy.spin(node)."),
-        say("spin has to be given the node, it was given: {was}", was=told(found[1])),
+        msg("Make a node and spin that: node = MyNode(), then rclpy.spin(node)."),
+        msg("spin has to be given the node, it was given: {was}", was=told(found[1])),
     )
 
 
-def _callback(_: str, text: str, place: Place | None) -> Said | None:
+def _callback(_: str, text: str, place: SourceLine | None) -> Said | None:
     """A callback that cannot be called as rclpy calls it."""
     if "object is not callable" in text and ("'NoneType'" in text or "'coroutine'" in text):
         return Said(_NOT_CALLED)
     if "callback should be" in text:
         return Said(
-            say(
+            msg(
                 "A method takes self before all else, and a callback of a subscription "
                 "the message: def on_pose(self, pose)."
             ),
-            say("this callback of a subscription takes no message"),
+            msg("this callback of a subscription takes no message"),
         )
     if found := _GIVEN.search(text):
         owner, name, takes, given = found.groups()
         if owner and takes == "0":
             takes = "self, msg" if int(given) > 1 else "self"
-            return Said(say("Write def {name}({takes}).", name=told(name), takes=takes))
+            return Said(msg("Write def {name}({takes}).", name=told(name), takes=takes))
         if owner and (takes, given) == ("1", "2"):
             return Said(
-                say(
+                msg(
                     "Write def {name}(self, msg): the callback of a subscription is given "
                     "the message, one that add_done_callback() was given the future.",
                     name=told(name),
                 )
             )
-        return Said(say("Compare that call with what stands at `def {name}`.", name=told(name)))
+        return Said(msg("Compare that call with what stands at `def {name}`.", name=told(name)))
     if found := _MISSING.search(text):
         is_called_by_rclpy = place is None or "spin" in place.text or "def " in place.text
         if not is_called_by_rclpy:
-            return Said(say("Compare with what stands at `def {name}`.", name=told(found[1])))
+            return Said(msg("Compare with what stands at `def {name}`.", name=told(found[1])))
         return Said(
-            say(
+            msg(
                 "Compare with what stands at `def {name}`; the callback of a timer is given "
                 "nothing but self.",
                 name=told(found[1]),
@@ -211,28 +210,28 @@ def _callback(_: str, text: str, place: Place | None) -> Said | None:
     return None
 
 
-def _arguments(_: str, text: str, place: Place | None) -> Said | None:
+def _arguments(_: str, text: str, place: SourceLine | None) -> Said | None:
     """What a library in C++ was given."""
     line = place.text if place is not None else ""
     if "incompatible function arguments" in text:
         if found := _CREATES.search(line):
             return Said(
-                say("Compare the order: {in_order}.", in_order=_IN_ORDER[found[1]]),
-                say(
+                msg("Compare the order: {in_order}.", in_order=_IN_ORDER[found[1]]),
+                msg(
                     "{function}() was given values of other types, or in another order",
                     function=found[1],
                 ),
             )
         return Said(
-            say("Compare the order and the types with ROS's documentation."),
-            say("a function of rclpy's was given values of other types, or in another order"),
+            msg("Compare the order and the types with ROS's documentation."),
+            msg("a function of rclpy's was given values of other types, or in another order"),
         )
     if "create_timer(" in line and "float() argument" in text:
-        return Said(say("The time comes first: create_timer(0.1, self.on_timer)."))
+        return Said(msg("The time comes first: create_timer(0.1, self.on_timer)."))
     return None
 
 
-def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
+def _no_entry(name: str, text: str, place: SourceLine | None) -> Said | None:
     """A dict that has no such key."""
     if name != "KeyError" or not text:
         return None
@@ -240,7 +239,7 @@ def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
     if found is None:
         return None
     return Said(
-        say(
+        msg(
             "{name} has no entry {entry}: compare with those that it has, and with what can come.",
             name=told(found[1]),
             entry=told(text),
@@ -248,17 +247,17 @@ def _no_entry(name: str, text: str, place: Place | None) -> Said | None:
     )
 
 
-def _parameter(name: str, text: str, _: Place | None) -> Said | None:
+def _parameter(name: str, text: str, _: SourceLine | None) -> Said | None:
     """A parameter of the node, instead of its value, or one that nobody has declared."""
     if name == "ParameterNotDeclaredException":
         asked = re.search(r"parameter\(s\): ([\w.]{1,60})", text)
         of = told(asked[1]) if asked else "NAME"
         return Said(
-            say("Declare it first, in __init__: self.declare_parameter('{name}', 1.0).", name=of)
+            msg("Declare it first, in __init__: self.declare_parameter('{name}', 1.0).", name=of)
         )
     if name == "TypeError" and "'Parameter'" in text:
         return Said(
-            say(
+            msg(
                 "get_parameter() gives a Parameter; what it is set to is its value: "
                 "self.get_parameter('NAME').value."
             )
@@ -266,18 +265,18 @@ def _parameter(name: str, text: str, _: Place | None) -> Said | None:
     return None
 
 
-def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
+def _none_or_unknown(_: str, text: str, place: SourceLine | None) -> Said | None:
     """None, a name that is not there, a spin within a spin."""
     if "NoneType" in text and place is not None and ".result()" in place.text:
         return Said(
-            say(
+            msg(
                 "The answer has not come yet when that line runs: go on without it, or "
                 "use it in a callback that is given to add_done_callback()."
             )
         )
     if "NoneType" in text:
         return Said(
-            say(
+            msg(
                 "Something there is still None: a message that has not come yet, or a "
                 "function that returns nothing. Return early as long as it is None."
             )
@@ -285,7 +284,7 @@ def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
     own = re.search(r"has no attribute '(\w{1,60})'", text)
     if own is not None and place is not None and f"self.{own[1]}" in place.text:
         return Said(
-            say(
+            msg(
                 "self.{name} has no value when that line runs: write self.{name} = ... in"
                 " __init__, before the first callback; or compare the name.",
                 name=told(own[1]),
@@ -293,18 +292,18 @@ def _none_or_unknown(_: str, text: str, place: Place | None) -> Said | None:
         )
     if "has no attribute" in text:
         return Said(
-            say(
+            msg(
                 "Compare the name; `ros2 interface show TYPE` lists the fields of a "
                 "message. An attribute of your own (self. ...) has to be set in "
                 "__init__, before the first callback."
             )
         )
     if "Executor is already spinning" in text:
-        return Said(say("Do not spin in a callback: use call_async() and add_done_callback()."))
+        return Said(msg("Do not spin in a callback: use call_async() and add_done_callback()."))
     return None
 
 
-_RULES: tuple[Callable[[str, str, Place | None], Said | None], ...] = (
+_RULES: tuple[Callable[[str, str, SourceLine | None], Said | None], ...] = (
     *(_without_init, _taken_name, _class_for_instance, _no_node, _callback, _arguments, _no_entry),
     *(_parameter, _none_or_unknown),
 )

@@ -9,21 +9,21 @@ from __future__ import annotations
 import json
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from grader import limited, strict_json
 from grader.exercise.verdict import Finding, wrong_with
-from grader.language import stored
-from grader.limited import LimitHit, Limits
+from grader.limited import LimitHit, WorkLimits
+from grader.message import NOTHING, Message
 from grader.recording.recording import NominalAlone, NotOver, Recordings
 
 CheckFunction = Callable[[Recordings, Mapping[str, Any]], Finding]
 #: Makes a text of what a check raised.
 Told = Callable[[CheckFunction, BaseException], str]
 #: Of all checks of a judging together; an ordinary one takes 0.04 s.
-LIMITS = Limits(cpu_s=60.0, wall_s=180.0)
+LIMITS = WorkLimits(cpu_s=60.0, wall_s=180.0)
 
 
 class NoFinding(Exception):
@@ -35,19 +35,24 @@ class NoFinding(Exception):
 
 
 class NotReached(Exception):
-    """A check has no finding since one, `by`, took too much; the text goes on from its name."""
+    """A check has no finding since one, `by`, took too much; `what` goes on from its name."""
 
-    def __init__(self, text: str, by: str) -> None:
-        super().__init__(text)
-        self.by = by
+    def __init__(self, what: Message, by: str) -> None:
+        super().__init__(what)
+        self.what, self.by = what, by
 
 
 class Answers:
-    """What checks have answered; asked for one by its name."""
+    """What checks have answered; asked for one by its name.
+
+    Attributes:
+        answers: by the check's name, as `_run` makes them.
+        not_reached: what is raised for all others.
+    """
 
     def __init__(self) -> None:
-        self._answers: dict[str, dict[str, Any]] = {}
-        self._not_reached = NotReached("", "")
+        self.answers: dict[str, dict[str, Any]] = {}
+        self.not_reached = NotReached(NOTHING, "")
 
     def __call__(self, name: str) -> Finding:
         """What a check has found.
@@ -57,26 +62,17 @@ class Answers:
             NotReached: it, or one before it, did not come to an end.
             NotOver: it asked for a run that is not over.
         """
-        words = self._answers.get(name, {"say": "nothing"})
+        words = self.answers.get(name, {"say": "nothing"})
         match words["say"]:
             case "finding":
-                made = strict_json.from_json(Finding, words["finding"], strict_json.OURS)
-                return stored.restored(made, words["phrases"])
+                return strict_json.from_json(Finding, words["finding"], strict_json.OURS)
             case "not over":
                 raise NotOver
             case "limit":
-                raise NotReached(words["text"], name)
+                raise NotReached(Message.parse(words["text"]), name)
             case "raised" | "wrong":
                 raise NoFinding(words["text"], was_raised=words["say"] == "raised")
-        raise self._not_reached
-
-    def add(self, name: str, answer: dict[str, Any]) -> None:
-        """Take down what a check has answered."""
-        self._answers[name] = answer
-
-    def end(self, hit: LimitHit, running: str) -> None:
-        """Take down that there are no more."""
-        self._not_reached = NotReached(hit.args[0], running)
+        raise self.not_reached
 
 
 def ask(
@@ -117,10 +113,10 @@ def ask(
         for answer in limited.stream(work, LIMITS):
             number, running, words = strict_json.loads(answer.decode())
             if words is not None:
-                made[number].add(running, words)
+                made[number].answers[running] = words
     except LimitHit as hit:
         for each in made:
-            each.end(hit, running)
+            each.not_reached = NotReached(hit.why, running)
     return made
 
 
@@ -135,17 +131,17 @@ def _run(
     except KeyboardInterrupt:  # a key's, where there is no copy, which is deaf to it
         raise
     except MemoryError:
-        return {"say": "limit", "text": limited.TOO_MUCH}
+        return {"say": "limit", "text": limited.TOO_MUCH.serialise()}
     except RecursionError:
-        return {"say": "limit", "text": limited.TOO_DEEP}
+        return {"say": "limit", "text": limited.TOO_DEEP.serialise()}
     except BaseException as error:  # SystemExit too: a check must not end the others unjudged
         return {"say": "raised", "text": told(function, error)}
     is_alone = isinstance(recordings, NominalAlone)
     wrong = wrong_with(finding, 1 if is_alone else len(list(recordings)))
     if wrong:
         return {"say": "wrong", "text": wrong}
-    said = {**asdict(finding), "share": float(finding.share)}
-    return {"say": "finding", "finding": said, "phrases": stored.phrases_in(finding)}
+    said = strict_json.to_json(replace(finding, share=float(finding.share)), strict_json.OURS)
+    return {"say": "finding", "finding": said}
 
 
 def where_it_failed(function: CheckFunction, error: BaseException) -> str:

@@ -15,13 +15,12 @@ from typing import Any
 
 from grader.errors import CheckFailed
 from grader.exercise import asking
-from grader.exercise.asking import Answers, NoFinding, NotReached
+from grader.exercise.asking import Answers, CheckFunction, NoFinding, NotReached
 from grader.exercise.verdict import Finding, Verdict
-from grader.language.phrase import authored, chained, reason, say
-from grader.recording.recording import NominalAlone, NotOver, Recordings
+from grader.message import NOTHING, Message, authored, chained, msg, reason
+from grader.recording.recording import NominalAlone, NotOver, Recording, Recordings
 
 Tolerances = Mapping[str, Any]
-CheckFunction = Callable[[Recordings, Tolerances], Finding]
 #: Name of a check -> language -> text.
 Words = Mapping[str, Mapping[str, str]]
 #: Raises a ValueError where a tolerance cannot be used.
@@ -39,10 +38,10 @@ class Check:
     """
 
     name: str
-    title: str
+    title: Message
     function: CheckFunction
     depends_on: tuple[str, ...]
-    rubric: str = ""
+    rubric: Message = NOTHING
 
 
 #: Asks a check, by its name, for its finding; see `grader.exercise.asking`.
@@ -66,8 +65,8 @@ class Checks:
         made._checks = [
             replace(
                 check,
-                title=authored(check.title, titles.get(check.name)),
-                rubric=authored(check.rubric, rubrics.get(check.name)),
+                title=replace(check.title, words=titles.get(check.name, {})),
+                rubric=replace(check.rubric, words=rubrics.get(check.name, {})),
             )
             for check in self
         ]
@@ -82,7 +81,7 @@ class Checks:
         self._looks[look.__name__] = look
         return look
 
-    def wrong_tolerance(self, tolerances: Tolerances) -> tuple[str, str] | None:
+    def wrong_tolerance(self, tolerances: Tolerances) -> tuple[str, Message] | None:
         """The name of the first tolerance that cannot be used, and why; None: all can."""
         for name, look in self._looks.items():
             try:
@@ -117,8 +116,8 @@ class Checks:
             if not _takes_two(function):
                 found = inspect.signature(function)
                 raise TypeError(f"{name}: expected (recordings, tolerances), found {found}")
-            title = authored(title.strip().rstrip("."))
-            check = Check(name, title, function, tuple(after), authored(rubric.strip()))
+            texts = authored(title.strip().rstrip(".")), authored(rubric.strip())
+            check = Check(name, texts[0], function, tuple(after), texts[1])
             self._checks.append(check)
             return function
 
@@ -147,14 +146,15 @@ def judge(
     """
     lacking = next((each.run for each in recordings.varied if each.run.outcome == "not_run"), None)
     if lacking is None:
-        return judge_by(answers(recordings, checks, points, tolerances), checks, points)
-    answered = answers(NominalAlone(recordings.nominal), checks, points, tolerances)
+        (answered,) = answers(recordings, checks, points, tolerances)
+        return judge_by(answered, checks, points)
+    (answered,) = answers(NominalAlone(recordings.nominal), checks, points, tolerances)
 
     def ask(name: str) -> Finding:
         try:
             return answered(name)
         except NotOver:
-            return Finding(0.0, say("Not judged: {why}.", why=lacking.flags[0]), judged=False)
+            return Finding(0.0, msg("Not judged: {why}.", why=lacking.flags[0]), judged=False)
 
     return judge_by(ask, checks, points)
 
@@ -165,24 +165,13 @@ def answers(
     points: Mapping[str, float],
     tolerances: Tolerances,
     told: asking.Told | None = None,
-) -> Answers:
-    """What the checks that the exercise gives points for say of recordings."""
-    return rounds(recordings, checks, points, tolerances, told)[0]
-
-
-def rounds(
-    recordings: Recordings,
-    checks: Checks,
-    points: Mapping[str, float],
-    tolerances: Tolerances,
-    told: asking.Told | None = None,
-    many: int = 1,
+    rounds: int = 1,
 ) -> list[Answers]:
-    """The same, so many times in one process."""
+    """What the checks that the exercise gives points for say of recordings; see `asking.ask`."""
     asked = [check for check in checks if check.name in points]
     functions = {check.name: check.function for check in asked}
     after = {check.name: check.depends_on for check in asked}
-    return asking.ask(functions, after, recordings, tolerances, told, many)
+    return asking.ask(functions, after, recordings, tolerances, told, rounds)
 
 
 def judge_by(ask: Ask, checks: Checks, points: Mapping[str, float]) -> list[Verdict]:
@@ -205,42 +194,36 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
         CheckFailed: it raised something, or returned what is no finding.
         NotOver: it asked for a run that is not over.
     """
+    blank = Verdict(
+        *(check.name, check.title, "not_judged", 0.0, max_score, NOTHING),
+        depends_on=check.depends_on,
+    )
 
-    def not_judged(rationale: str, help: str) -> Verdict:
-        return Verdict(
-            check.name,
-            check.title,
-            "not_judged",
-            0.0,
-            max_score,
-            rationale,
-            help,
-            (),
-            check.depends_on,
-        )
+    def not_judged(rationale: Message, help: Message) -> Verdict:
+        return replace(blank, rationale=rationale, help=help)
 
     missing = [n for n in check.depends_on if n in earlier and earlier[n].status != "passed"]
     if missing:
-        titles = [say("“{title}”", title=earlier[name].title) for name in missing]
+        titles = [msg("“{title}”", title=earlier[name].title) for name in missing]
         return not_judged(
-            say(
+            msg(
                 "Not judged, because {titles} did not pass.",
                 titles=chained(titles),
             ),
-            say("Look at {title} first.", title=titles[0]),
+            msg("Look at {title} first.", title=titles[0]),
         )
     try:
         finding = ask(check.name)
     except NotReached as hit:
         return not_judged(
-            say(
+            msg(
                 "Not judged: the check {name} {what}. That is a fault of the exercise, not of the "
                 "submission.",
                 name=repr(hit.by),
-                what=hit.args[0],
+                what=hit.what,
             ),
-            say(
-                "Tell whoever made the exercise: when the check is mended, the recording can be "
+            msg(
+                "Tell the exercise's author: once the check is fixed, the recording can be "
                 "judged again."
             ),
         )
@@ -250,30 +233,52 @@ def judge_one(check: Check, max_score: float, ask: Ask, earlier: Mapping[str, Ve
         return not_judged(finding.rationale, finding.help)
     share = min(max(float(finding.share), 0.0), 1.0)
     passed = share >= 1.0
-    return Verdict(
-        check.name,
-        check.title,
-        "passed" if passed else "failed",
-        round(max_score * share, 2),
-        max_score,
-        finding.rationale,
-        "" if passed else finding.help,
-        finding.evidence,
-        check.depends_on,
+    return replace(
+        blank,
+        status="passed" if passed else "failed",
+        score=round(max_score * share, 2),
+        rationale=finding.rationale,
+        help=NOTHING if passed else finding.help,
+        evidence=finding.evidence,
         expected=finding.expected,
     )
 
 
-def _told(check: Check, error: NoFinding) -> str:
+def _told(check: Check, error: NoFinding) -> Message:
     if error.was_raised:
-        return say(
+        return msg(
             "the check {check!r} failed itself, so nothing was judged: {error}",
             check=check.name,
             error=str(error),
         )
-    return say(
+    return msg(
         "the check {check!r} returned what it should not, so nothing was judged: {file}: {error}",
         check=check.name,
         file=Path(check.function.__code__.co_filename).name,
         error=str(error),
     )
+
+
+def judge_nominal(
+    nominal: Recording, checks: Checks, points: Mapping[str, float], tolerances: Tolerances
+) -> list[Verdict]:
+    """Run the checks of `grader.exercise.check.judge` as far as one run lets them come.
+
+    A check has a verdict here if it looks at the nominal run alone, and so do all that it depends
+    on; all others are left out. One that fails itself is left out as well: who judges all runs is
+    told of it.
+    """
+    (answered,) = answers(NominalAlone(nominal), checks, points, tolerances)
+    verdicts: dict[str, Verdict] = {}
+    waiting: set[str] = set()
+    for check in checks:
+        if check.name not in points:
+            continue
+        if not waiting.isdisjoint(check.depends_on):
+            waiting.add(check.name)
+            continue
+        try:
+            verdicts[check.name] = judge_one(check, float(points[check.name]), answered, verdicts)
+        except (NotOver, CheckFailed):
+            waiting.add(check.name)
+    return [verdicts[name] for name in points if name in verdicts]

@@ -7,7 +7,9 @@ gaps in its ticks, and may end nowhere.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
@@ -15,16 +17,40 @@ import numpy as np
 import numpy.typing as npt
 
 from grader.exercise.verdict import Evidence
-from grader.language.phrase import say
+from grader.message import Message, msg
 from grader.recording.recording import Recording
-from grader.scenes import load_scene
-from grader.scenes.scene import Start
+from grader.recording.subject import Start
 from turtlesim_py.world.trajectory import Floats, Trajectory
+from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 Mask = npt.NDArray[np.bool_]
 
 #: A step that is longer by this than its speed explains is a jump [m].
 JUMP_M = 0.001
+#: How often corners are looked at again; a polygon needs two or three looks.
+MOST_LOOKS = 10
+#: A path with more corners is no polygon that anybody meant, and is not looked at any closer.
+MOST_CORNERS = 300
+
+
+@dataclass(frozen=True)
+class Side:
+    """A straight piece of a path; `last` and `crooked_at` are rows of it."""
+
+    vector: Floats
+    last: int
+    crooked_m: float
+    crooked_at: int
+
+    @property
+    def length_m(self) -> float:
+        """From corner to corner."""
+        return float(np.hypot(*self.vector))
+
+    def turn_deg(self, following: Side) -> float:
+        """By how much the path turns from this side to the following, to the left [deg]."""
+        (a, b), (c, d) = self.vector, following.vector
+        return math.degrees(math.atan2(a * d - b * c, a * c + b * d))
 
 
 class DrivenPath:
@@ -45,15 +71,14 @@ class DrivenPath:
     """
 
     def __init__(self, recording: Recording, way: Trajectory, number: int = 0) -> None:
-        scene = load_scene(recording.scene)
         self.recording = recording
         self.number = number
         self.way = way
         self.ticks = way.ticks
         self.x, self.y, self.theta = way.x, way.y, way.theta
         self.linear, self.angular = way.linear, way.angular
-        self.tick_s = scene.tick_ns / 1e9
-        self.size_m = scene.plane.size_m
+        self.tick_s = TICK_S
+        self.size_m = SIZE_M
 
     def __len__(self) -> int:
         return len(self.ticks)
@@ -152,6 +177,15 @@ class DrivenPath:
         """How long the way is from there to the end [m]."""
         return float(self.driven_m[-1] - self.driven_m[row])
 
+    def straight_pieces(self, error_m: float) -> list[Side]:
+        """The path as drawn with a ruler: it lies `error_m` at most beside straight lines."""
+        marks = simplify(self.points, error_m)
+        return [
+            Side(self.points[b] - self.points[a], b, beside_m, at)
+            for a, b in pairwise(marks)
+            for at, beside_m in [farthest(self.points, a, b)]
+        ]
+
     # Places -----------------------------------------------------------------------------------
 
     @cached_property
@@ -164,10 +198,14 @@ class DrivenPath:
         return np.hypot(self.x - x, self.y - y)
 
     @cached_property
+    def to_walls(self) -> Floats:
+        """To the left, bottom, right and top wall [m], float64 (n, 4)."""
+        return np.column_stack((self.x, self.y, self.size_m - self.x, self.size_m - self.y))
+
+    @cached_property
     def wall_distance(self) -> Floats:
         """To the nearest wall [m], float64 (n,)."""
-        sides = [self.x, self.y, self.size_m - self.x, self.size_m - self.y]
-        return np.asarray(np.minimum.reduce(sides))
+        return np.asarray(self.to_walls.min(axis=1))
 
     @cached_property
     def wall(self) -> int | None:
@@ -175,27 +213,35 @@ class DrivenPath:
         clamped = (self.x <= 0) | (self.y <= 0) | (self.x >= self.size_m) | (self.y >= self.size_m)
         return int(np.argmax(clamped)) if clamped.any() else None
 
-    def place(self, row: int) -> str:
-        """Where it was, in words."""
-        return say("({x:.2f}, {y:.2f})", x=self.x[row], y=self.y[row])
+    def row_at(self, tick: int) -> int:
+        """The row of the first reading at or after a tick, or of the last one."""
+        return int(np.clip(np.searchsorted(self.ticks, tick), 0, len(self) - 1))
 
-    def evidence(self, row: int, note: str) -> Evidence:
+    def place(self, row: int) -> Message:
+        """Where it was, in words."""
+        return msg("({x:.2f}, {y:.2f})", x=self.x[row], y=self.y[row])
+
+    def evidence(self, row: int, note: Message) -> Evidence:
         """What a finding can point at: its place and time at a row. -1 is the last."""
         tick = int(self.ticks[row])
         x, y = round(float(self.x[row]), 3), round(float(self.y[row]), 3)
-        return Evidence(tick, round(tick * self.tick_s, 3), x, y, note, self.number)
+        return self._evidence(tick, note, x, y)
 
-    def at(self, tick: int, note: str) -> Evidence:
+    def at(self, tick: int, note: Message) -> Evidence:
         """The same for the first reading at or after a tick, or the last one.
 
-        Where there is no reading at all, it points to the middle of the arena.
+        Where there is no reading at all, it has no place.
         """
         if not len(self):
-            middle = self.size_m / 2.0
-            time_s = round(tick * self.tick_s, 3)
-            return Evidence(tick, time_s, middle, middle, note, self.number)
-        row = int(np.clip(np.searchsorted(self.ticks, tick), 0, len(self) - 1))
-        return self.evidence(row, note)
+            return self._evidence(tick, note)
+        return self.evidence(self.row_at(tick), note)
+
+    def _evidence(
+        self, tick: int, note: Message, x: float | None = None, y: float | None = None
+    ) -> Evidence:
+        if x is not None and not (math.isfinite(x) and math.isfinite(y or 0.0)):
+            x = y = None
+        return Evidence(round(tick * self.tick_s, 3), note, x, y, self.number, tick)
 
 
 def _changes(values: Floats) -> Mask:
@@ -208,3 +254,40 @@ def _changes(values: Floats) -> Mask:
 def _last(mask: Mask) -> int:
     """The last row where it is true, 0 without any."""
     return int(len(mask) - 1 - np.argmax(mask[::-1])) if mask.any() else 0
+
+
+def simplify(points: Floats, error_m: float) -> list[int]:
+    """Which points to keep so that all lie within `error_m` of the lines between them.
+
+    The algorithm of Ramer, Douglas and Peucker finds as many as are needed or a few more, and not
+    quite in the corners: a side that is parallel to its line of sight is farthest everywhere. So
+    each is then looked at again between its neighbours.
+    """
+    keep = {0, len(points) - 1}
+    pending = [(0, len(points) - 1)]
+    while pending and len(keep) <= MOST_CORNERS:
+        first, last = pending.pop()
+        middle, beside = farthest(points, first, last)
+        if beside > error_m:
+            keep.add(middle)
+            pending += [(first, middle), (middle, last)]
+    marks = sorted(keep)
+    for _ in range(MOST_LOOKS):
+        before = list(marks)
+        for mark in before[1:-1]:
+            at = marks.index(mark)
+            better, beside = farthest(points, marks[at - 1], marks[at + 1])
+            marks[at : at + 1] = [better] if beside > error_m else []
+        if marks == before:
+            break
+    return marks
+
+
+def farthest(points: Floats, first: int, last: int) -> tuple[int, float]:
+    """The index of the point that is farthest from the line between two, and how far it is [m]."""
+    from_first, along = points[first : last + 1] - points[first], points[last] - points[first]
+    square = float(along @ along) or 1.0
+    share = np.clip(from_first @ along / square, 0.0, 1.0)
+    beside = np.hypot(*(from_first - share[:, None] * along).T)
+    at = int(np.argmax(beside))
+    return first + at, float(beside[at])

@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from grader.exercise.check import Checks
-from grader.exercise.late import LatePolicy
+from grader.exercise.handing_in import LatePolicy
 from grader.exercise.verdict import Visible
-from grader.scenes import load_scene
-from grader.scenes.scene import Limits, Start
+from grader.message import NOTHING, Message
+from grader.recording.subject import Start, Subject, load_subject
+from grader.scenes.scene import Limits, Scene
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
 LOOKS = "looks_at_package"
@@ -77,7 +78,7 @@ class Exercise:
     """
 
     name: str
-    title: str
+    title: Message
     limits: Limits
     varied: VariedRuns
     points: Mapping[str, float]
@@ -91,15 +92,20 @@ class Exercise:
     folder: Path = Path()
     starter: Path | None = None
     sha256: str = ""
-    task: str = ""
+    task: Message = NOTHING
     visible: Mapping[str, Visible] = field(default_factory=dict)
     late: LatePolicy | None = None
     explained: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
+    def subject(self) -> Subject:
+        """What runs beside a submission, or that it is examined."""
+        return load_subject(self.scene)
+
+    @property
     def is_started(self) -> bool:
-        """Whether something of a submission is started; else it is only looked at."""
-        return not load_scene(self.scene).examiner
+        """Whether something of a submission is started; else it is only examined."""
+        return isinstance(self.subject, Scene)
 
     @property
     def opening(self) -> Opening:
@@ -146,5 +152,7 @@ class Exercise:
         """Where the varied runs start; None takes the exercise's own seed. See `seed_for`."""
         varied = self.varied
         used = varied.seed if seed is None else seed
-        scene = load_scene(self.scene)
-        return scene.starts(varied.count, used, varied.nearest_m, varied.farthest_m)
+        subject = self.subject
+        if not isinstance(subject, Scene):
+            return []
+        return subject.starts(varied.count, used, varied.nearest_m, varied.farthest_m)

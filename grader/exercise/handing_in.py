@@ -3,14 +3,68 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from datetime import datetime
+from dataclasses import dataclass
+from datetime import datetime, timedelta
 from typing import Any, get_args
 
 from grader.exercise.check import Checks
-from grader.exercise.late import LatePolicy
 from grader.exercise.verdict import Visible
-from grader.exercise.yaml_file import Mistake, did_you_mean, is_amount
-from grader.language.phrase import say
+from grader.exercise.yaml_file import Mistake, check_known, expect, is_amount
+from grader.message import msg
+
+_DAY = timedelta(days=1)
+
+
+@dataclass(frozen=True)
+class Late:
+    """What the time of a hand-in means.
+
+    Attributes:
+        late_s: after it was due [s], grace included; 0 where it came in time.
+        days: so many started days of it cost points.
+        points: what that costs.
+    """
+
+    late_s: float = 0.0
+    days: int = 0
+    points: float = 0.0
+
+
+@dataclass(frozen=True)
+class LatePolicy:
+    """When an exercise is due, and what it costs to hand in later.
+
+    What it costs depends on nothing but the time: not on the score, which could else be told from
+    it where a part of it is not shown.
+
+    Attributes:
+        due: with its time zone.
+        grace_min: so long after it costs nothing [minutes]; the first day begins when that is over.
+        per_day: points for each started day of 24 hours.
+        most: so many points in all.
+    """
+
+    due: datetime
+    grace_min: float
+    per_day: float
+    most: float
+
+    def deduction(self, at: datetime) -> Late:
+        """What a hand-in at some time costs.
+
+        Raises:
+            ValueError: the time has no zone.
+        """
+        if at.utcoffset() is None:
+            raise ValueError(f"expected a time with its zone, found {at.isoformat()}")
+        late = at - self.due
+        charged = late - timedelta(minutes=self.grace_min)
+        days = max(-(-charged // _DAY), 0)
+        points = min(days * self.per_day, self.most)
+        return Late(max(late.total_seconds(), 0.0), days, round(points, 2))
+
+
+# What exercise.yaml says --------------------------------------------------------------------------
 
 VISIBLE = get_args(Visible)
 LATE = ("due", "grace_min", "per_day", "most")
@@ -27,29 +81,18 @@ def visible(given: object, checks: Checks, points: Mapping[str, float]) -> dict[
     """
     if given is None:
         return {}
+    at, listed = ("visible",), ", ".join(VISIBLE)
     if not isinstance(given, dict):
-        text = say(
+        raise Mistake(
+            at,
             "expected check names, each with one of {visible}; found {given}",
-            visible=", ".join(VISIBLE),
+            visible=listed,
             given=repr(given),
         )
-        raise Mistake(("visible",), text)
-    known = [check.name for check in checks]
+    check_known(given, [check.name for check in checks], at, are_checks=True)
     for name, value in given.items():
-        if name not in known:
-            text = say(
-                "no check is named {name}; {hint}",
-                name=repr(name),
-                hint=did_you_mean(name, known),
-            )
-            raise Mistake(("visible",), text)
-        if value not in VISIBLE:
-            text = say(
-                "expected one of {visible}; found {value}",
-                visible=", ".join(VISIBLE),
-                value=repr(value),
-            )
-            raise Mistake(("visible", str(name)), text)
+        fits, here = value in VISIBLE, (*at, name)
+        expect(fits, here, "expected one of {visible}; found {found}", value, visible=listed)
     _check_order(given, checks, points)
     return dict(given)
 
@@ -64,14 +107,12 @@ def _check_order(given: Mapping[str, Visible], checks: Checks, points: Mapping[s
             if _SHOWN[seen] < _SHOWN[hidden]:
                 raise Mistake(
                     ("visible", other),
-                    say(
-                        "{hidden}, but {name}, which is judged only where {other} passed, "
-                        "is {seen} and would tell of it; make {name} {hidden} as well",
-                        hidden=hidden,
-                        name=repr(check.name),
-                        other=repr(other),
-                        seen=seen,
-                    ),
+                    "{hidden}, but {name}, which is judged only where {other} passed, "
+                    "is {seen} and would tell of it; make {name} {hidden} as well",
+                    hidden=hidden,
+                    name=repr(check.name),
+                    other=repr(other),
+                    seen=seen,
                 )
 
 
@@ -86,22 +127,17 @@ def late(given: object, max_score: float) -> LatePolicy | None:
     if not isinstance(given, dict) or "due" not in given:
         example = f"due: {_EXAMPLE}, per_day: 10"
         raise Mistake(
-            ("late",), say("expected at least when it is due, e.g. {{{example}}}", example=example)
+            ("late",), "expected at least when it is due, e.g. {{{example}}}", example=example
         )
+    check_known(given, LATE, ("late",))
     for key, value in given.items():
-        if key not in LATE:
-            raise Mistake(
-                ("late",),
-                say("unknown {key}; {hint}", key=repr(key), hint=did_you_mean(key, LATE)),
-            )
         if key != "due" and not is_amount(value):
-            what = say("minutes") if key == "grace_min" else say("points")
-            text = say(
+            raise Mistake(
+                ("late", key),
                 "expected a number of {what} from 0, e.g. 10; found {value}",
-                what=what,
+                what=msg("minutes") if key == "grace_min" else msg("points"),
                 value=repr(value),
             )
-            raise Mistake(("late", key), text)
     amounts: dict[str, Any] = {"grace_min": 0, "per_day": 0, "most": max_score, **given}
     amounts = {key: float(value) for key, value in amounts.items() if key != "due"}
     return LatePolicy(_due(given["due"]), **amounts)
@@ -115,13 +151,10 @@ def _due(given: object) -> datetime:
         except ValueError:
             found = None
     if not isinstance(found, datetime) or found.utcoffset() is None:
-        shown = given if isinstance(given, str) else str(given)
         raise Mistake(
             ("late", "due"),
-            say(
-                "expected a date, a time and its zone, e.g. {example}; found {shown}",
-                example=_EXAMPLE,
-                shown=shown,
-            ),
+            "expected a date, a time and its zone, e.g. {example}; found {shown}",
+            example=_EXAMPLE,
+            shown=str(given),
         )
     return found

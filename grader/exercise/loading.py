@@ -16,8 +16,16 @@ from grader.exercise import places, translated
 from grader.exercise.building import NAME, build
 from grader.exercise.exercise import CPU, LOOKS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
-from grader.exercise.yaml_file import Mistake, YamlFile, did_you_mean, is_amount, read_yaml
-from grader.language.phrase import reason, say
+from grader.exercise.yaml_file import (
+    Mistake,
+    YamlFile,
+    check_known,
+    did_you_mean,
+    expect,
+    is_amount,
+    read_yaml,
+)
+from grader.message import reason
 
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
@@ -42,12 +50,10 @@ def load_exercise(name_or_path: str | os.PathLike[str]) -> Exercise:
         return _load(name_or_path)
     except PermissionError as error:
         raise ExerciseError(
-            say(
-                "cannot read the exercise {name_or_path}: {strerror}: {filename}",
-                name_or_path=repr(str(name_or_path)),
-                strerror=error.strerror,
-                filename=error.filename,
-            )
+            "cannot read the exercise {name_or_path}: {strerror}: {filename}",
+            name_or_path=repr(str(name_or_path)),
+            strerror=error.strerror,
+            filename=error.filename,
         ) from None
 
 
@@ -60,15 +66,13 @@ def _load(name_or_path: str | os.PathLike[str]) -> Exercise:
     if path.is_dir():
         return _from_place(places.in_folder(path))
     raise ExerciseError(
-        say(
-            "there is no exercise {name_or_path}; there are: {names}. Another one"
-            " is given as the path of its folder, with {description} and {checks}; "
-            "an edited copy as the path of its {description}.",
-            name_or_path=repr(str(name_or_path)),
-            names=", ".join(names()),
-            description=DESCRIPTION,
-            checks=CHECKS,
-        )
+        "there is no exercise {name_or_path}; there are: {names}. Another one"
+        " is given as the path of its folder, with {description} and {checks}; "
+        "an edited copy as the path of its {description}.",
+        name_or_path=repr(str(name_or_path)),
+        names=", ".join(names()),
+        description=DESCRIPTION,
+        checks=CHECKS,
     )
 
 
@@ -81,15 +85,13 @@ def _from_place(place: Place) -> Exercise:
             raise ExerciseError(file.told(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(
-            say(
-                "cannot read {description}: {strerror}",
-                description=str(place.description),
-                strerror=error.strerror,
-            )
+            "cannot read {description}: {strerror}",
+            description=str(place.description),
+            strerror=error.strerror,
         ) from None
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            say("{path} is not an exercise: {why}", path=str(place.folder), why=reason(error))
+            "{path} is not an exercise: {why}", path=str(place.folder), why=reason(error)
         ) from error
 
 
@@ -106,15 +108,11 @@ def _from_file(path: Path) -> Exercise:
             raise ExerciseError(edited.told(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(
-            say(
-                "cannot read the exercise {path}: {strerror}",
-                path=str(path),
-                strerror=error.strerror,
-            )
+            "cannot read the exercise {path}: {strerror}", path=str(path), strerror=error.strerror
         ) from None
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            say("{path} is not an exercise: {why}", path=str(path), why=reason(error))
+            "{path} is not an exercise: {why}", path=str(path), why=reason(error)
         ) from error
 
 
@@ -132,12 +130,10 @@ def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
     if not isinstance(name, str) or name not in names():
         raise Mistake(
             ("exercise",),
-            say(
-                "expected one of {names}, found {name}. An edited copy of an exercise"
-                " that is not installed must lie in that exercise's own folder",
-                names=", ".join(names()),
-                name=repr(name),
-            ),
+            "expected one of {names}, found {name}. An edited copy of an exercise"
+            " that is not installed must lie in that exercise's own folder",
+            names=", ".join(names()),
+            name=repr(name),
         )
     place = places.installed(name)
     return place, _described(_read(place.description), place)
@@ -148,26 +144,25 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
     data: dict[str, Any] = file.data
     for key in ("exercise", "title", "points"):
         if key not in data:
-            raise Mistake((), say("it has no {key}", key=repr(key)))
+            raise Mistake((), "it has no {key}", key=repr(key))
     _check_keys(data)
     name = data["exercise"]
     if not isinstance(name, str) or not NAME.fullmatch(name):
         raise Mistake(
-            ("exercise",), say("expected a name such as my_exercise, found {name}", name=repr(name))
+            ("exercise",), "expected a name such as my_exercise, found {name}", name=repr(name)
         )
     if place.name and name != place.name:
         raise Mistake(
             ("exercise",),
-            say(
-                "it is installed as {name}, and calls itself {own_name}",
-                name=repr(place.name),
-                own_name=repr(name),
-            ),
+            "it is installed as {name}, and calls itself {own_name}",
+            name=repr(place.name),
+            own_name=repr(name),
         )
     if not place.name and name in names():
         raise Mistake(
             ("exercise",),
-            say("{name} is the name of an installed exercise; give yours another", name=repr(name)),
+            "{name} is the name of an installed exercise; give yours another",
+            name=repr(name),
         )
     return data
 
@@ -175,14 +170,14 @@ def _described(file: YamlFile, place: Place) -> dict[str, Any]:
 def _check_keys(data: Mapping[Any, Any]) -> None:
     for key in data:
         if key not in KEYS:
-            raise Mistake((str(key),), say("unknown; {hint}", hint=did_you_mean(key, KEYS)))
+            raise Mistake((str(key),), "unknown; {hint}", hint=did_you_mean(key, KEYS))
 
 
 def _read(path: Path) -> YamlFile:
     file = read_yaml(path)
     if not isinstance(file.data, dict):
         raise ExerciseError(
-            say("{name}: expected keys such as exercise, limits, points", name=file.name)
+            "{name}: expected keys such as exercise, limits, points", name=file.name
         )
     return file
 
@@ -192,31 +187,14 @@ def _merged(original: dict[str, Any], edited: dict[str, Any]) -> dict[str, Any]:
     merged = {**original, **edited}
     for part in ("limits", "tolerances", "varied_runs"):
         known, given = original.get(part) or {}, edited.get(part, {})
-        if not isinstance(given, dict):
-            raise Mistake(
-                (part,), say("expected names with numbers, found {given}", given=repr(given))
-            )
-        for key, value in given.items():
-            if part == "varied_runs" and key == PER_STUDENT:
-                continue  # a switch, which no original has to have
-            if key not in known:
-                raise Mistake(
-                    (part,),
-                    say(
-                        "unknown {key}; {hint}",
-                        key=repr(key),
-                        hint=did_you_mean(key, known),
-                    ),
-                )
-            if not _alike(value, known[key]):
-                raise Mistake(
-                    (part, key),
-                    say(
-                        "expected e.g. {known}, found {value}",
-                        known=repr(known[key]),
-                        value=repr(value),
-                    ),
-                )
+        is_dict = isinstance(given, dict)
+        expect(is_dict, (part,), "expected names with numbers, found {found}", given)
+        # a switch, which no original has to have
+        values = {key: value for key, value in given.items() if key != PER_STUDENT}
+        check_known(values, known, (part,))
+        for key, value in values.items():
+            example, fits = repr(known[key]), _alike(value, known[key])
+            expect(fits, (part, key), "expected e.g. {known}, found {found}", value, known=example)
         merged[part] = {**known, **given}
     if translated.PART in original and translated.PART not in edited:
         anew = [key for key in ("title", "task") if merged.get(key) != original.get(key)]

@@ -1,34 +1,36 @@
 """Where exercises lie, and how the files in one are found and read.
 
-An exercise is a folder with exercise.yaml and checks.py. It lies in `grader/exercises/`, in a
-package that somebody has installed (entry-point group `grader.exercises`, whose values name a
-package or a module in the exercise's folder), or anywhere: then it is given as a path.
+An exercise is a folder with exercise.yaml and checks.py. It lies in an installed package (entry
+points of the group `grader.exercises`, whose values name a package or a module in the exercise's
+folder), or anywhere: then it is given as a path.
 """
 
 from __future__ import annotations
 
+import contextlib
 import importlib
-import importlib.machinery
 import importlib.util
+import os
 import re
 import sys
+import threading
 import traceback
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from functools import lru_cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib.machinery import SourceFileLoader
+from importlib.metadata import EntryPoint
 from importlib.resources import files
 from itertools import count
 from pathlib import Path
 from types import ModuleType
 
+from grader import extensions
 from grader.errors import ExerciseError
 from grader.exercise.check import Checks
-from grader.exercise.foreign import contained
-from grader.language.phrase import joined, say
+from grader.extensions import EXERCISES, told
+from grader.message import NOTHING, Message, joined, msg, plain_text
 
-GROUP = "grader.exercises"
 DESCRIPTION, CHECKS = "exercise.yaml", "checks.py"
 
 #: What the package of a folder that is in none is called, with a number.
@@ -58,12 +60,12 @@ class Place:
 
 def names() -> list[str]:
     """The exercises that are installed."""
-    return sorted({*_ours(), *_entry_points()})
+    return list(extensions.points(EXERCISES))
 
 
 def is_installed(name: str) -> bool:
     """Whether there is an installed exercise of this name."""
-    return name in _ours() or name in _entry_points()
+    return name in extensions.points(EXERCISES)
 
 
 def installed(name: str) -> Place:
@@ -72,30 +74,18 @@ def installed(name: str) -> Place:
     Raises:
         ExerciseError: there is none, or there are two.
     """
-    ours, others = _ours(), _entry_points().get(name, [])
-    found = [
-        *([say("{group}.{name} of this package", group=GROUP, name=name)] if name in ours else []),
-        *map(_told, others),
-    ]
+    found = extensions.points(EXERCISES).get(name, [])
     if len(found) > 1:
         raise ExerciseError(
-            say(
-                "several exercises are installed as {name}: {found}. Remove one, or "
-                "give the path of its folder.",
-                name=repr(name),
-                found=joined(found, ", "),
-            )
-        )
-    if name in ours:
-        return Place(ours[name], f"{GROUP}.{name}", name)
-    if others:
-        return _of_entry_point(others[0])
-    raise ExerciseError(
-        say(
-            "there is no exercise {name}; there are: {names}",
+            "several exercises are installed as {name}: {found}. Remove one, or "
+            "give the path of its folder.",
             name=repr(name),
-            names=", ".join(names()),
+            found=", ".join(map(told, found)),
         )
+    if found:
+        return _of_entry_point(found[0])
+    raise ExerciseError(
+        "there is no exercise {name}; there are: {names}", name=repr(name), names=", ".join(names())
     )
 
 
@@ -105,35 +95,35 @@ def in_folder(folder: Path) -> Place:
     Raises:
         ExerciseError: one of its two files is missing.
     """
-    for name in (DESCRIPTION, CHECKS):
-        if not (folder / name).is_file():
-            raise ExerciseError(
-                say(
-                    "{path} is not an exercise: {why}",
-                    path=str(folder),
-                    why=_instead_of(folder / name),
-                )
-            )
+    if why := _wrong_with(folder):
+        raise ExerciseError("{path} is not an exercise: {why}", path=str(folder), why=why)
     folder = folder.resolve()
-    for name, ours in _ours().items():
-        if ours.resolve() == folder:
-            return installed(name)
+    for name, points in extensions.points(EXERCISES).items():
+        with suppress(ExerciseError):
+            if any(_of_entry_point(each).folder.resolve() == folder for each in points):
+                return installed(name)
     return Place(folder)
 
 
-def _instead_of(file: Path) -> str:
+def _wrong_with(folder: Path) -> Message:
+    """Why there is no exercise in a folder; '' where there is one."""
+    files = (folder / name for name in (DESCRIPTION, CHECKS))
+    return next((_instead_of(file) for file in files if not file.is_file()), NOTHING)
+
+
+def _instead_of(file: Path) -> Message:
     """What lies where a file should be."""
     if file.is_symlink() and not file.exists():
-        return say(
+        return msg(
             "{name} is a link to {target}, which is not there",
             name=file.name,
             target=str(file.readlink()),
         )
     if file.is_dir():
-        return say("{name} is a folder, not a file", name=file.name)
+        return msg("{name} is a folder, not a file", name=file.name)
     if file.exists():
-        return say("{name} is not a regular file", name=file.name)
-    return say("it has no {name}", name=file.name)
+        return msg("{name} is not a regular file", name=file.name)
+    return msg("it has no {name}", name=file.name)
 
 
 def import_checks(place: Place) -> Checks:
@@ -155,14 +145,11 @@ def import_checks(place: Place) -> Checks:
             module = _imported_folder(package, place)
     checks = getattr(module, "checks", None)
     if not isinstance(checks, Checks):
-        found = say("nothing of that name") if checks is None else f"a {type(checks).__name__}"
+        found = msg("nothing of that name") if checks is None else f"a {type(checks).__name__}"
         raise ExerciseError(
-            say(
-                "{checks}: expected `checks = Checks()`, of `from grader import "
-                "Checks`; found {found}",
-                checks=CHECKS,
-                found=found,
-            )
+            "{checks}: expected `checks = Checks()`, of `from grader import Checks`; found {found}",
+            checks=CHECKS,
+            found=found,
         )
     return checks
 
@@ -191,49 +178,13 @@ def locate(folder: Path, where: str) -> Path:
         if path.exists():
             return path
     raise ExerciseError(
-        say(
-            "there is no {where}, neither in {folder} nor in an installed package",
-            where=repr(where),
-            folder=str(folder),
-        )
+        "there is no {where}, neither in {folder} nor in an installed package",
+        where=repr(where),
+        folder=str(folder),
     )
 
 
 # Installed ones -------------------------------------------------------------------------------
-
-
-def _ours() -> Mapping[str, Path]:
-    folder = Path(str(files("grader"))) / "exercises"
-    return {path.parent.name: path.parent for path in folder.glob(f"*/{DESCRIPTION}")}
-
-
-def _entry_points() -> Mapping[str, list[EntryPoint]]:
-    """By name; a distribution that is found twice on the path counts once."""
-    # an installation changes the folder; reading all that is installed takes longer than the rest
-    return _entry_points_of(tuple((folder, _changed_ns(folder)) for folder in sys.path))
-
-
-def _changed_ns(folder: str) -> int:
-    try:
-        return Path(folder).stat().st_mtime_ns
-    except OSError:
-        return 0
-
-
-@lru_cache(maxsize=2)
-def _entry_points_of(_path: tuple[tuple[str, int], ...]) -> Mapping[str, list[EntryPoint]]:
-    found: dict[str, dict[str, EntryPoint]] = {}
-    for point in entry_points(group=GROUP):
-        found.setdefault(point.name, {}).setdefault(_told(point), point)
-    return {name: list(points.values()) for name, points in found.items()}
-
-
-def _told(point: EntryPoint) -> str:
-    return say(
-        "{module} of {package}",
-        module=point.value,
-        package=point.dist.name if point.dist else say("an unknown package"),
-    )
 
 
 def _of_entry_point(point: EntryPoint) -> Place:
@@ -241,25 +192,22 @@ def _of_entry_point(point: EntryPoint) -> Place:
         spec = importlib.util.find_spec(point.value)
     except Exception as error:  # importing what is above it can do anything
         raise ExerciseError(
-            say("{told} cannot be imported: {error}", told=_told(point), error=str(error))
+            "{told} cannot be imported: {error}", told=told(point), error=str(error)
         ) from None
     if spec is None:
         raise ExerciseError(
-            say("{told} is not there, though its package is installed", told=_told(point))
+            "{told} is not there, though its package is installed", told=told(point)
         )
     folders = list(spec.submodule_search_locations or [])
     folder = Path(folders[0]) if folders else Path(spec.origin or "").parent
     package = spec.parent or ""
-    for name in (DESCRIPTION, CHECKS):
-        if not (folder / name).is_file():
-            raise ExerciseError(
-                say(
-                    "{told} is not an exercise: {folder}: {why}",
-                    told=_told(point),
-                    folder=str(folder),
-                    why=_instead_of(folder / name),
-                )
-            )
+    if why := _wrong_with(folder):
+        raise ExerciseError(
+            "{told} is not an exercise: {folder}: {why}",
+            told=told(point),
+            folder=str(folder),
+            why=why,
+        )
     return Place(folder, package, point.name)
 
 
@@ -269,21 +217,15 @@ def _of_entry_point(point: EntryPoint) -> Place:
 def _make_package(name: str, folder: Path) -> None:
     """A package of its own for a folder, whether it has an __init__.py or not."""
     init = folder / "__init__.py"
-    spec: importlib.machinery.ModuleSpec | None
-    if init.is_file():
-        spec = importlib.util.spec_from_file_location(
-            name, init, submodule_search_locations=[str(folder)]
-        )
-        assert spec is not None
-    else:
-        spec = importlib.machinery.ModuleSpec(name, None, is_package=True)
-        spec.submodule_search_locations = [str(folder)]
+    loader = SourceFileLoader(name, str(init)) if init.is_file() else None
+    spec = importlib.util.spec_from_loader(name, loader, is_package=True)
+    assert spec is not None
+    spec.submodule_search_locations = [str(folder)]
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    if init.is_file():
-        assert spec.loader is not None
+    if loader is not None:
         with _told_as_the_author_s(folder, init.name):
-            spec.loader.exec_module(module)
+            loader.exec_module(module)
 
 
 def _imported(name: str, place: Place) -> ModuleType:
@@ -306,7 +248,7 @@ def _told_as_the_author_s(folder: Path, file: str) -> Iterator[None]:
         raise ExerciseError(describe(error, folder, file)) from error
 
 
-def describe(error: BaseException, folder: Path, file: str = "") -> str:
+def describe(error: BaseException, folder: Path, file: str = "") -> Message:
     """An exception in the files of a folder: 'checks.py, line 3: NameError: ...'.
 
     Args:
@@ -314,30 +256,31 @@ def describe(error: BaseException, folder: Path, file: str = "") -> str:
     """
     name = type(error).__name__
     if isinstance(error, SyntaxError) and error.filename:
-        return say(
+        return msg(
             "{file}, line {line}: {name}: {what}",
             file=_shown(error.filename, folder),
             line=str(error.lineno),
             name=name,
             what=error.msg,
         )
-    text = f"{name}: {error}" if str(error) else name
+    text = plain_text(f"{name}: {error}" if str(error) else name)
     if isinstance(error, ImportError) and (absent := _absent(error, folder)):
-        text = say(
+        text = msg(
             "{name}: there is no {absent} beside {checks}", name=name, absent=absent, checks=CHECKS
         )
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(folder)]
     missing = getattr(error, "name", None) if isinstance(error, ModuleNotFoundError) else None
     if missing and (folder / f"{missing}.py").is_file():
-        text += ". " + say(
+        way = msg(
             "A file beside {checks} is imported by `from . import {missing}`",
             checks=CHECKS,
             missing=missing,
         )
+        text = joined([text, way], ". ")
     if not own:
-        return f"{file}: {text}" if file else text
-    return say(
+        return joined([file, text], ": ") if file else text
+    return msg(
         "{file}, line {line}: {what}",
         file=_shown(own[-1].filename, folder),
         line=str(own[-1].lineno),
@@ -370,3 +313,29 @@ def _without_bytecode() -> Iterator[None]:
         yield
     finally:
         sys.dont_write_bytecode = before
+
+
+# Standard output and the current folder belong to the whole process; two that change them and
+# change them back at the same time would leave them changed.
+_one_at_a_time = threading.RLock()
+
+
+@contextlib.contextmanager
+def contained() -> Iterator[None]:
+    """What is printed goes to standard error; the current folder is the same afterwards.
+
+    Standard output may be a result that a program reads, and paths of the command line may be
+    relative.
+    """
+    with _one_at_a_time, contextlib.redirect_stdout(sys.stderr):
+        before: Path | None
+        try:
+            before = Path.cwd()
+        except OSError:  # it was deleted
+            before = None
+        try:
+            yield
+        finally:
+            if before is not None:
+                with contextlib.suppress(OSError):
+                    os.chdir(before)

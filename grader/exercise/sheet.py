@@ -9,23 +9,23 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
 import yaml
 
-from grader.exercise import rubric
 from grader.exercise.check import Check
 from grader.exercise.exercise import Exercise
-from grader.exercise.late import LatePolicy
+from grader.exercise.handing_in import LatePolicy
 from grader.exercise.places import DESCRIPTION
-from grader.language.catalogue import spoken
-from grader.language.phrase import chained, joined, say
-from grader.language.telling import tell, tell_many, told
-from grader.scenes.scene import Scene
+from grader.message import chained, joined, msg
+from grader.recording.subject import Subject
 from grader.text import points
+from grader.translations import current, tr, tr_many, translate
 
+_TOLERANCE = re.compile(r"\{(?P<name>\w+)(?P<percent>%?)\}")
 #: A line of exercise.yaml in a part: blanks, key, value, perhaps a comment.
 _VALUE = re.compile(r"^(\s+)([\w-]+)(:\s*)([^#\n]*?)(\s+#.*)?$")
 
@@ -45,20 +45,23 @@ class Start:
     grade: str
 
 
-def sheet(exercise: Exercise, scene: Scene, start: Start) -> str:
+def sheet(exercise: Exercise, subject: Subject, start: Start) -> str:
     """The sheet."""
     parts = (
-        [f"# {told(exercise.title)}", rubric.in_force(told(exercise.task), exercise.tolerances)],
-        _judged(exercise, scene),
+        [
+            f"# {translate(exercise.title)}",
+            in_force(translate(exercise.task), exercise.tolerances),
+        ],
+        _judged(exercise, subject),
         _tolerances(exercise),
-        [_heading(tell("How to try it")), scene.how_to_try(start.program, start.package)],
+        [_heading(tr("How to try it")), subject.how_to_try(start.program, start.package)],
         _handed_in(start, exercise),
     )
     texts = (text.strip("\n") for part in parts for text in part)
     return "\n\n".join(text for text in texts if text) + "\n"
 
 
-def _judged(exercise: Exercise, scene: Scene) -> Iterator[str]:
+def _judged(exercise: Exercise, subject: Subject) -> Iterator[str]:
     checks = {check.name: check for check in exercise.checks}
     worthy = {name: worth for name, worth in exercise.points.items() if worth}
     hidden = [worth for name, worth in worthy.items() if exercise.visible.get(name) == "never"]
@@ -67,27 +70,30 @@ def _judged(exercise: Exercise, scene: Scene) -> Iterator[str]:
         for name, worth in worthy.items()
         if exercise.visible.get(name) != "never"
     ]
-    yield _heading(tell("What it is worth: {points} points", points=points(exercise.max_score)))
+    yield _heading(tr("What it is worth: {points} points", points=points(exercise.max_score)))
     yield "\n".join(
-        [_row(tell("points"), tell("what is looked at"), tell("check")), "|---:|---|---|"]
-        + [_row(points(worth), told(check.title), f"`{check.name}`") for check, worth in listed]
+        [_row(tr("points"), tr("what is looked at"), tr("check")), "|---:|---|---|"]
+        + [
+            _row(points(worth), translate(check.title), f"`{check.name}`")
+            for check, worth in listed
+        ]
         + ([f"| {points(sum(hidden))} | {_not_shown(len(hidden))} | |"] if hidden else [])
     )
     yield "\n".join(_seen_of(exercise, [check for check, _ in listed]))
     yield "\n".join(_waits([check for check, _ in listed]))
     for check, worth in listed:
-        if text := rubric.told(check, exercise.tolerances):
-            heading = tell("{title}: {points} points", title=check.title, points=points(worth))
+        if text := told(check, exercise.tolerances):
+            heading = tr("{title}: {points} points", title=check.title, points=points(worth))
             yield f"### {heading}"
             yield text
-    yield _heading(tell("How it is judged"))
-    yield _runs(exercise, scene)
+    yield _heading(tr("How it is judged"))
+    yield _runs(exercise, subject)
     if exercise.late is not None:
         yield from _late(exercise.late)
 
 
 def _not_shown(checks: int) -> str:
-    return tell_many("a check that no report shows", "{n} checks that no report shows", checks)
+    return tr_many("a check that no report shows", "{n} checks that no report shows", checks)
 
 
 def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
@@ -103,19 +109,19 @@ def _seen_of(exercise: Exercise, checks: Iterable[Check]) -> Iterator[str]:
 def _seen(visible: str, checks: str) -> str:
     """How checks are told that students do not see at once, or not all of."""
     if visible == "after_due":
-        return tell(
+        return tr(
             "Shown when the exercise is over, and until then in no report and no total: {checks}.",
             checks=checks,
         )
-    return tell(
+    return tr(
         "A report shows the points of these, and not what was found: {checks}.", checks=checks
     )
 
 
 def _late(policy: LatePolicy) -> Iterator[str]:
-    yield _heading(tell("When it is due"))
+    yield _heading(tr("When it is due"))
     said = [
-        say(
+        msg(
             "It is due on {date} at {time} (UTC{zone}).",
             date=f"{policy.due:%Y-%m-%d}",
             time=f"{policy.due:%H:%M:%S}",
@@ -123,10 +129,10 @@ def _late(policy: LatePolicy) -> Iterator[str]:
         )
     ]
     if policy.grace_min:
-        said.append(say("Another {grace:g} minutes cost nothing.", grace=policy.grace_min))
+        said.append(msg("Another {grace:g} minutes cost nothing.", grace=policy.grace_min))
     if policy.per_day and policy.most:
         said.append(
-            say(
+            msg(
                 "From then on each started day costs {per_day} points, {most} at most; nobody has "
                 "fewer than 0 points.",
                 per_day=points(policy.per_day),
@@ -134,8 +140,8 @@ def _late(policy: LatePolicy) -> Iterator[str]:
             )
         )
     else:
-        said.append(say("To hand it in later costs no points."))
-    yield _wrapped(told(joined(said, " ")))
+        said.append(msg("To hand it in later costs no points."))
+    yield _wrapped(translate(joined(said, " ")))
 
 
 def _zone(due: datetime) -> str:
@@ -150,7 +156,7 @@ def _waits(checks: Iterable[Check]) -> Iterator[str]:
         if check.depends_on:
             waiting.setdefault(check.depends_on, []).append(f"`{check.name}`")
     for first, names in waiting.items():
-        waits = tell(
+        waits = tr(
             "Judged only where {passed} passed: {checks}.",
             passed=chained([f"`{name}`" for name in first]),
             checks=", ".join(names),
@@ -158,11 +164,11 @@ def _waits(checks: Iterable[Check]) -> Iterator[str]:
         yield _wrapped(f"- {waits}", indent="  ")
 
 
-def _runs(exercise: Exercise, scene: Scene) -> str:
-    thing = told(scene.thing)
+def _runs(exercise: Exercise, subject: Subject) -> str:
+    thing = translate(subject.thing)
     if not exercise.is_started:
         return _wrapped(
-            tell(
+            tr(
                 "Nothing of your {thing} is started, and no time passes: what it installs and "
                 "what it would start is found out by evaluating its set-up and its launch files, "
                 "in a process that reaches nothing else. The same {thing} gets the same verdict "
@@ -173,7 +179,7 @@ def _runs(exercise: Exercise, scene: Scene) -> str:
     limits, varied = exercise.limits, exercise.varied
     times = {"total_s": limits.total_s, "first_s": limits.first_motion_s}
     if limits.rest_s:
-        told_of = tell(
+        told_of = tr(
             "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
             "seconds at most. The run ends before that when the {thing} has moved and then rested "
             "for {rest_s:g} s, when nothing has moved in the first {first_s:g} s, or when your "
@@ -184,14 +190,14 @@ def _runs(exercise: Exercise, scene: Scene) -> str:
             **times,
         )
     else:
-        told_of = tell(
+        told_of = tr(
             "Your node is run beside a simulator that shows no window, for {total_s:g} simulated "
             "seconds at most. The run ends before that when nothing has moved in the first "
             "{first_s:g} s, or when your node ends. Time is simulated: the same program gets the "
             "same verdict every time, on any machine.",
             **times,
         )
-    elsewhere = tell_many(
+    elsewhere = tr_many(
         "One more run starts elsewhere, {nearest_m:g} to {farthest_m:g} m from the usual place: a "
         "program that reads the pose works there too, one that counts its steps does not.",
         "{n} more runs start elsewhere, {nearest_m:g} to {farthest_m:g} m from the usual place: a "
@@ -205,13 +211,13 @@ def _runs(exercise: Exercise, scene: Scene) -> str:
 
 def _tolerances(exercise: Exercise) -> Iterator[str]:
     if exercise.tolerances:
-        yield tell("The numbers that the checks go by (`_m` metres, `_s` seconds, `_deg` degrees):")
+        yield tr("The numbers that the checks go by (`_m` metres, `_s` seconds, `_deg` degrees):")
         yield f"```yaml\n{_explained(exercise) or _in_force(exercise)}\n```"
 
 
 def _explained(exercise: Exercise) -> str:
     """The tolerances with what the exercise says of them in the user's language; '': nothing."""
-    language = spoken()
+    language = current()
     if not any(language in texts for texts in exercise.explained.values()):
         return ""
     lines = []
@@ -245,28 +251,28 @@ def _in_yaml(value: object) -> str:
 
 
 def _handed_in(start: Start, exercise: Exercise) -> Iterator[str]:
-    yield _heading(tell("How to hand it in"))
-    yield tell("Grade it yourself first, as often as you like, from the folder above this one:")
+    yield _heading(tr("How to hand it in"))
+    yield tr("Grade it yourself first, as often as you like, from the folder above this one:")
     yield f"    {start.grade}"
     yield _wrapped(
-        tell(
-            "The first line says what to mend first: the cause. `Where` below it is the place in "
+        tr(
+            "The first line says what to fix first: the cause. `Where` below it is the place in "
             "your file, as far as it is known, `What to do` the way out. `report.html`, whose "
             "place stands in the last line, shows it in a picture. With `--watch` it is graded "
             "again whenever you save."
         )
     )
     if exercise.is_started:
-        what = say(
+        what = msg(
             "Hand in the .py file, the folder of the package, or a .zip of it, as your course asks."
         )
     else:
-        what = say("Hand in the folder of the package, or a .zip of it, as your course asks.")
-    made = say(
+        what = msg("Hand in the folder of the package, or a .zip of it, as your course asks.")
+    made = msg(
         "Leave out what is made: {folders}.",
         folders="`graded`, `build`, `install`, `log`, `__pycache__`",
     )
-    yield _wrapped(told(joined([what, made], " ")))
+    yield _wrapped(translate(joined([what, made], " ")))
 
 
 def _heading(text: str) -> str:
@@ -281,3 +287,49 @@ def _wrapped(text: str, indent: str = "") -> str:
     return textwrap.fill(
         text, 100, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
     )
+
+
+def told(check: Check, tolerances: Mapping[str, Any]) -> str:
+    """What a check measures and how its points are computed: paragraphs, and lists with '- '.
+
+    It is in the language of this process's user, where the exercise has that.
+
+    Empty where the author has written no more than a title.
+    """
+    return in_force(translate(check.rubric), tolerances)
+
+
+def in_force(text: str, tolerances: Mapping[str, Any]) -> str:
+    """A text with the tolerances that it names in braces, as '{edge_m}'; all else is left."""
+
+    def put_in(found: re.Match[str]) -> str:
+        value = tolerances.get(found["name"])
+        if isinstance(value, list):
+            return ", ".join(map(str, value))
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return found[0] if value is None else str(value)
+        return f"{100 * value:g} %" if found["percent"] else f"{value:g}"
+
+    return _TOLERANCE.sub(put_in, text)
+
+
+def rubric(exercise: Exercise, left_out: Collection[str] = ()) -> str:
+    """The checks of an exercise with their points, as Markdown, without a heading above them.
+
+    Args:
+        left_out: names of checks that are told elsewhere.
+    """
+    known = {check.name: check for check in exercise.checks}
+    parts = []
+    for name, worth in exercise.points.items():
+        if name in left_out:
+            continue
+        check = known[name]
+        waits = [f"`{other}`" for other in check.depends_on if other in exercise.points]
+        heading = tr("{title}: {points} points", title=check.title, points=f"{worth:g}")
+        parts.append(f"### {heading}\n\n`{name}`")
+        if waits:
+            parts[-1] += " · " + tr("judged when passed: {titles}", titles=", ".join(waits))
+        if text := told(check, exercise.tolerances):
+            parts.append(text)
+    return "\n\n".join(parts) + "\n"

@@ -17,9 +17,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from grader.exercise.check import Checks
-from grader.exercise.yaml_file import Mistake, did_you_mean
-from grader.language.catalogue import ENGLISH, LANGUAGES
-from grader.language.phrase import say
+from grader.exercise.yaml_file import Mistake, check_known, expect
+from grader.translations import ENGLISH, LANGUAGES
 
 PART = "languages"
 #: Those that are not that of the file itself.
@@ -98,23 +97,17 @@ def _named(given: object, at: tuple[str, ...], known: Collection[str]) -> Mappin
     if given is None:
         return {}
     if not isinstance(given, dict):
-        expected = ", ".join(known)
         raise Mistake(
             at,
-            say(
-                "expected some of {names}, each with its text; found {found}",
-                names=expected,
-                found=repr(given),
-            ),
+            "expected some of {names}, each with its text; found {found}",
+            names=", ".join(known),
+            found=repr(given),
         )
-    for name in given:
-        if name not in known:
-            hint = did_you_mean(name, known)
-            raise Mistake(at, say("unknown {name!r}; {hint}", name=str(name), hint=hint))
+    check_known(given, known, at)
     return given
 
 
-def _text(given: object, at: tuple[str, ...]) -> str:
-    if not isinstance(given, str) or not given.strip():
-        raise Mistake(at, say("expected a text, found {found}", found=repr(given)))
-    return given
+def _text(given: Any, at: tuple[str, ...]) -> str:
+    is_text = isinstance(given, str) and given.strip()
+    expect(is_text, at, "expected a text, found {found}", given)
+    return str(given)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from numbers import Real
-from typing import Literal
+from typing import Any, Literal
 
+from grader.message import NOTHING, Message, plain_text
 from grader.strict_json import SPARSE
 
 Status = Literal["passed", "failed", "not_judged"]
@@ -20,24 +22,28 @@ class Evidence:
     """A moment of the recording that a verdict points to.
 
     Attributes:
-        tick: the simulator's tick, 1 for the first of the recording.
-        time_s: the same moment in simulated seconds.
-        x, y: where it happened [m].
-        note: what happened there.
+        time_s: when, in simulated seconds.
+        note: what happened then.
+        x, y: where it happened [m]; None for what has no place.
         run: 0 for the nominal run, 1, 2, ... for the varied ones.
+        tick: when, as the scene counts its steps; None where it counts none.
     """
 
-    tick: int
     time_s: float
-    x: float
-    y: float
-    note: str
+    note: Message
+    x: float | None = field(default=None, metadata=SPARSE)
+    y: float | None = field(default=None, metadata=SPARSE)
     run: int = 0
+    tick: int | None = field(default=None, metadata=SPARSE)
+
+    def __post_init__(self) -> None:
+        """Take a plain text as a note."""
+        _take_texts(self, "note")
 
     @property
-    def has_place(self) -> bool:
-        """Whether it was anywhere: a position can be not a number."""
-        return math.isfinite(self.x) and math.isfinite(self.y)
+    def place(self) -> tuple[float, float] | None:
+        """Where it was [m]; None for nowhere."""
+        return None if self.x is None or self.y is None else (self.x, self.y)
 
 
 @dataclass(frozen=True)
@@ -51,10 +57,14 @@ class Expected:
         beyond: a value that it has to fall below, and one that it has to rise above.
     """
 
-    curve: str
-    text: str
+    curve: Message
+    text: Message
     within: tuple[float, float] | None = field(default=None, metadata=SPARSE)
     beyond: tuple[float, float] | None = field(default=None, metadata=SPARSE)
+
+    def __post_init__(self) -> None:
+        """Take plain texts as well."""
+        _take_texts(self, "curve", "text")
 
 
 @dataclass(frozen=True)
@@ -72,11 +82,15 @@ class Finding:
     """
 
     share: float
-    rationale: str
-    help: str = ""
+    rationale: Message
+    help: Message = NOTHING
     evidence: tuple[Evidence, ...] = ()
     judged: bool = True
     expected: tuple[Expected, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Take plain texts as well."""
+        _take_texts(self, "rationale", "help")
 
 
 @dataclass(frozen=True)
@@ -93,12 +107,12 @@ class Verdict:
     """
 
     check: str
-    title: str
+    title: Message
     status: Status
     score: float
     max_score: float
-    rationale: str
-    help: str = ""
+    rationale: Message
+    help: Message = NOTHING
     evidence: tuple[Evidence, ...] = ()
     depends_on: tuple[str, ...] = ()
     visible: Visible = field(default="now", metadata=SPARSE)
@@ -122,63 +136,74 @@ class Verdict:
         return min(self.score / self.max_score, 1.0)
 
 
+def _take_texts(made: object, *names: str) -> None:
+    """Make messages of plain texts, of checks whose authors translate nothing."""
+    for name in names:
+        if isinstance(text := getattr(made, name), str):
+            object.__setattr__(made, name, plain_text(text))
+
+
 def wrong_with(finding: object, runs: int) -> str:
     """Why something that a check returned is no finding about so many runs; '' if it is one."""
     if not isinstance(finding, Finding):
         return f"returns a {type(finding).__name__}; expected a Finding"
-    share: object = finding.share
-    if not _is_number(share) or not -1e-9 <= float(share) <= 1 + 1e-9:  # type: ignore[arg-type]
-        return f"share: expected a number from 0 to 1, found {share!r}"
-    for name in ("rationale", "help"):
-        text = getattr(finding, name)
-        if not isinstance(text, str):
-            return f"{name}: expected a text, found {text!r}"
-    if type(finding.judged) is not bool:
-        return f"judged: expected True or False, found {finding.judged!r}"
-    evidence: object = finding.evidence
-    if not isinstance(evidence, tuple):
-        return f"evidence: expected a tuple, found a {type(evidence).__name__}"
-    wrong = next(filter(None, (_wrong_with_evidence(item, runs) for item in evidence)), "")
-    expected: object = finding.expected
-    if not wrong and not isinstance(expected, tuple):
-        return f"expected: expected a tuple, found a {type(expected).__name__}"
-    return wrong or next(filter(None, map(_wrong_with_expected, finding.expected)), "")
-
-
-def _wrong_with_expected(item: object) -> str:
-    if not isinstance(item, Expected):
-        return f"expected: expected Expected, found a {type(item).__name__}"
-    for name in ("curve", "text"):
-        if not isinstance(getattr(item, name), str):
-            return f"expected: {name}: expected a text, found {getattr(item, name)!r}"
-    for name in ("within", "beyond"):
-        pair = getattr(item, name)
-        if pair is None:
-            continue
-        is_pair = isinstance(pair, tuple) and len(pair) == 2
-        if not is_pair or not all(_is_number(value) and math.isfinite(value) for value in pair):
-            return f"expected: {name}: expected two finite numbers, found {pair!r}"
+    if wrong := _wrong_with_fields(finding):
+        return wrong
+    for part, kind in (("evidence", Evidence), ("expected", Expected)):
+        items = getattr(finding, part)
+        if not isinstance(items, tuple):
+            return f"{part}: expected a tuple, found a {type(items).__name__}"
+        for item in items:
+            if not isinstance(item, kind):
+                return f"{part}: expected {kind.__name__}, found a {type(item).__name__}"
+            if wrong := _wrong_with_fields(item):
+                return f"{part}: {wrong}"
+    for item in finding.evidence:
+        if (item.x is None) != (item.y is None):
+            return f"evidence: expected both x and y, or none, found {item.x!r} and {item.y!r}"
+        if item.run >= runs:
+            return f"evidence: there is no run {item.run}; there are {runs}, from 0 on"
     return ""
 
 
-def _wrong_with_evidence(item: object, runs: int) -> str:
-    if not isinstance(item, Evidence):
-        return f"evidence: expected Evidence, found a {type(item).__name__}"
-    for name in ("tick", "run"):
-        value = getattr(item, name)
-        if type(value) is not int or value < 0:
-            return f"evidence: {name}: expected a whole number from 0, found {value!r}"
-    for name in ("time_s", "x", "y"):  # JSON has no other numbers than finite ones
-        value = getattr(item, name)
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not math.isfinite(value) or (name == "time_s" and value < 0):
-            return f"evidence: {name}: expected a finite number, found {value!r}"
-    if not isinstance(item.note, str):
-        return f"evidence: note: expected a text, found {item.note!r}"
-    if item.run >= runs:
-        return f"evidence: there is no run {item.run}; there are {runs}, from 0 on"
+def _wrong_with_fields(made: Finding | Evidence | Expected) -> str:
+    for name, (wanted, fits) in _FIELDS.items():
+        value = getattr(made, name, None)
+        if hasattr(made, name) and not fits(value):
+            return f"{name}: expected {wanted}, found {value!r}"
     return ""
 
 
 def _is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def _is_finite(value: Any) -> bool:  # JSON has no other numbers
+    return isinstance(value, int | float) and _is_number(value) and math.isfinite(value)
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, Message)
+
+
+def _is_whole(value: Any) -> bool:
+    return type(value) is int and value >= 0
+
+
+def _is_pair(value: Any) -> bool:
+    is_pair = isinstance(value, tuple) and len(value) == 2
+    return value is None or (is_pair and all(map(_is_finite, value)))
+
+
+_FINITE = "a finite number"
+#: Field of a finding, or of what is in it -> what it has to be, in words and as a function.
+_FIELDS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
+    "share": ("a number from 0 to 1", lambda v: _is_number(v) and -1e-9 <= float(v) <= 1 + 1e-9),
+    **dict.fromkeys(("rationale", "help", "note", "curve", "text"), ("a text", _is_text)),
+    "judged": ("True or False", lambda v: type(v) is bool),
+    "tick": ("a whole number from 0", lambda v: v is None or _is_whole(v)),
+    "run": ("a whole number from 0", _is_whole),
+    "time_s": (_FINITE, lambda v: _is_finite(v) and v >= 0),
+    **dict.fromkeys(("x", "y"), (_FINITE, lambda v: v is None or _is_finite(v))),
+    **dict.fromkeys(("within", "beyond"), ("two finite numbers", _is_pair)),
+}

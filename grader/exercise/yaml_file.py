@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -14,17 +14,23 @@ from typing import Any
 import yaml
 
 from grader.errors import ExerciseError
-from grader.language.phrase import Phrase, joined, say
+from grader.message import Message, joined, msg
 
 #: Where a value stands in a file: the keys that lead to it.
 Keys = tuple[str, ...]
 
 
 class Mistake(ExerciseError):
-    """Something wrong with the value at some keys: 'limits: rest_s: expected ...'."""
+    """Something wrong with the value at some keys: 'limits: rest_s: expected ...'.
 
-    def __init__(self, keys: Keys, text: str) -> None:
-        super().__init__(joined((*map(Phrase, keys), text), ": "))  # keys are no words
+    Args:
+        text: what is wrong, or the key of that sentence.
+        values: those of the sentence.
+    """
+
+    def __init__(self, keys: Keys, text: str | Message, /, **values: Any) -> None:
+        what = msg(text, **values) if isinstance(text, str) else text
+        super().__init__(joined((*keys, what), ": "))
         self.keys = keys
 
 
@@ -42,14 +48,14 @@ class YamlFile:
     data: Any
     lines: Mapping[Keys, int] = field(default_factory=dict)
 
-    def told(self, mistake: Mistake) -> str:
+    def told(self, mistake: Mistake) -> Message:
         """A mistake with the file, and the line of the nearest key that stands in it."""
         keys = mistake.keys
         while keys and keys not in self.lines:
             keys = keys[:-1]
         if not keys:
             return joined([self.name, mistake.message], ": ")
-        return say(
+        return msg(
             "{file}, line {line}: {what}",
             file=self.name,
             line=str(self.lines[keys]),
@@ -71,21 +77,21 @@ def read_yaml(path: Path) -> YamlFile:
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise ExerciseError(
-            say("{name}, line {line}: it is not UTF-8", name=path.name, line=line)
+            "{name}, line {line}: it is not UTF-8", name=path.name, line=line
         ) from None
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise ExerciseError(
-            say("{file}, line {line}: {what}", file=path.name, line=str(line), what=error.problem)
+            "{file}, line {line}: {what}", file=path.name, line=str(line), what=error.problem
         ) from None
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
-        what = say("the character {character}", character=repr(error.character))
+        what = msg("the character {character}", character=repr(error.character))
         raise ExerciseError(
-            say("{name}, line {line}: {what} is not allowed", name=path.name, line=line, what=what)
+            "{name}, line {line}: {what} is not allowed", name=path.name, line=line, what=what
         ) from None
     except RecursionError:
-        raise ExerciseError(say("{name}: it is nested too deeply", name=path.name)) from None
+        raise ExerciseError("{name}: it is nested too deeply", name=path.name) from None
     except (yaml.YAMLError, ValueError) as error:
         raise ExerciseError(joined([path.name, str(error).splitlines()[0]], ": ")) from None
     except ExerciseError as error:
@@ -124,25 +130,49 @@ def _lines(node: yaml.Node, above: Keys) -> Iterator[tuple[Keys, int]]:
                 continue
             if key.value in keys and not key.tag.endswith(":merge"):
                 raise ExerciseError(
-                    say(
-                        "line {line}: the key {value} stands here twice",
-                        line=line,
-                        value=repr(key.value),
-                    )
+                    "line {line}: the key {value} stands here twice",
+                    line=line,
+                    value=repr(key.value),
                 )
             keys.add(key.value)
             yield (*above, key.value), line
             todo.append((value, (*above, key.value)))
 
 
-def did_you_mean(key: object, known: Iterable[object]) -> str:
+def expect(fits: object, keys: Keys, wanted: str, found: object, **values: Any) -> None:
+    """Refuse a value at some keys that does not fit; `wanted` is a sentence about `{found}`.
+
+    Raises:
+        Mistake: it does not fit.
+    """
+    if not fits:
+        raise Mistake(keys, wanted, found=repr(found), **values)
+
+
+def check_known(
+    given: Iterable[object], known: Collection[str], keys: Keys, *, are_checks: bool = False
+) -> None:
+    """Refuse a name at some keys that nobody knows.
+
+    Raises:
+        Mistake: there is one.
+    """
+    for name in given:
+        if name not in known:
+            hint = did_you_mean(name, known)
+            if are_checks:
+                raise Mistake(keys, "no check is named {name}; {hint}", name=repr(name), hint=hint)
+            raise Mistake(keys, "unknown {key}; {hint}", key=repr(name), hint=hint)
+
+
+def did_you_mean(key: object, known: Iterable[object]) -> Message:
     """What there is instead of a key that nobody knows."""
     names = [str(name) for name in known]
     near = get_close_matches(str(key), names, n=1)
     listed = ", ".join(names)
     if not near:
-        return say("there are {names}", names=listed)
-    return say("did you mean {near}? There are {names}", near=repr(near[0]), names=listed)
+        return msg("there are {names}", names=listed)
+    return msg("did you mean {near}? There are {names}", near=repr(near[0]), names=listed)
 
 
 def is_amount(value: object) -> bool:

@@ -2,26 +2,28 @@
 
 Which topics hold what is told by the scene, in its module `messages`.
 
-A message's time is its tick times the tick's length, counted from the start of the run: the scene's
-own time. A date would be the only thing in the bag that differs between equal runs. Messages of one
-tick have equal times and stand in the file in the order in which they happened.
+A message's time is counted from the start of the run: a date would be the only thing in the bag
+that differs between equal runs. Messages of equal times stand in the file in the order in which
+they happened.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 from rosbags.interfaces import Connection
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
 from grader.errors import RecordingError
 from grader.recording import rosbag2_reader
 from grader.recording.rosbag2_writer import Record, Rosbag2Writer
-from grader.scenes.message_types import types_of
-from grader.scenes.scene import Scene, Trace
+from grader.recording.subject import Subject, Trace
 
 
-def write(trace: Trace, scene: Scene, folder: Path) -> Path:
+def write(trace: Trace, subject: Subject, folder: Path) -> Path:
     """Write a bag; returns its .mcap, which is named like the folder. Last comes metadata.yaml.
 
     The same trace gives the same bytes.
@@ -29,7 +31,7 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
     Raises:
         OSError: it cannot be written, e.g. because the disk is full.
     """
-    types = types_of(scene.message_definitions())
+    types = types_of(subject.message_definitions())
     writer = Rosbag2Writer(folder)
     connections: dict[str, Connection] = {}
 
@@ -40,36 +42,55 @@ def write(trace: Trace, scene: Scene, folder: Path) -> Path:
         return connections[topic]
 
     def records() -> Iterator[Record]:
-        tick_ns = scene.tick_ns
-        for tick, topic, msgtype, data in scene.to_messages(trace):
-            yield connections.get(topic) or connection(topic, msgtype), tick * tick_ns, data
+        for time_ns, topic, msgtype, data in subject.to_messages(trace):
+            yield connections.get(topic) or connection(topic, msgtype), time_ns, data
 
     with writer:
-        for topic, msgtype in scene.bag_topics(trace):
+        for topic, msgtype in subject.bag_topics(trace):
             connection(topic, msgtype)
         writer.write_all(records())
     return folder / f"{folder.name}.mcap"
 
 
-def read(mcap: Path, scene: Scene, ticks: int) -> Trace:
-    """Read a bag that `write` has written; `ticks` is how many were recorded.
+def read(mcap: Path, subject: Subject, duration_ns: int) -> Trace:
+    """Read a bag that `write` has written; `duration_ns` is how long was recorded.
 
     Raises:
         RecordingError: it is damaged, or is another one.
     """
     folder = mcap.parent
     try:
-        channels = rosbag2_reader.read(mcap, scene.tick_ns)
+        channels = rosbag2_reader.read(mcap)
     except MemoryError:  # a limit
         raise
     except Exception as error:  # where a bag is damaged, rosbags may raise anything
         raise RecordingError(f"cannot read the bag in {folder}: {_brief(error)}") from error
     try:
-        return scene.from_channels(channels, ticks)
+        return subject.from_channels(channels, duration_ns)
     except MemoryError:
         raise
     except Exception as error:  # and where a message is, too
         raise RecordingError(f"the bag in {folder} holds no recording: {_brief(error)}") from error
+
+
+def types_of(definitions: Mapping[str, str]) -> Typestore:
+    """The types that are defined, and those of builtin_interfaces, for rosbags.
+
+    It brings the types of ROS 2 Jazzy, but to import them takes longer than a run's verdict: they
+    stand on those of each release before.
+
+    Args:
+        definitions: ROS type -> the text of its .msg; also of the types of its fields.
+    """
+    return _store(tuple(definitions.items()))
+
+
+@cache  # what (de)serializes a type is compiled once a store
+def _store(definitions: tuple[tuple[str, str], ...]) -> Typestore:
+    types = get_typestore(Stores.EMPTY)
+    for msgtype, text in definitions:
+        types.register(get_types_from_msg(text, msgtype))
+    return types
 
 
 def _brief(error: Exception) -> str:

@@ -6,7 +6,7 @@
 | run.json | how the run went, where it started, what the submission published on | yes |
 | output.txt | what the submission printed | yes |
 | circumstances.json | what differs between equal runs: duration, provenance | if it is there |
-| conduct.json | what the submission's process told of itself, if anything | if it is there |
+| observations.json | what the submission's process told of itself, if anything | if it is there |
 | path.png, plan.png, window.png | the bag's pictures, for people, as many as its scene makes | no |
 | scenario.json | the inputs, for `python -m turtlesim_py.scenario` | no |
 
@@ -19,7 +19,6 @@ read in a copy of this process with limits of time and memory. `saving` writes, 
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -31,21 +30,17 @@ SCHEMA = "turtlesim-grader/recording/v2"
 NAME = "recording"
 BAG, METADATA, RUN, OUTPUT = f"{NAME}.mcap", "metadata.yaml", "run.json", "output.txt"
 CIRCUMSTANCES_FILE, SCENARIO = "circumstances.json", "scenario.json"
-CONDUCT, PACKAGE = "conduct.json", "package.json"
+OBSERVATIONS, PACKAGE = "observations.json", "package.json"
 WINDOW_PICTURE = "window.png"
 PICTURES = ("path.png", "plan.png", WINDOW_PICTURE)
-#: The scene of a recording that names none.
-FIRST_SCENE = "turtlesim"
 #: In the order in which they come into the folder.
 FILES = (
-    *(BAG, RUN, OUTPUT, CONDUCT, PACKAGE, CIRCUMSTANCES_FILE, SCENARIO),
+    *(BAG, RUN, OUTPUT, OBSERVATIONS, PACKAGE, CIRCUMSTANCES_FILE, SCENARIO),
     *PICTURES,
     METADATA,
 )
 #: What of a `Run` is chance: the same run on another day has others.
 CIRCUMSTANCES = ("wall_s", "isolation")
-#: What of the run's remarks the submission's reader has made, for other languages.
-PHRASES = "phrases"
 #: Stands beside them.
 PROVENANCE = "provenance"
 
@@ -55,11 +50,6 @@ def varied_in(folder: Path) -> set[int]:
     names: Iterable[str] = (path.name for path in folder.glob("varied_*"))
     matches = (re.fullmatch(r"varied_([1-9]\d{0,5})", name) for name in names)
     return {int(match[1]) for match in matches if match}
-
-
-def sha256_of(path: Path) -> str:
-    """The hash of a file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def bag() -> ModuleType:

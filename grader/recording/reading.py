@@ -4,41 +4,42 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader import limited, strict_json
+from grader import content, limited, strict_json
 from grader.errors import RecordingError
-from grader.language import stored
-from grader.language.phrase import say
-from grader.limited import Limits
-from grader.recording.conduct import Conduct
+from grader.limited import WorkLimits
+from grader.message import Message, msg
+from grader.recording import transfer
 from grader.recording.folder import (
     BAG,
     CIRCUMSTANCES,
     CIRCUMSTANCES_FILE,
-    CONDUCT,
-    FIRST_SCENE,
     METADATA,
+    OBSERVATIONS,
     OUTPUT,
     PACKAGE,
-    PHRASES,
     PROVENANCE,
     RUN,
     SCHEMA,
     bag,
-    sha256_of,
     varied_in,
 )
-from grader.recording.provenance import Provenance
-from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
-from grader.scenes import load_scene, transfer
-from grader.scenes.package.trace import decode
-from grader.scenes.scene import Scene, Start, Trace
+from grader.recording.observations import Observations
+from grader.recording.recording import Provenance, PublishedTopic, Recording, Recordings, Run
+from grader.recording.subject import (
+    DEFAULT_SCENE,
+    PACKAGE_SCENE,
+    Start,
+    Subject,
+    Trace,
+    load_subject,
+)
 
 if TYPE_CHECKING:
     import jsonschema
@@ -50,15 +51,15 @@ SIZES = {
     RUN: 2**20,
     OUTPUT: 2**26,
     CIRCUMSTANCES_FILE: 2**20,
-    CONDUCT: 2**20,
+    OBSERVATIONS: 2**20,
     PACKAGE: 2**24,
 }
 #: An exercise has no more.
 MOST_VARIED_RUNS = 100
 #: Of reading one bag.
-READING = Limits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
-#: What begins an answer of the process that reads bags if it is no trace, but says why.
-_ERROR = b"!"
+READING = WorkLimits(cpu_s=60.0, wall_s=300.0, answer_bytes=2**30)
+#: What begins an answer of the process that reads bags: a trace follows, or why there is none.
+_TRACE, _ERROR = b"=", b"!"
 
 
 def load(path: Path) -> Recording:
@@ -84,20 +85,16 @@ def load_all(path: Path) -> Recordings:
     lost = next((number for number in range(1, count + 1) if number not in found), None)
     if lost is not None:
         raise RecordingError(
-            say(
-                "{folder} is incomplete: its folder varied_{lost} is missing",
-                folder=str(folder),
-                lost=str(lost),
-            )
+            "{folder} is incomplete: its folder varied_{lost} is missing",
+            folder=str(folder),
+            lost=str(lost),
         )
     if count > MOST_VARIED_RUNS:
         raise RecordingError(
-            say(
-                "{folder} has {count} varied runs; expected {most} at most",
-                folder=str(folder),
-                count=count,
-                most=MOST_VARIED_RUNS,
-            )
+            "{folder} has {count} varied runs; expected {most} at most",
+            folder=str(folder),
+            count=count,
+            most=MOST_VARIED_RUNS,
         )
     varied = (_told(folder / f"varied_{number}") for number in range(1, count + 1))
     nominal, *others = _loaded([first, *varied])
@@ -107,16 +104,14 @@ def load_all(path: Path) -> Recordings:
 def scene_of(folder: Path) -> str:
     """The name of the scene of a recording, as far as its run.json tells; its bag is not opened."""
     try:
-        return str(_read_json(folder / RUN).get("scene", FIRST_SCENE))
+        return str(_read_json(folder / RUN).get("scene", DEFAULT_SCENE))
     except RecordingError:
-        return FIRST_SCENE
+        return DEFAULT_SCENE
 
 
 def _folder(path: Path) -> Path:
     if not path.exists():
-        raise RecordingError(
-            say("cannot read the recording: {path} does not exist", path=str(path))
-        )
+        raise RecordingError("cannot read the recording: {path} does not exist", path=str(path))
     return path if path.is_dir() else path.parent
 
 
@@ -126,69 +121,75 @@ def _facts(folder: Path) -> dict[str, Any]:
     if not has_run:
         words = {"folder": str(folder), "run": RUN}
         raise RecordingError(
-            say("{folder} is a rosbag, but no recording of the grader: it has no {run}", **words)
+            msg("{folder} is a rosbag, but no recording of the grader: it has no {run}", **words)
             if has_bag
-            else say("{folder} is no recording: it has no {run}", **words)
+            else msg("{folder} is no recording: it has no {run}", **words)
         )
     if not has_bag:
         raise RecordingError(
-            say(
-                "{folder} is incomplete: it has no {metadata}, which is saved last",
-                folder=str(folder),
-                metadata=METADATA,
-            )
+            "{folder} is incomplete: it has no {metadata}, which is saved last",
+            folder=str(folder),
+            metadata=METADATA,
         )
     for name, most in SIZES.items():
         path = folder / name
         if path.exists() and not path.is_file():  # a pipe would be waited for, for ever
-            raise RecordingError(say("{path} is damaged: it is no ordinary file", path=str(path)))
+            raise RecordingError("{path} is damaged: it is no ordinary file", path=str(path))
         if path.is_symlink() and not path.resolve().is_relative_to(folder.resolve()):
             raise RecordingError(
-                say("{path} is no part of a recording: it leads somewhere else", path=str(path))
+                "{path} is no part of a recording: it leads somewhere else", path=str(path)
             )
         if path.exists() and path.stat().st_size > most:
             size = path.stat().st_size
             raise RecordingError(
-                say(
-                    "{path} has {size} bytes; expected {most} at most",
-                    path=str(path),
-                    size=size,
-                    most=most,
-                )
+                "{path} has {size} bytes; expected {most} at most",
+                path=str(path),
+                size=size,
+                most=most,
             )
     facts = _read_json(folder / RUN)
     if facts.get("schema") != SCHEMA:
         raise RecordingError(
-            say(
-                "{run} is of another version: expected schema {schema!r}, found {found!r}",
-                run=str(folder / RUN),
-                schema=SCHEMA,
-                found=facts.get("schema"),
-            )
+            "{run} is of another version: expected schema {schema!r}, found {found}",
+            run=str(folder / RUN),
+            schema=SCHEMA,
+            found=repr(facts.get("schema")),
         )
     path = folder / CIRCUMSTANCES_FILE
     circumstances = _read_json(path) if path.exists() else {}
     if isinstance(facts.get("run"), dict):
         facts["run"].update((k, v) for k, v in circumstances.items() if k in CIRCUMSTANCES)
     facts[PROVENANCE] = circumstances.get(PROVENANCE)
-    phrases = circumstances.get(PHRASES, {})
     from jsonschema.exceptions import best_match  # here: what is only written is not validated
 
     error = best_match(_validator().iter_errors(facts))
     if error is not None:
         raise RecordingError(
-            say(
-                "{run} is damaged: {place}: {message}",
-                run=str(folder / RUN),
-                place=error.json_path,
-                message=error.message,
-            )
+            "{run} is damaged: {place}: {message}",
+            run=str(folder / RUN),
+            place=error.json_path,
+            message=error.message,
         )
-    try:
-        facts["run"]["flags"] = stored.restored(tuple(facts["run"]["flags"]), phrases)
-    except (ValueError, TypeError, AttributeError) as wrong:
-        raise RecordingError(say("{path} {error}", path=str(path), error=str(wrong))) from None
+    with _refusing(folder / RUN):
+        facts["run"]["flags"] = tuple(map(Message.parse, facts["run"]["flags"]))
     return facts
+
+
+@contextmanager
+def _refusing(path: Path) -> Iterator[None]:
+    """Turn what is wrong with a file or folder into an error that names it.
+
+    Raises:
+        RecordingError: something is.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise RecordingError(msg("cannot read the recording: {error}", error=str(error))) from None
+    except (ValueError, TypeError) as error:
+        raise RecordingError(
+            msg("{path} is damaged: {error}", path=str(path), error=str(error))
+        ) from None
 
 
 @dataclass(frozen=True)
@@ -202,33 +203,24 @@ class _Told:
     folder: Path
     facts: dict[str, Any]
     run: Run
-    scene: Scene
+    subject: Subject
     output: str
 
 
 def _told(folder: Path) -> _Told:
     """What the files beside the bag tell, which has its checksum."""
     facts = _facts(folder)
-    try:
-        digest = sha256_of(folder / BAG)
+    with _refusing(folder):
+        digest = content.of_file(folder / BAG)
         output = (folder / OUTPUT).read_bytes().decode("utf-8", "surrogatepass")
         run = Run(**facts["run"])
-    except OSError as error:
-        raise RecordingError(say("cannot read the recording: {error}", error=str(error))) from None
-    except (ValueError, TypeError) as error:
-        raise RecordingError(
-            say("{path} is damaged: {error}", path=str(folder), error=str(error))
-        ) from None
     if digest != facts["bag_sha256"]:
         raise RecordingError(
-            say(
-                "{bag} is damaged: it is cut off or was changed since it was saved",
-                bag=str(folder / BAG),
-            )
+            "{bag} is damaged: it is cut off or was changed since it was saved",
+            bag=str(folder / BAG),
         )
-    scene = _scene(folder, facts.get("scene", FIRST_SCENE))
-    _must_agree(folder, "ticks", run.ticks, round(run.simulated_s * 1e9 / scene.tick_ns))
-    return _Told(folder, facts, run, scene, output)
+    subject = _subject(folder, facts.get("scene", DEFAULT_SCENE))
+    return _Told(folder, facts, run, subject, output)
 
 
 def _loaded(found: Sequence[_Told]) -> list[Recording]:
@@ -241,10 +233,12 @@ def _loaded(found: Sequence[_Told]) -> list[Recording]:
     def answers() -> Iterator[bytes]:
         for told in found:
             try:
-                trace = bags.read(told.folder / BAG, told.scene, told.run.ticks)
-                yield transfer.pack(trace, told.scene)
+                trace = bags.read(
+                    told.folder / BAG, told.subject, round(told.run.simulated_s * 1e9)
+                )
+                yield _TRACE + transfer.pack(trace, told.subject)
             except RecordingError as error:
-                yield _ERROR + error.message.encode("utf-8", "backslashreplace")
+                yield _ERROR + json.dumps(error.message.serialise()).encode()
 
     made: list[Recording] = []
     many = len(found)
@@ -253,22 +247,21 @@ def _loaded(found: Sequence[_Told]) -> list[Recording]:
         with closing(limited.stream(answers, limits)) as read:
             for told, answer in zip(found, read, strict=False):  # asks for no more than that
                 if answer.startswith(_ERROR):
-                    raise RecordingError(answer.removeprefix(_ERROR).decode())
-                made.append(_recording(told, transfer.unpack(answer, told.scene)))
+                    message = json.loads(answer.removeprefix(_ERROR))
+                    raise RecordingError(Message.parse(message))
+                trace = transfer.unpack(answer.removeprefix(_TRACE), told.subject)
+                made.append(_recording(told, trace))
     except limited.LimitHit as hit:
         folder = str(found[len(made)].folder)
         raise RecordingError(
-            say(
-                "the bag in {folder} cannot be read: reading it {hit}",
-                folder=folder,
-                hit=hit.args[0],
-            )
+            "the bag in {folder} cannot be read: reading it {hit}", folder=folder, hit=hit.why
         ) from None
     return made
 
 
 def _recording(told: _Told, trace: Trace) -> Recording:
     facts = told.facts
+    _must_agree(told.folder, "ticks", told.run.ticks, trace.ticks)
     _must_agree(told.folder, "trace_sha256", told.run.trace_sha256, trace.sha256())
     return Recording(
         trace=trace,
@@ -276,9 +269,9 @@ def _recording(told: _Told, trace: Trace) -> Recording:
         topics=tuple(PublishedTopic(**topic) for topic in facts["topics"]),
         output=told.output,
         start=Start(**facts["start"]) if facts["start"] else None,
-        scene=told.scene.name,
+        scene=told.subject.name,
         provenance=_provenance(facts[PROVENANCE]),
-        conduct=_conduct(told.folder / CONDUCT),
+        observations=_observations(told.folder / OBSERVATIONS),
         package=_package(told.folder / PACKAGE),
     )
 
@@ -290,66 +283,52 @@ def _provenance(told: object) -> Provenance | None:
 def _package(path: Path) -> Trace | None:
     if not path.exists():
         return None
-    try:
-        return decode(path.read_bytes())
-    except OSError as error:
-        raise RecordingError(say("cannot read the recording: {error}", error=str(error))) from None
-    except ValueError as error:
-        raise RecordingError(
-            say("{path} is damaged: {error}", path=str(path), error=str(error))
-        ) from None
+    with _refusing(path):
+        return load_subject(PACKAGE_SCENE).decode(path.read_bytes())
 
 
-def _conduct(path: Path) -> Conduct:
+def _observations(path: Path) -> Observations:
     """What the process has told of itself; nothing in a recording that is older than that."""
     if not path.exists():
-        return Conduct()
-    try:
-        return Conduct.from_json(_read_json(path))
-    except ValueError as error:
-        raise RecordingError(
-            say("{path} is damaged: {error}", path=str(path), error=str(error))
-        ) from None
+        return Observations()
+    with _refusing(path):
+        return Observations.from_json(_read_json(path))
 
 
 def _must_agree(folder: Path, key: str, told: object, found: object) -> None:
     if told != found:
         raise RecordingError(
-            say(
-                "{run} is damaged: its {key} is {told}, but the run's is {found}",
-                run=str(folder / RUN),
-                key=key,
-                told=f"{told!r:.80}",
-                found=f"{found!r:.80}",
-            )
+            "{run} is damaged: its {key} is {told}, but the run's is {found}",
+            run=str(folder / RUN),
+            key=key,
+            told=f"{told!r:.80}",
+            found=f"{found!r:.80}",
         )
 
 
-def _scene(folder: Path, name: str) -> Scene:
+def _subject(folder: Path, name: str) -> Subject:
     try:
-        return load_scene(name)
+        return load_subject(name)
     except KeyError as error:
         raise RecordingError(
-            say("{folder} cannot be read: {why}", folder=str(folder), why=error.args[0])
+            "{folder} cannot be read: {why}", folder=str(folder), why=error.args[0]
         ) from None
 
 
 def _read_json(path: Path) -> dict[str, Any]:
     try:
-        data = strict_json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RecordingError(say("cannot read the recording: {error}", error=str(error))) from None
+        with _refusing(path):
+            text = path.read_bytes()
+        data = strict_json.loads(text.decode())
     except (ValueError, RecursionError) as error:
         raise RecordingError(
-            say("{path} is damaged: it is not JSON ({error})", path=str(path), error=str(error))
+            "{path} is damaged: it is not JSON ({error})", path=str(path), error=str(error)
         ) from None
     if not isinstance(data, dict):
         raise RecordingError(
-            say(
-                "{path} is damaged: expected an object, found {data}",
-                path=str(path),
-                data=f"{data!r:.40}",
-            )
+            "{path} is damaged: expected an object, found {data}",
+            path=str(path),
+            data=f"{data!r:.40}",
         )
     return data
 

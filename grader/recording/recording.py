@@ -8,15 +8,14 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from functools import cached_property
 from typing import Literal
 
-from grader.recording import remarks
-from grader.recording.conduct import Conduct
-from grader.recording.provenance import Provenance
-from grader.scenes import load_scene
-from grader.scenes.scene import Start, Trace
-from grader.scenes.view import Pictures, Pixels
+from grader.message import Message
+from grader.recording.observations import Observations
+from grader.recording.subject import Start, Trace, load_subject
+from grader.recording.view import Pictures, Pixels
 from grader.strict_json import SPARSE
 
 Outcome = Literal["finished", "exited", "crashed", "stalled", "time_limit", "killed", "not_run"]
@@ -51,13 +50,9 @@ class Run:
     wall_s: float = 0.0
     trace_sha256: str = ""
     isolation: str = ""
-    flags: tuple[str, ...] = ()
+    flags: tuple[Message, ...] = ()
     seed: int | None = None
     interfaces: str = field(default="", metadata=SPARSE)
-
-    def __post_init__(self) -> None:
-        """Its remarks can be said in any language, wherever they were made."""
-        object.__setattr__(self, "flags", tuple(map(remarks.phrase, self.flags)))
 
 
 @dataclass(frozen=True)
@@ -66,6 +61,40 @@ class PublishedTopic:
 
     topic: str
     type: str
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """How the runs of a submission were made; nothing of it decides a verdict.
+
+    Attributes:
+        date: when they began, as `now` writes it.
+        grader, python, rclpy: versions.
+        ros_distro: the ROS 2 release that was sourced; '' where none was.
+        submission: what was handed in, by its name.
+        submission_sha256: of all its files; see `grader.content`.
+        exercise: its name.
+        exercise_sha256: of all that it judges by.
+        seed: chose where the varied runs start; None where there are none.
+        conditions: what of the exercise only a run can follow: "limits.total_s" -> 180.0.
+    """
+
+    date: str
+    grader: str
+    python: str
+    rclpy: str
+    ros_distro: str = ""
+    submission: str = ""
+    submission_sha256: str = ""
+    exercise: str = ""
+    exercise_sha256: str = ""
+    seed: int | None = None
+    conditions: Mapping[str, float] = field(default_factory=dict)
+
+
+def now() -> str:
+    """This moment, by the machine's clock: '2026-11-21T23:52:52Z'."""
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 @dataclass(frozen=True)
@@ -79,7 +108,7 @@ class Recording:
         output: what the submission printed (start and end of it, if it was much).
         start: where the run began; None for the scene's usual place.
         scene: the name of the scene that made the trace.
-        conduct: what its process has told of itself; for words, not for points.
+        observations: what its process has told of itself; for words, not for points.
         package: what was found by looking at the submission's package, in the nominal run's: a
             trace of the scene `package`; None where it is in none, or the exercise does not look.
         provenance: when and with what it was made; the nominal run's tells it of all.
@@ -91,14 +120,14 @@ class Recording:
     output: str = ""
     start: Start | None = None
     scene: str = "turtlesim"
-    conduct: Conduct = field(default_factory=Conduct)
+    observations: Observations = field(default_factory=Observations)
     package: Trace | None = None
     provenance: Provenance | None = field(default=None, compare=False)
 
     @cached_property
     def pictures(self) -> Pictures:
         """The pictures of the scene at the end; a robot takes a second to be drawn."""
-        return load_scene(self.scene).pictures(self.trace)
+        return load_subject(self.scene).pictures(self.trace)
 
     @cached_property
     def png(self) -> Mapping[str, bytes]:
@@ -115,7 +144,13 @@ class Recording:
             return file.getvalue()
 
         made = self.pictures
-        return {name: encoded(p) for name, p in {"window": made.window, **made.others}.items()}
+        named = {"window": made.window, **made.others}
+        return {name: encoded(p) for name, p in named.items() if p is not None}
+
+    @property
+    def canvas(self) -> bytes:
+        """The picture that stands beside a result, a PNG; empty where the scene has none."""
+        return self.png.get("window", b"")
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy.typing as npt
 import yaml
 from rosbags.rosbag2.storage_mcap import ChunkInfo, McapReader, decompress, read_exact
 
-from grader.scenes.channel import Channel, Ints, taken
+from grader.recording.channel import Channel, Ints, taken
 
 #: What stands before a message's data in MCAP.
 _HEAD = np.dtype(
@@ -45,7 +45,7 @@ class _Messages(NamedTuple):
     ends: Ints
 
 
-def read(mcap: Path, tick_ns: int) -> list[Channel]:
+def read(mcap: Path) -> list[Channel]:
     """The channels of a bag, in their order; beside its .mcap lies its metadata.yaml.
 
     Raises:
@@ -59,7 +59,7 @@ def read(mcap: Path, tick_ns: int) -> list[Channel]:
         data, found = _all_messages(reader, set(topics))
     finally:
         reader.close()
-    channels = _by_channel(topics, data, found, tick_ns)
+    channels = _by_channel(topics, data, found)
     _check_metadata(mcap, channels)
     return channels
 
@@ -165,7 +165,6 @@ def _by_channel(
     topics: Mapping[int, tuple[str, str]],
     data: npt.NDArray[np.uint8],
     found: _Messages,
-    tick_ns: int,
 ) -> list[Channel]:
     order = np.argsort(found.channels, kind="stable")
     channels = found.channels[order]
@@ -173,9 +172,10 @@ def _by_channel(
     for number, (topic, msgtype) in topics.items():
         begin, end = np.searchsorted(channels, [number, number + 1])
         own = order[begin:end]
-        ticks = found.times_ns[own] // tick_ns
         place = found.begins[own], found.ends[own]
-        made.append(Channel(topic, msgtype, ticks, own.astype(np.int64), data, *place))
+        made.append(
+            Channel(topic, msgtype, found.times_ns[own], own.astype(np.int64), data, *place)
+        )
     return made
 
 

@@ -4,59 +4,45 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from grader.language import stored
-from grader.language.phrase import Phrase
-from grader.recording import remarks
+from grader import content
 from grader.recording.folder import (
     CIRCUMSTANCES,
     CIRCUMSTANCES_FILE,
-    CONDUCT,
     FILES,
-    FIRST_SCENE,
     METADATA,
     NAME,
+    OBSERVATIONS,
     OUTPUT,
     PACKAGE,
-    PHRASES,
     PROVENANCE,
     RUN,
     SCENARIO,
     SCHEMA,
     bag,
-    sha256_of,
     varied_in,
 )
 from grader.recording.recording import Recording, Recordings
-from grader.scenes import load_scene
-from grader.scenes.package.trace import PackageTrace, encode
+from grader.recording.subject import DEFAULT_SCENE, PACKAGE_SCENE, load_subject
 from grader.strict_json import OURS, to_json
 
 #: Where the files are written before they come into the folder.
 UNFINISHED = ".unfinished"
 
 
-def save(recording: Recording, folder: Path, varied_runs: int = 0) -> None:
-    """Write a recording into a folder, which is made if need be; an older one is replaced.
+def save_all(recordings: Recordings, folder: Path) -> None:
+    """Write a nominal recording and its varied ones into a folder, in place of older ones.
 
-    Args:
-        varied_runs: how many varied runs belong to it, so that none gets lost.
+    The folder is made if need be.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: they cannot be written.
     """
-    with _unfinished(folder) as place:
-        _write(recording, place / NAME, varied_runs)
-        _put(place / NAME, folder)
-
-
-def save_all(recordings: Recordings, folder: Path) -> None:
-    """Write a nominal recording and its varied ones; see `save`."""
     with into(folder, len(recordings.varied)) as unsaved:
         for number, recording in enumerate(recordings):
             unsaved.write(number, recording)
@@ -106,20 +92,13 @@ def into(folder: Path, varied_runs: int) -> Iterator[Unsaved]:
     Raises:
         OSError: they cannot be written; also from `Unsaved`.
     """
-    with _unfinished(folder) as place:
-        yield Unsaved(place, folder, varied_runs)
-
-
-@contextmanager
-def _unfinished(folder: Path) -> Iterator[Path]:
-    """A place for files that come into the folder later; what is still there then goes."""
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     place = folder / UNFINISHED
     _clear(place)
     place.mkdir()
     try:
-        yield place
+        yield Unsaved(place, folder, varied_runs)
     finally:
         shutil.rmtree(place, ignore_errors=True)
         if is_new:
@@ -150,42 +129,35 @@ def _put(made: Path, folder: Path) -> None:
             (folder / name).unlink(missing_ok=True)
 
 
-def _unknown(flags: Iterable[str]) -> list[str]:
-    """Those that would not be known again by their English texts: what they are made of is kept."""
-    return [flag for flag in flags if not isinstance(remarks.phrase(str(flag)), Phrase)]
-
-
 def _withdraw(folder: Path) -> None:
     (folder / METADATA).unlink(missing_ok=True)
 
 
 def _write(recording: Recording, folder: Path, varied_runs: int) -> None:
-    scene = load_scene(recording.scene)
+    scene = load_subject(recording.scene)
     mcap = bag().write(recording.trace, scene, folder)
     run = to_json(recording.run, OURS)
     circumstances = {key: run.pop(key) for key in CIRCUMSTANCES}
-    if phrases := stored.phrases_in(_unknown(recording.run.flags)):
-        circumstances[PHRASES] = phrases
     if recording.provenance is not None:
         circumstances[PROVENANCE] = to_json(recording.provenance, OURS)
     facts = {
         "schema": SCHEMA,
-        "bag_sha256": sha256_of(mcap),
+        "bag_sha256": content.of_file(mcap),
         "varied_runs": varied_runs,
         "start": asdict(recording.start) if recording.start else None,
         "topics": [asdict(topic) for topic in recording.topics],
         "run": run,
     }
-    if recording.scene != FIRST_SCENE:
+    if recording.scene != DEFAULT_SCENE:
         facts["scene"] = recording.scene
     _write_json(folder / RUN, facts)
     _write_json(folder / CIRCUMSTANCES_FILE, circumstances)
     # Bytes: a student's line ends stay as they are.
     (folder / OUTPUT).write_bytes(recording.output.encode("utf-8", "surrogatepass"))
-    if recording.conduct.is_told:
-        _write_json(folder / CONDUCT, recording.conduct.to_json())
+    if recording.observations.is_known:
+        _write_json(folder / OBSERVATIONS, recording.observations.to_json())
     if recording.package is not None:
-        told = encode(PackageTrace.of(recording.package))
+        told = load_subject(PACKAGE_SCENE).encode(recording.package)
         (folder / PACKAGE).write_bytes(told + b"\n")
     for name, png in recording.png.items():
         (folder / f"{name}.png").write_bytes(png)

@@ -1,20 +1,17 @@
 """A result in many formats, one file each; a report knows verdicts, not checks.
 
-A format is a module with `render(report: Report) -> str`, and `render_error(report: ErrorReport)`
-for where there is no result; one that can hold several has `render_all(reports)` as well. `FORMATS`
-lists them all.
+A format is a `Format`, registered by an entry point of the group `grader.reports`.
 """
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
 
+from grader import extensions
 from grader.errors import UsageError
-from grader.language.phrase import say
+from grader.message import Message
 from grader.reports.beside import Beside
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
@@ -23,43 +20,35 @@ from grader.result.error import ErrorResult
 from grader.result.result import Result
 from grader.result.visible import View
 
-__all__ = ["FORMATS", "ErrorReport", "Format", "Report", "read", "render"]
+__all__ = ["ErrorReport", "Format", "Report", "load", "names", "read", "render"]
 
 
 @dataclass(frozen=True)
 class Format:
-    """A format that `grader report --format` knows.
+    """A format that `grader report --format` knows, by an entry point of `grader.reports`.
 
     Attributes:
-        module: its module in this package, imported only when it is used.
         summary: what it is for, in a few words.
-        takes_several: whether it can show several results at once.
+        render: a result as text.
+        render_error: where there is no result, the error as text.
+        render_all: several results and errors at once; None where a format shows one.
     """
 
-    module: str
-    summary: str
-    takes_several: bool = False
-
-    def load(self) -> Any:
-        """The module."""
-        return importlib.import_module(f"{__name__}.{self.module}")
+    summary: Message
+    render: Callable[[Report], str]
+    render_error: Callable[[ErrorReport], str]
+    render_all: Callable[[Sequence[Report | ErrorReport]], str] | None = None
 
 
-FORMATS: Final[Mapping[str, Format]] = {
-    "terminal": Format("terminal", say("for reading in a terminal")),
-    "html": Format(
-        "page.html", say("one self-contained page: picture, plots, animation, verdicts")
-    ),
-    "markdown": Format("markdown", say("a GitHub step summary, a comment, a release's text")),
-    "csv": Format("csv", say("one row a result, for a teacher's spreadsheet"), takes_several=True),
-    "junit": Format("junit", say("JUnit XML for GitLab, Jenkins and GitHub actions")),
-    "gradescope": Format("gradescope", say("Gradescope's results.json")),
-    "classroom50": Format("classroom50", say("Classroom 50's result.json")),
-    "prairielearn": Format("prairielearn", say("PrairieLearn's results.json")),
-    "autolab": Format("autolab", say("the last two lines of an Autolab autograder's output")),
-    "moodle-vpl": Format("moodle_vpl", say("Moodle's Virtual Programming Lab")),
-    "github-autograding": Format("github_autograding", say("GitHub Classroom's old reporter")),
-}
+def names() -> Sequence[str]:
+    """The formats that are installed."""
+    return tuple(extensions.points(extensions.REPORTS))
+
+
+def load(name: str) -> Format:
+    """The format of a name that `names` has."""
+    form: Format = extensions.load(extensions.REPORTS, name)
+    return form
 
 
 def read(path: Path, checks: Sequence[str] = (), view: View = "student") -> Report | ErrorReport:
@@ -86,20 +75,16 @@ def render(name: str, reports: Sequence[Report | ErrorReport]) -> str:
     Raises:
         UsageError: the format shows one and there are more, or it lacks something.
     """
-    form = FORMATS[name]
-    if form.takes_several:
-        return str(form.load().render_all(reports))
+    form = load(name)
+    if form.render_all is not None:
+        return form.render_all(reports)
     if len(reports) != 1:
-        several = ", ".join(n for n, f in FORMATS.items() if f.takes_several)
+        several = ", ".join(each for each in names() if load(each).render_all is not None)
         raise UsageError(
-            say(
-                "the format {name} shows one result, found {n}; several can be given with: "
-                "{several}",
-                name=name,
-                n=len(reports),
-                several=several,
-            )
+            "the format {name} shows one result, found {n}; several can be given with: {several}",
+            name=name,
+            n=len(reports),
+            several=several,
         )
     (report,) = reports
-    module = form.load()
-    return str(module.render(report) if isinstance(report, Report) else module.render_error(report))
+    return form.render(report) if isinstance(report, Report) else form.render_error(report)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Final
 
 from grader import text
 from grader.errors import UsageError
-from grader.language.phrase import say
-from grader.language.telling import tell
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import word
+from grader.translations import tr
 
 _STAGE = "Checks"
 
@@ -41,15 +42,13 @@ def render_error(report: ErrorReport) -> str:
     """
     if not report.is_judged:
         raise UsageError(
-            say(
-                "the format autolab cannot say that nothing was judged; end without scores "
-                "instead: {message}",
-                message=text.one_line(report.message),
-            )
+            "the format autolab cannot say that nothing was judged; end without scores "
+            "instead: {message}",
+            message=text.one_line(report.message),
         )
     if not report.checks:
         raise UsageError(
-            say("the format autolab needs the exercise of an error: add --exercise NAME")
+            msg("the format autolab needs the exercise of an error: add --exercise NAME")
         )
     hint = {"passed": False, "hint": _hint(report.title, [text.one_line(report.message)])}
     return _lines(dict.fromkeys(report.checks, hint), dict.fromkeys(report.checks, 0))
@@ -61,4 +60,9 @@ def _lines(checks: dict[str, Any], scores: dict[str, Any]) -> str:
 
 
 def _hint(word: str, lines: list[str]) -> str:
-    return " ".join([tell("{title}.", title=word.capitalize()), *filter(None, lines)])
+    return " ".join([tr("{title}.", title=word.capitalize()), *filter(None, lines)])
+
+
+FORMAT: Final = Format(
+    msg("the last two lines of an Autolab autograder's output"), render, render_error
+)

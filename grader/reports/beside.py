@@ -7,8 +7,10 @@ from functools import cached_property
 from pathlib import Path
 
 from grader.errors import RecordingError
-from grader.recording import folder, reading
+from grader.message import Message
+from grader.recording import reading
 from grader.recording.recording import Recording, Recordings
+from grader.recording.subject import DEFAULT_SCENE
 from grader.result.result import Result
 from grader.text import plain_all
 
@@ -16,14 +18,18 @@ from grader.text import plain_all
 class Beside:
     """What lies beside a result file; read only when it is asked for.
 
+    Args:
+        recordings: where the result has just been made of them: nothing has to be read back then.
+
     Attributes:
         folder: where the result file lies; its artifacts are looked for below.
     """
 
-    def __init__(self, result: Result, folder: Path) -> None:
+    def __init__(self, result: Result, folder: Path, recordings: Recordings | None = None) -> None:
         self.folder = folder
         self._artifacts = plain_all(dict(result.artifacts))
         self._runs = 1 + len(result.varied_runs)
+        self._made = recordings
 
     @cached_property
     def canvas_path(self) -> Path | None:
@@ -34,21 +40,25 @@ class Beside:
     @property
     def canvas_file(self) -> Path | None:
         """The same, if the picture has to be read from there."""
-        return self.canvas_path
+        return None if self._made is not None else self.canvas_path
 
     @cached_property
     def scene(self) -> str:
         """The name of what ran beside the submission; the first there was, where nothing tells."""
+        if self._made is not None:
+            return self._made.nominal.scene
         base = self._artifact("recording")
-        return folder.FIRST_SCENE if base is None else reading.scene_of(base)
+        return DEFAULT_SCENE if base is None else reading.scene_of(base)
 
     @cached_property
-    def recordings(self) -> Mapping[int, Recording | str]:
+    def recordings(self) -> Mapping[int, Recording | Message]:
         """A recording for each run, 0 nominal, 1, 2, ... varied, or why it cannot be read."""
+        if self._made is not None:
+            return dict(enumerate(self._made))
         base = self._artifact("recording")
         if base is None:
             return {}
-        loaded: dict[int, Recording | str] = {}
+        loaded: dict[int, Recording | Message] = {}
         for run in range(self._runs):
             try:
                 loaded[run] = reading.load(base / f"varied_{run}" if run else base)
@@ -59,7 +69,7 @@ class Beside:
     @cached_property
     def output(self) -> str:
         """What the node printed in the nominal run."""
-        path = self._artifact("output")
+        path = None if self._made is not None else self._artifact("output")
         if path is not None and path.is_file():
             return path.read_bytes().decode(errors="replace")
         nominal = self.recordings.get(0)
@@ -73,31 +83,3 @@ class Beside:
         folder = self.folder.resolve()
         path = (folder / relative).resolve()
         return path if path.is_relative_to(folder) and path.exists() else None
-
-
-class StillInMemory(Beside):
-    """The same before anything of it has been written, or without reading it back."""
-
-    def __init__(self, result: Result, folder: Path, recordings: Recordings) -> None:
-        super().__init__(result, folder)
-        self._made = recordings
-
-    @property
-    def canvas_file(self) -> Path | None:
-        """None: the recording has the picture."""
-        return None
-
-    @cached_property
-    def scene(self) -> str:
-        """The name of what ran beside the submission."""
-        return self._made.nominal.scene
-
-    @cached_property
-    def recordings(self) -> Mapping[int, Recording | str]:
-        """A recording for each run."""
-        return dict(enumerate(self._made))
-
-    @cached_property
-    def output(self) -> str:
-        """What the node printed in the nominal run."""
-        return self._made.nominal.output

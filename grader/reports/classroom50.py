@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any
+from decimal import ROUND_HALF_UP, Decimal
+from typing import Any, Final
 
 from grader import text
 from grader.errors import UsageError
-from grader.language.phrase import say
+from grader.exercise.verdict import Verdict
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
-from grader.reports.whole_points import WholePoints, whole_points, zero_points
 
 _SCHEMA = "classroom50/result/v1"
 _NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "COMMIT_URL", "RELEASE_URL")
@@ -56,11 +59,9 @@ def render_error(report: ErrorReport) -> str:
     """
     if not report.is_judged:
         raise UsageError(
-            say(
-                "the format classroom50 cannot say that nothing was judged; leave with an exit "
-                "code other than 0 instead: {message}",
-                message=text.one_line(report.message),
-            )
+            "the format classroom50 cannot say that nothing was judged; leave with an exit "
+            "code other than 0 instead: {message}",
+            message=text.one_line(report.message),
         )
     points = zero_points(report.max_score or 0)
     test = {
@@ -95,25 +96,19 @@ def _identity(env: Mapping[str, str]) -> dict[str, str]:
         missing.append("OWNER (or USERNAME)")
     if missing:
         raise UsageError(
-            say(
-                "the format classroom50 needs the environment of a Classroom 50 autograder; "
-                "not set: {missing}",
-                missing=", ".join(missing),
-            )
+            "the format classroom50 needs the environment of a Classroom 50 autograder; "
+            "not set: {missing}",
+            missing=", ".join(missing),
         )
     if not env["SUBMISSION_TAG"].startswith("submit/"):
         raise UsageError(
-            say(
-                "SUBMISSION_TAG is {tag!r}, expected a tag that starts with submit/",
-                tag=env["SUBMISSION_TAG"],
-            )
+            "SUBMISSION_TAG is {tag!r}, expected a tag that starts with submit/",
+            tag=env["SUBMISSION_TAG"],
         )
     kind = env.get("ASSIGNMENT_TYPE") or _TYPES[0]
     if kind not in _TYPES:
-        types = say("{one} or {other}", one=_TYPES[0], other=_TYPES[1])
-        raise UsageError(
-            say("ASSIGNMENT_TYPE is {kind!r}, expected {types}", kind=kind, types=types)
-        )
+        types = msg("{one} or {other}", one=_TYPES[0], other=_TYPES[1])
+        raise UsageError("ASSIGNMENT_TYPE is {kind!r}, expected {types}", kind=kind, types=types)
     return {
         "classroom": env["CLASSROOM"],
         "assignment": env["ASSIGNMENT"],
@@ -124,3 +119,68 @@ def _identity(env: Mapping[str, str]) -> dict[str, str]:
         "release": env["RELEASE_URL"],
         "review": env.get("REVIEW_URL") or env["COMMIT_URL"],
     }
+
+
+# Whole points -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class WholePoints:
+    """Whole points, one of each list per verdict.
+
+    Attributes:
+        scores, max_scores: what was earned, and what can be.
+        factor: what everything was multiplied with: 1 wherever the checks are worth whole points.
+    """
+
+    scores: tuple[int, ...]
+    max_scores: tuple[int, ...]
+    factor: int
+
+    @property
+    def total(self) -> int:
+        """The sum of the scores: the exact total, times the factor, rounded half up."""
+        return sum(self.scores)
+
+    @property
+    def max_total(self) -> int:
+        """The sum of what can be earned."""
+        return sum(self.max_scores)
+
+
+def whole_points(verdicts: Sequence[Verdict]) -> WholePoints:
+    """Round by largest remainders.
+
+    The total is rounded half up. Every score is rounded down, and the points that are then missing
+    from the total go to the scores that lost most. Where a check is worth 2.5 points, all points
+    count ten times (or a hundred times), so that passing is worth the same to the last digit.
+    """
+    most = [_decimal(v.max_score) for v in verdicts]
+    factor = next((f for f in (1, 10) if all(m * f % 1 == 0 for m in most)), 100)
+    max_scores = [int(_half_up(m * factor)) for m in most]
+    exact = [
+        min(_decimal(v.score) * factor, Decimal(m))
+        for v, m in zip(verdicts, max_scores, strict=True)
+    ]
+    scores = [int(score) for score in exact]
+    missing = int(_half_up(sum(exact, Decimal(0)))) - sum(scores)
+    by_loss = sorted(range(len(exact)), key=lambda i: scores[i] - exact[i])
+    for index in by_loss[:missing]:
+        scores[index] += 1
+    return WholePoints(tuple(scores), tuple(max_scores), factor)
+
+
+def zero_points(max_score: float) -> WholePoints:
+    """Nothing of `max_score`, where the parts are not known."""
+    return WholePoints((0,), (int(_half_up(_decimal(max_score))),), 1)
+
+
+def _decimal(value: float) -> Decimal:
+    return Decimal(str(round(value, 2)))
+
+
+def _half_up(value: Decimal) -> Decimal:
+    return value.to_integral_value(ROUND_HALF_UP)
+
+
+FORMAT: Final = Format(msg("Classroom 50's result.json"), render, render_error)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
 
 from grader import text
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import WORDS
@@ -18,16 +20,15 @@ _BEFORE = ("submission", "exercise", "score", "max_score")
 _BEGIN_FORMULAS = (*"=+-@", *"\uff1d\uff0b\uff0d\uff20")
 #: Where a comma is the sign before decimals, spreadsheets cut the line at a semicolon.
 _CUT_BEFORE_FORMULA = re.compile(r"(; ?)(?=[=+@\-\uff1d\uff0b\uff0d\uff20])")
+#: What begins like that and yet, without brackets, quotes, `!` and `|`, can call and fetch nothing:
+#: +41791234567, @anna, -7.
+_HARMLESS = re.compile(r"[+@-]?[\w.@+-]*")
+_HAS_CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 _AFTER = ("outcome", "first_to_mend", "flags", "trace_sha256", "folder")
 
 
-def render(report: Report) -> str:
-    """The table of one result."""
-    return render_all([report])
-
-
-def render_error(report: ErrorReport) -> str:
-    """The table of one error."""
+def render(report: Report | ErrorReport) -> str:
+    """The table of one result, or error."""
     return render_all([report])
 
 
@@ -45,14 +46,11 @@ def render_all(reports: Sequence[Report | ErrorReport]) -> str:
     for name in checks:
         column = f"{name} (check)" if name in (*_BEFORE, *_AFTER) else name
         header += [column, f"{column} verdict"]
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([cell(title) for title in (*header, *_AFTER)])
-    for each in reports:
-        writer.writerow(
-            _row(each, checks) if isinstance(each, Report) else _error_row(each, checks)
-        )
-    return out.getvalue()
+    rows = (
+        _row(each, checks) if isinstance(each, Report) else _error_row(each, checks)
+        for each in reports
+    )
+    return table([[cell(title) for title in (*header, *_AFTER)], *rows])
 
 
 def _row(report: Report, checks: list[str]) -> list[Any]:
@@ -71,7 +69,7 @@ def _row(report: Report, checks: list[str]) -> list[Any]:
         *row,
         report.run.outcome,
         cell(text.clip(f"{first}: {report.headline}", 300) if first else ""),
-        cell("; ".join(report.run.flags)),
+        cell("; ".join(report.flags)),
         cell(report.run.trace_sha256),
         cell(str(report.folder)),
     ]
@@ -88,8 +86,30 @@ def _error_row(report: ErrorReport, checks: list[str]) -> list[Any]:
     ]
 
 
+def table(rows: Iterable[Sequence[object]]) -> str:
+    r"""The text of a file: commas, quotes where they are needed, `\n` after each row."""
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    return out.getvalue()
+
+
 def cell(value: str) -> str:
     """A text in one line that no spreadsheet takes for a formula, wherever it cuts the line."""
     value = text.one_line(text.plain(value))
     value = _CUT_BEFORE_FORMULA.sub(r"\1'", value)
     return f"'{value}" if value.startswith(_BEGIN_FORMULAS) else value
+
+
+def is_safe_id(value: str) -> bool:
+    """Whether an id may stand in a cell as it is.
+
+    A system finds people by it, so that it cannot be mended as a name can.
+    """
+    if _HAS_CONTROLS.search(value):
+        return False
+    return not value.startswith(_BEGIN_FORMULAS) or _HARMLESS.fullmatch(value) is not None
+
+
+FORMAT: Final = Format(
+    msg("one row a result, for a teacher's spreadsheet"), render, render, render_all
+)

@@ -7,20 +7,20 @@ from pathlib import Path
 from typing import Final
 
 from grader import text
-from grader.language.phrase import joined, say
-from grader.language.telling import in_language, tell, told
+from grader.message import joined, msg
 from grader.reports.wording import points
 from grader.result.error import ErrorResult
+from grader.translations import tr, translate
 
 _TEXT_LIMIT: Final = 4000
-_NOT_YOURS: Final = say(
+_NOT_YOURS: Final = msg(
     "This is not your fault, and it says nothing about your work. Please tell the course staff: "
     "they have to grade it again."
 )
 _WHAT: Final = {
-    "exercise": say("The exercise cannot be used."),
-    "call": say("The grader was not called as it should be."),
-    "grader": say("The grader failed."),
+    "exercise": msg("The exercise cannot be used."),
+    "call": msg("The grader was not called as it should be."),
+    "grader": msg("The grader failed."),
 }
 
 
@@ -52,7 +52,7 @@ class ErrorReport:
     ) -> None:
         self.is_judged = error.whose == "submission"
         self.whose = error.whose
-        self.message = text.clip_middle(text.plain(in_language(error.message)).strip(), _TEXT_LIMIT)
+        self.message = text.clip_middle(text.plain(translate(error.message)).strip(), _TEXT_LIMIT)
         self.max_score = None if error.max_score is None else float(error.max_score)
         self.folder = folder
         self.checks = tuple(checks)
@@ -74,26 +74,26 @@ class ErrorReport:
     @property
     def title(self) -> str:
         """What has happened, in two words."""
-        return tell("Cannot be graded") if self.is_judged else tell("Not graded")
+        return tr("Cannot be graded") if self.is_judged else tr("Not graded")
 
     @property
     def score_text(self) -> str:
         """The points, where there are some: '0 of 100'."""
         if self.max_score is None:
             return "0"
-        return tell("{score} of {max_score}", score="0", max_score=points(self.max_score))
+        return tr("{score} of {max_score}", score="0", max_score=points(self.max_score))
 
     @property
     def before(self) -> str:
         """The sentence that leads to the message."""
         if self.is_judged:
-            return tell("This cannot be graded, so it has no points:")
-        return told(joined([_WHAT[self.whose], _NOT_YOURS], " "))
+            return tr("This cannot be graded, so it has no points:")
+        return translate(joined([_WHAT[self.whose], _NOT_YOURS], " "))
 
     @property
     def after(self) -> str:
         """The sentence that follows it; may be ''."""
-        return tell("Mend that, and hand in again.") if self.is_judged else ""
+        return tr("Mend that, and hand in again.") if self.is_judged else ""
 
     @property
     def paragraphs(self) -> list[str]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import base64
 import json
-from typing import Any
+from typing import Any, Final
 
 from grader import text
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
+from grader.translations import translate
 
 
 def render(report: Report) -> str:
@@ -17,7 +20,7 @@ def render(report: Report) -> str:
     tests = [
         _test(
             verdict.check,
-            f"{verdict.check}: {verdict.title}",
+            f"{verdict.check}: {translate(verdict.title)}",
             "pass" if verdict.passed else "fail",
             verdict.score,
             report.led_lines(verdict),
@@ -58,3 +61,6 @@ def _test(code: str, name: str, status: str, score: float, lines: list[str]) -> 
         "line_no": 0,
         "duration": 0,
     }
+
+
+FORMAT: Final = Format(msg("GitHub Classroom's old reporter"), render, render_error)

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import html
 import json
-from typing import Any
+from typing import Any, Final
 
 from grader import text
 from grader.exercise.verdict import Verdict
-from grader.language.telling import tell
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
 from grader.reports.report import Report
 from grader.result.visible import is_hidden
+from grader.translations import tr, translate
 
 _OUTPUT_LIMIT = 20_000
 _HIDDEN = {"after_due": "after_due_date", "never": "hidden"}
@@ -71,11 +73,11 @@ def _tests(report: Report) -> list[dict[str, Any]]:
 def _test(report: Report, index: int, verdict: Verdict) -> dict[str, Any]:
     lines = report.lines(verdict)
     if verdict.status == "not_judged":
-        lines.insert(0, tell("Not judged."))
+        lines.insert(0, tr("Not judged."))
     elif verdict.is_partial:
-        lines.insert(0, tell("Partial credit."))
+        lines.insert(0, tr("Partial credit."))
     return {
-        "name": f"{verdict.check}: {verdict.title}",
+        "name": f"{verdict.check}: {translate(verdict.title)}",
         "number": str(index + 1),
         "score": text.number(verdict.score),
         "max_score": text.number(verdict.max_score),
@@ -90,10 +92,13 @@ def _overview(report: Report) -> str:
     parts += [f"<p>{html.escape(line)}</p>" for line in said if line]
     picture = pictures.canvas_uri(report)
     if picture:
-        alt = html.escape(tell("The window at the end"))
+        alt = html.escape(tr("The window at the end"))
         parts.append(f'<p><img src="{picture}" width="500" alt="{alt}"></p>')
     output = text.clip_middle(report.output.strip("\n"), _OUTPUT_LIMIT)
     if output:
-        printed = html.escape(tell("What the node printed:"))
+        printed = html.escape(tr("What the node printed:"))
         parts.append(f"<p>{printed}</p><pre>{html.escape(output)}</pre>")
     return "".join(parts)
+
+
+FORMAT: Final = Format(msg("Gradescope's results.json"), render, render_error)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 from xml.etree import ElementTree
 
 from grader import text
 from grader.exercise.verdict import Verdict
-from grader.language.telling import tell
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, word
+from grader.translations import tr, translate
 
 
 def render(report: Report) -> str:
@@ -71,10 +74,10 @@ def _document(
 
 
 def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
+    name = f"{verdict.check}: {translate(verdict.title)}"
+    # GitLab shows the class as the suite.
     case = ElementTree.Element(
-        "testcase",
-        # GitLab shows the class as the suite.
-        {"classname": report.exercise, "name": f"{verdict.check}: {verdict.title}", "time": "0"},
+        "testcase", {"classname": report.exercise, "name": name, "time": "0"}
     )
     lines = report.led_lines(verdict)
     message = {"message": text.one_line(lines[0] if lines else "")}
@@ -83,7 +86,7 @@ def _case(report: Report, verdict: Verdict) -> ElementTree.Element:
         failure.text = "\n".join(lines)
     elif verdict.status == "not_judged":
         ElementTree.SubElement(case, "skipped", message)
-    said = [tell("{word}, {score} points", word=word(verdict), score=score_text(verdict))]
+    said = [tr("{word}, {score} points", word=word(verdict), score=score_text(verdict))]
     if verdict.status != "failed":
         said += [_quote(line) for line in lines]
     elif attachment := _canvas_here(report):
@@ -113,3 +116,8 @@ def _canvas_here(report: Report) -> str:
         return ""
     name = path.relative_to(Path.cwd()).as_posix()
     return name if name == text.plain(name) and "]]" not in name else ""
+
+
+FORMAT: Final = Format(
+    msg("JUnit XML for GitLab, Jenkins and GitHub actions"), render, render_error
+)

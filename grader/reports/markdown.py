@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from typing import Final
 
 from grader import text
 from grader.exercise.verdict import Verdict
-from grader.language.telling import tell
-from grader.reports import wording
+from grader.message import msg
+from grader.reports import Format, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
+from grader.translations import tr, translate
 
 _SIGNS = {"passed": "✅", "failed": "❌", "not_judged": "⏸️"}
 #: What can begin something in Markdown, anywhere or at the start of a line. A backslash before it
@@ -24,8 +26,8 @@ def render(report: Report) -> str:
     """The report, ending with a line break so that it can be appended to a file."""
     parts = [
         "## "
-        + tell("{title}: {score} points", title=_quote(report.exercise), score=report.score_text),
-        tell("Submission: {submission}", submission=_quote(report.submission)),
+        + tr("{title}: {score} points", title=_quote(report.exercise), score=report.score_text),
+        tr("Submission: {submission}", submission=_quote(report.submission)),
         _first(report),
         _table(report),
         *(_quote(said) for said in (*report.handed_in, report.not_shown)),
@@ -39,7 +41,7 @@ def render_error(report: ErrorReport) -> str:
     """The error, ending with a line break."""
     title = report.title
     if report.is_judged:
-        title = tell("{title}: {score} points", title=title, score=report.score_text)
+        title = tr("{title}: {score} points", title=title, score=report.score_text)
     message = "\\\n".join(map(_quote, report.message.splitlines()))
     parts = [f"## {title}", report.before, message, report.after]
     return "\n\n".join(part for part in parts if part) + "\n"
@@ -58,53 +60,51 @@ def _first(report: Report) -> str:
         return f"**{_quote(report.headline)}**"
     is_of_check = found is None or found.check
     if is_of_check and first is not None:
-        about = tell("First to mend, {title}:", title=_quote(title_of(first)))
+        about = tr("Fix this first, {title}:", title=_quote(title_of(first)))
     else:
-        about = tell("First to mend:")
+        about = tr("Fix this first:")
     line = f"**{about}** {_quote(report.headline)}"
     return "\n\n".join([line, *map(_quote, report.advice)])
 
 
 def _table(report: Report) -> str:
-    headings = (tell("verdict"), tell("asked for"), tell("points"), tell("check"))
+    headings = (tr("verdict"), tr("asked for"), tr("points"), tr("check"))
     rows = [f"| {' | '.join(headings)} |", "| --- | --- | ---: | --- |"]
     for verdict in report.verdicts:
         name = _quote(verdict.check)
         if waited_for := report.waited_for(verdict):
-            name += " " + tell("(waits for {checks})", checks=_quote(", ".join(waited_for)))
+            name += " " + tr("(waits for {checks})", checks=_quote(", ".join(waited_for)))
         points = score_text(verdict)
         if verdict.is_partial:
-            points += " " + tell("(partial credit)")
+            points += " " + tr("(partial credit)")
         sign = f"{_SIGNS[verdict.status]} {word(verdict)}"
         if seen := report.seen_by_students(verdict):
-            name += " " + tell("({seen})", seen=seen)
+            name += " " + tr("({seen})", seen=seen)
         rows.append(f"| {sign} | {_quote(title_of(verdict))} | {points} | {name} |")
     if report.deducted:
-        late = tell("handed in late")
+        late = tr("handed in late")
         rows.append(f"| | {late} | -{wording.points(report.deducted)} | |")
     total = f"{wording.points(report.score)} / {wording.points(report.max_score)}"
-    rows.append("| | **" + tell("total") + f"** | **{total}** | |")
+    rows.append("| | **" + tr("total") + f"** | **{total}** | |")
     return "\n".join(rows)
 
 
 def _seen(report: Report, verdict: Verdict) -> str:
     lines = [
-        "### "
-        + tell("{title}: {score}", title=_quote(title_of(verdict)), score=score_text(verdict)),
+        "### " + tr("{title}: {score}", title=_quote(title_of(verdict)), score=score_text(verdict)),
         "",
-        _quote(verdict.rationale),
+        _quote(translate(verdict.rationale)),
     ]
     if verdict.evidence:
         lines += ["", *(f"- {_quote(str(point))}" for point in report.points_of(verdict))]
     if help_ := report.help_for(verdict):
-        look_at = tell("Look at:")
+        look_at = tr("Look at:")
         lines += ["", f"**{look_at}** {_quote(help_)}"]
     return "\n".join(lines)
 
 
 def _run(report: Report) -> str:
-    run = report.run
-    lines = [_how(report), *("- " + tell("Note: {flag}", flag=_quote(flag)) for flag in run.flags)]
+    lines = [_how(report), *("- " + tr("Note: {flag}", flag=_quote(flag)) for flag in report.flags)]
     return "\n".join(lines)
 
 
@@ -116,8 +116,8 @@ def _how(report: Report) -> str:
         "clock": wording.clock(run.time),
     }
     if not run.wall_s:
-        return tell("Run: {outcome}, {simulated_s:.1f} s simulated ({clock} time).", **said)
-    return tell(
+        return tr("Run: {outcome}, {simulated_s:.1f} s simulated ({clock} time).", **said)
+    return tr(
         "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
         wall_s=run.wall_s,
         **said,
@@ -132,6 +132,11 @@ def _output(report: Report) -> str:
     longest = max((len(run) for run in re.findall(r"`+", output)), default=0)
     fence = "`" * max(3, longest + 1)
     return (
-        "<details><summary>" + tell("What the node printed") + "</summary>\n\n"
+        "<details><summary>" + tr("What the node printed") + "</summary>\n\n"
         f"{fence}text\n{output}\n{fence}\n\n</details>"
     )
+
+
+FORMAT: Final = Format(
+    msg("a GitHub step summary, a comment, a release's text"), render, render_error
+)

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from grader import text
 from grader.exercise.verdict import Verdict
-from grader.language.telling import tell
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
+from grader.translations import tr, translate
 
 
 def render(report: Report) -> str:
     """The lines that `vpl_execution` prints. The activity's maximum grade has to be max_score."""
-    lines = ["<|--", "-" + tell("What to do"), _quote(report.first_line)]
+    lines = ["<|--", "-" + tr("What to do"), _quote(report.first_line)]
     lines += map(_quote, report.advice)
     lines += [
-        tell("Also: {said}", said=_quote(said))
+        tr("Also: {said}", said=_quote(said))
         for said in (*report.handed_in, report.not_shown)
         if said
     ]
@@ -40,22 +44,20 @@ def _verdict(report: Report, verdict: Verdict) -> list[str]:
     # A title that ended with a number in brackets would be taken for a deduction.
     lines = [
         "-"
-        + tell(
+        + tr(
             "{title}: {word}, {score} points",
             title=_quote(title_of(verdict)),
             word=word(verdict),
             score=score_text(verdict),
         ),
-        tell("Asked for: {title}", title=_quote(verdict.title)),
-        tell("Seen: {rationale}", rationale=_quote(verdict.rationale)),
+        tr("Asked for: {title}", title=_quote(translate(verdict.title))),
+        tr("Seen: {rationale}", rationale=_quote(translate(verdict.rationale))),
     ]
     if waited_for := report.waited_for(verdict):
-        lines.append(tell("Waits for: {checks}", checks=_quote(", ".join(waited_for))))
-    lines += [
-        tell("Where: {where}", where=_quote(str(point))) for point in report.points_of(verdict)
-    ]
+        lines.append(tr("Waits for: {checks}", checks=_quote(", ".join(waited_for))))
+    lines += [tr("Where: {where}", where=_quote(str(point))) for point in report.points_of(verdict)]
     if verdict.help:
-        lines.append(tell("Look at: {help}", help=_quote(verdict.help)))
+        lines.append(tr("Look at: {help}", help=_quote(translate(verdict.help))))
     return lines
 
 
@@ -63,3 +65,6 @@ def _quote(value: str) -> str:
     """A text in one line that holds none of VPL's marks; it always follows a word of ours."""
     value = text.one_line(value).replace(":=>>", ": =>>")
     return value.replace("<|--", "< |--").replace("--|>", "-- |>")
+
+
+FORMAT: Final = Format(msg("Moodle's Virtual Programming Lab"), render, render_error)

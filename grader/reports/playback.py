@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from grader import text
-from grader.language.telling import tell
-from grader.recording.conduct import Place
+from grader.exercise.verdict import Verdict
+from grader.recording.observations import SourceLine
+from grader.recording.playback import JudgedCheck, Line, Moment, Playback, Sent, Take
 from grader.recording.recording import Recording, Recordings
 from grader.reports import wording
 from grader.reports.report import Report
-from grader.scenes.playback import Judged, Line, Moment, Playback, Sent, Take
+from grader.translations import tr, translate
 
 
 def of(
@@ -24,9 +25,9 @@ def of(
     takes = tuple(_take(number, each) for number, each in enumerate(recordings))
     if report is None:
         return Playback(text.one_line(text.plain(name)), "", takes, (), other)
-    where = tell("Where: {where}", where=report.where_first) if report.where_first else ""
+    where = tr("Where: {where}", where=report.where_first) if report.where_first else ""
     return Playback(
-        title=tell("{title}: {score}", title=report.submission, score=report.score_text),
+        title=tr("{title}: {score}", title=report.submission, score=report.score_text),
         summary=f"{report.first_line} {where}".strip(),
         takes=takes,
         judged=judged(report, len(takes)),
@@ -34,23 +35,21 @@ def of(
     )
 
 
-def judged(report: Report, runs: int) -> tuple[Judged, ...]:
+def judged(report: Report, runs: int) -> tuple[JudgedCheck, ...]:
     """What the checks say, with evidence from the first so many runs."""
-    return tuple(_judged(report, index, runs) for index in range(len(report.verdicts)))
+    return tuple(_judged(report, verdict, runs) for verdict in report.verdicts)
 
 
 def _take(number: int, recording: Recording) -> Take:
     outcome = wording.outcome(recording.run.outcome.replace("_", " "))
     start = recording.start
     if start is not None:
-        outcome = tell(
-            "{outcome}; from {place}", outcome=outcome, place=text.place(start.x, start.y)
-        )
+        outcome = tr("{outcome}; from {place}", outcome=outcome, place=text.place(start.x, start.y))
     after = recording.run.simulated_s
     return Take(
         number,
-        tell("Varied run {number}", number=number) if number else tell("Nominal run"),
-        tell("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
+        tr("Varied run {number}", number=number) if number else tr("Nominal run"),
+        tr("{outcome}, after {simulated_s:.1f} s", outcome=outcome, simulated_s=after),
         recording.trace,
         start,
         _sent(recording),
@@ -63,7 +62,7 @@ def _sent(recording: Recording) -> tuple[Sent, ...]:
     Nothing of a name that it has several ends of: nobody knows in which order these sent.
     """
     found: dict[str, list[Sent]] = {}
-    for end in recording.conduct.ends:
+    for end in recording.observations.ends:
         if end.lines:
             order = tuple((burst.line, burst.times) for burst in end.sent)
             sent = Sent(end.name, end.used, tuple(map(_line, end.lines)), order)
@@ -75,33 +74,30 @@ def _sent(recording: Recording) -> tuple[Sent, ...]:
     return tuple(several[0] for several in found.values() if len(several) == 1)
 
 
-def _line(place: Place) -> Line:
+def _line(place: SourceLine) -> Line:
     return Line(place.file, place.line, place.text)
 
 
-def _judged(report: Report, index: int, runs: int) -> Judged:
-    verdict = report.verdicts[index]
-    points = report.points_of(verdict)
-    return Judged(
+def _judged(report: Report, verdict: Verdict, runs: int) -> JudgedCheck:
+    return JudgedCheck(
         wording.title_of(verdict),
         verdict.status,
-        tell(
+        tr(
             "{word}, {score} points",
             word=wording.word(verdict),
             score=wording.score_text(verdict),
         ),
-        verdict.rationale,
-        verdict.help,
+        translate(verdict.rationale),
+        translate(verdict.help),
         tuple(
             Moment(
                 point.number,
                 point.evidence.run,
-                point.evidence.tick,
-                point.evidence.x if point.evidence.has_place else None,
-                point.evidence.y if point.evidence.has_place else None,
+                point.evidence.time_s,
+                point.evidence.place,
                 str(point),
             )
-            for point in points
+            for point in report.points_of(verdict)
             if point.evidence.run < runs
         ),
     )

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Final
 
 from grader import text
 from grader.exercise.verdict import Verdict
-from grader.language.telling import tell
+from grader.message import msg
+from grader.reports import Format
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import pictures
 from grader.reports.report import Report
 from grader.reports.wording import title_of, word
+from grader.translations import tr, translate
 
 #: PrairieLearn refuses a file above 1 MB.
 LIMIT_BYTES = 1_000_000
@@ -21,7 +23,7 @@ _OUTPUT_LIMIT = 20_000
 def render(report: Report) -> str:
     """The JSON document, without the picture or even the explanations if it would be too large."""
     picture = pictures.canvas_uri(report)
-    images = [{"label": tell("The window at the end"), "url": picture}] if picture else []
+    images = [{"label": tr("The window at the end"), "url": picture}] if picture else []
     for shown, tests_in_full in ((images, True), ([], True), ([], False)):
         document = json.dumps(_document(report, shown, tests_in_full)) + "\n"
         if len(document) <= LIMIT_BYTES:  # json.dumps writes ASCII: characters are bytes
@@ -55,12 +57,12 @@ def _said(report: Report) -> list[str]:
 
 def _test(report: Report, verdict: Verdict, in_full: bool) -> dict[str, Any]:
     test = {
-        "name": tell("{title} ({word})", title=title_of(verdict), word=word(verdict)),
+        "name": tr("{title} ({word})", title=title_of(verdict), word=word(verdict)),
         "points": text.number(verdict.score),
         "max_points": text.number(verdict.max_score),
     }
     if in_full:
-        test["description"] = verdict.title
+        test["description"] = translate(verdict.title)
         test["message"] = "\n".join(report.lines(verdict))
     return test
 
@@ -70,3 +72,6 @@ def _share(report: Report) -> float:
         all_passed = all(verdict.passed for verdict in report.verdicts)
         return 1.0 if all_passed and not report.not_shown else 0.0
     return min(report.score / report.max_score, 1.0)
+
+
+FORMAT: Final = Format(msg("PrairieLearn's results.json"), render, render_error)

@@ -1,4 +1,4 @@
-"""A result's parts as anybody reads them: no text, list or name of no end."""
+"""A result's parts as anybody reads them: in a language, no text, list or name of no end."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import replace
 from grader import text
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.verdict import Verdict
-from grader.language.phrase import say
-from grader.language.telling import tell, told
+from grader.message import Text, msg, plain_text
 from grader.result.result import Result, RunSummary
+from grader.translations import tr, translate
 
 #: A text of a verdict is not shown beyond this; an exception's message has no length by nature.
 _TEXT_LIMIT = 2000
@@ -19,9 +19,9 @@ _POINTS_LIMIT = 20
 _FLAGS_LIMIT = 50
 
 
-def line(value: str) -> str:
+def line(value: Text) -> str:
     """One line, no longer than anybody reads."""
-    return text.clip(text.one_line(value), _TEXT_LIMIT)
+    return text.clip(text.one_line(text.plain(translate(value))), _TEXT_LIMIT)
 
 
 def few(result: Result) -> Result:
@@ -40,44 +40,42 @@ def few(result: Result) -> Result:
 def _few_flags(run: RunSummary) -> RunSummary:
     flags = list(run.flags[:_FLAGS_LIMIT])
     if more := len(run.flags) - len(flags):
-        flags.append(say("and {more} more", more=more))
+        flags.append(msg("and {more} more", more=more))
     return replace(run, flags=tuple(flags))
 
 
-def of_run(run: RunSummary) -> RunSummary:
-    """A run with its flags clipped."""
-    return replace(run, flags=tuple(text.clip(flag, _TEXT_LIMIT) for flag in run.flags))
+def flags(run: RunSummary) -> tuple[str, ...]:
+    """The remarks on a run."""
+    return tuple(_clipped(flag) for flag in run.flags)
 
 
 def of_verdict(verdict: Verdict, name: str) -> Verdict:
-    """A verdict by a name of its own, its texts and evidence clipped."""
+    """A verdict by a name of its own, its texts and evidence in this language and clipped."""
     return replace(
         verdict,
         check=name,
-        title=text.one_line(text.plain(told(verdict.title))),
+        title=plain_text(text.one_line(text.plain(translate(verdict.title)))),
         score=float(verdict.score),
         max_score=float(verdict.max_score),
-        rationale=text.clip(verdict.rationale, _TEXT_LIMIT),
-        help=text.clip(verdict.help, _TEXT_LIMIT),
+        rationale=plain_text(_clipped(verdict.rationale)),
+        help=plain_text(_clipped(verdict.help)),
         evidence=tuple(
-            replace(item, note=text.clip(text.one_line(item.note), _TEXT_LIMIT))
-            for item in verdict.evidence
+            replace(each, note=plain_text(line(each.note))) for each in verdict.evidence
         ),
     )
 
 
 def of_diagnosis(found: Diagnosis) -> Diagnosis:
     """A diagnosis of single lines, none of them longer than anybody reads."""
-    key, cause = line(found.key), line(found.cause)
-    place = found.place
+    key, place = line(found.key), found.place
     if place is not None:
         file, function, said = map(line, (place.file, place.function, place.text))
         place = replace(place, file=file, function=function, text=said)
     return replace(
         found,
         key=key,
-        cause=cause or key or tell("(no cause)"),
-        help=line(found.help),
+        cause=plain_text(line(found.cause) or key or tr("(no cause)")),
+        help=plain_text(line(found.help)),
         place=place,
         check=line(found.check),
     )
@@ -95,3 +93,7 @@ def distinct(names: list[str]) -> list[str]:
             candidate += "'"
         distinct.append(candidate)
     return distinct
+
+
+def _clipped(value: Text) -> str:
+    return text.clip(text.plain(translate(value)), _TEXT_LIMIT)

@@ -10,17 +10,15 @@ from typing import Self
 
 from grader import text
 from grader.exercise.verdict import Evidence, Verdict
-from grader.language.telling import in_language, tell, told
-from grader.recording.folder import FIRST_SCENE
+from grader.message import NOTHING, Message
 from grader.recording.recording import Recording, Recordings
-from grader.reports import origin, readable, wording
-from grader.reports.beside import Beside, StillInMemory
+from grader.recording.subject import DEFAULT_SCENE, Subject, load_subject
+from grader.reports import readable, wording
+from grader.reports.beside import Beside
 from grader.reports.wording import NOTHING_MOVED, SEE_FIRST, points, title_of, where, word
 from grader.result.result import Result
 from grader.result.visible import View, as_seen
-from grader.scenes import NAMES as SCENES
-from grader.scenes import load_scene
-from grader.scenes.scene import Scene
+from grader.translations import tr, translate
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,7 @@ class Point:
         return where(self.evidence)
 
     def __str__(self) -> str:
-        return tell("{where}: {note}", where=self.where, note=self.evidence.note)
+        return tr("{where}: {note}", where=self.where, note=self.evidence.note)
 
 
 class Report:
@@ -58,6 +56,7 @@ class Report:
 
     Attributes:
         exercise, submission, max_score, run, varied_runs: those of the result.
+        flags: remarks on the nominal run.
         score: that of the result; after what lateness costs, where no check is left out of it.
         deducted: what is taken off for that in `score`.
         verdicts: those of the result, in its order, as they are shown: no text is longer than
@@ -71,19 +70,18 @@ class Report:
     """
 
     def __init__(self, result: Result, beside: Beside, view: View = "student") -> None:
-        told = in_language(readable.few(as_seen(result, view)))
-        shown: Result = text.plain_all(told, readable.LOOKED_AT)
+        shown: Result = text.plain_all(readable.few(as_seen(result, view)), readable.LOOKED_AT)
         self._result = result
         self.beside = beside
         self.view = view
-        self.exercise = readable.line(shown.exercise) or tell("(no name)")
-        self.submission = readable.line(shown.submission) or tell("(no name)")
+        self.exercise = readable.line(shown.exercise) or tr("(no name)")
+        self.submission = readable.line(shown.submission) or tr("(no name)")
         self.score = float(shown.score if shown.not_shown else shown.final)
         self.deducted = round(float(shown.score) - self.score, 2)
         self.max_score = float(shown.max_score)
-        self.run = readable.of_run(shown.run)
-        self.varied_runs = tuple(map(readable.of_run, shown.varied_runs))
-        self.origin = origin.sentences(shown.provenance) if shown.provenance else []
+        self.run, self.varied_runs = shown.run, shown.varied_runs
+        self.flags = readable.flags(shown.run)
+        self.origin = wording.provenance(shown.provenance) if shown.provenance else []
         *names, self.not_shown_name = readable.distinct(
             [*(text.one_line(verdict.check) for verdict in shown.verdicts), "not shown"]
         )
@@ -99,17 +97,7 @@ class Report:
         cls, result: Result, folder: Path, recordings: Recordings, view: View = "student"
     ) -> Self:
         """The report of a result that has just been made, and goes into a folder."""
-        return cls(result, StillInMemory(result, folder, recordings), view)
-
-    @classmethod
-    def read(cls, path: Path, view: View = "student") -> Self:
-        """Read a result file.
-
-        Raises:
-            UsageError: it cannot be read or is no result.
-        """
-        result = Result.read(path)
-        return cls(result, Beside(result, path.parent), view)
+        return cls(result, Beside(result, folder, recordings), view)
 
     @cached_property
     def whole(self) -> Report:
@@ -119,7 +107,9 @@ class Report:
     def seen_by_students(self, verdict: Verdict) -> str:
         """For a teacher, what of a verdict students see; '' for all of it, and for students."""
         return (
-            told(wording.SEEN_BY_STUDENTS.get(verdict.visible, "")) if self.view == "whole" else ""
+            translate(wording.SEEN_BY_STUDENTS.get(verdict.visible, NOTHING))
+            if self.view == "whole"
+            else ""
         )
 
     @property
@@ -131,7 +121,7 @@ class Report:
     def score_text(self) -> str:
         """The total: '87.5 of 100'."""
         score, most = points(self.score), points(self.max_score)
-        return tell("{score} of {max_score}", score=score, max_score=most)
+        return tr("{score} of {max_score}", score=score, max_score=most)
 
     @cached_property
     def points(self) -> tuple[Point, ...]:
@@ -167,8 +157,8 @@ class Report:
         """
         led = [each for each in self.verdicts if each.help and self._comes_of_the_first(each)]
         if verdict not in led:
-            return verdict.help
-        return told(SEE_FIRST) if verdict is led[0] else ""
+            return translate(verdict.help)
+        return translate(SEE_FIRST) if verdict is led[0] else ""
 
     def _comes_of_the_first(self, verdict: Verdict) -> bool:
         """Whether a run's own diagnosis may be behind it: not if it is all about other runs."""
@@ -179,12 +169,12 @@ class Report:
 
     def lines(self, verdict: Verdict) -> list[str]:
         """What was seen, where, and what to look at: for formats that show plain text."""
-        lines = [text.one_line(verdict.rationale)]
+        lines = [text.one_line(translate(verdict.rationale))]
         if waited_for := self.waited_for(verdict):
-            lines.append(tell("Waits for: {checks}", checks=", ".join(waited_for)))
+            lines.append(tr("Waits for: {checks}", checks=", ".join(waited_for)))
         lines += [f"- {text.one_line(str(point))}" for point in self.points_of(verdict)]
         if verdict.help:
-            lines.append(tell("Look at: {help}", help=text.one_line(verdict.help)))
+            lines.append(tr("Look at: {help}", help=text.one_line(translate(verdict.help))))
         return [line for line in lines if line]
 
     def led_lines(self, verdict: Verdict) -> list[str]:
@@ -215,17 +205,17 @@ class Report:
     def headline(self) -> str:
         """One line: the cause of lost points, or what to mend first."""
         if self.diagnosis is not None:
-            return self.diagnosis.cause
+            return translate(self.diagnosis.cause)
         first = self.first_to_mend
         if first is not None:
-            return text.one_line(first.rationale) or f"{first.check}: {word(first)}"
+            return text.one_line(translate(first.rationale)) or f"{first.check}: {word(first)}"
         return wording.nothing_to_mend(len(self.verdicts), self._left_out)
 
     @property
     def first_line(self) -> str:
         """The headline, with what it is before it."""
         lost = self.diagnosis is not None or self.first_to_mend is not None
-        return tell("First to mend: {headline}", headline=self.headline) if lost else self.headline
+        return tr("Fix this first: {headline}", headline=self.headline) if lost else self.headline
 
     @property
     def first_key(self) -> str:
@@ -240,8 +230,8 @@ class Report:
         found = self.diagnosis
         if found is None:
             return []
-        lines = [tell("Where: {where}", where=self.where_first)] if self.where_first else []
-        return [*lines, *([tell("What to do: {help}", help=found.help)] if found.help else [])]
+        lines = [tr("Where: {where}", where=self.where_first)] if self.where_first else []
+        return [*lines, *([tr("What to do: {help}", help=found.help)] if found.help else [])]
 
     @property
     def where_first(self) -> str:
@@ -251,11 +241,11 @@ class Report:
             return ""
         at = {"file": place.file, "line": str(place.line), "function": place.function}
         if place.function:
-            where = tell("{file}, line {line}, in {function}", **at)
+            where = tr("{file}, line {line}, in {function}", **at)
         else:
-            where = tell("{file}, line {line}", **at)
+            where = tr("{file}, line {line}", **at)
         return text.one_line(
-            tell("{where}: {code}", where=where, code=place.text) if place.text else where
+            tr("{where}: {code}", where=where, code=place.text) if place.text else where
         )
 
     def outcome(self, run: int) -> str:
@@ -270,7 +260,7 @@ class Report:
         recording = self.recordings.get(run)
         if recording is None:
             return False
-        tracks = load_scene(recording.scene).view(recording.trace).tracks
+        tracks = load_subject(recording.scene).view(recording.trace).tracks
         ways = [way for track in tracks for way in (track.x, track.y, track.theta)]
         return bool(tracks) and all((way == way[:1]).all() for way in ways)
 
@@ -281,17 +271,19 @@ class Report:
         return {run: r for run, r in found.items() if isinstance(r, Recording)}
 
     @cached_property
-    def scene(self) -> Scene:
-        """What ran beside the submission."""
-        name = self.beside.scene
-        return load_scene(name if name in SCENES else FIRST_SCENE)
+    def subject(self) -> Subject:
+        """What the runs are of; where it is not installed any more, the usual scene."""
+        try:
+            return load_subject(self.beside.scene)
+        except KeyError:
+            return load_subject(DEFAULT_SCENE)
 
     def no_recording(self, run: int) -> str:
         """Why a run has no recording."""
         reason = self.beside.recordings.get(run)
-        if not isinstance(reason, str):
-            return tell("no recording lies beside it")
-        return text.plain(told(reason))
+        if not isinstance(reason, Message):
+            return tr("no recording lies beside it")
+        return text.plain(translate(reason))
 
     @cached_property
     def output(self) -> str:

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import io
+import os
 import shutil
+import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final
 
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
@@ -12,12 +16,13 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.exercise.verdict import Verdict
-from grader.language.telling import tell, tell_many
-from grader.reports import wording
+from grader.message import msg
+from grader.reports import Format, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.report import Report
 from grader.reports.wording import score_text, title_of, word
 from grader.text import for_terminal
+from grader.translations import tr, tr_many, translate
 
 _MARKS = {
     "passed": ("✓", "green"),
@@ -38,7 +43,7 @@ def render_error(report: ErrorReport) -> str:
 
 def show_error(report: ErrorReport, console: Console) -> None:
     """Print an error."""
-    console.print(_text(tell("{title}.", title=report.title), "bold"), soft_wrap=True)
+    console.print(_text(tr("{title}.", title=report.title), "bold"), soft_wrap=True)
     for part in report.paragraphs:
         console.print()
         console.print(_text(part), soft_wrap=True)
@@ -58,7 +63,7 @@ def show(report: Report, console: Console) -> None:
     """Print the report."""
     _lead(report, console)
     console.print()
-    head = tell("{submission}: {exercise}", submission=report.submission, exercise=report.exercise)
+    head = tr("{submission}: {exercise}", submission=report.submission, exercise=report.exercise)
     console.print(_text(head, "bold"), soft_wrap=True)
     _checks(report, console)
     for verdict in report.verdicts:
@@ -68,7 +73,7 @@ def show(report: Report, console: Console) -> None:
     console.print()
     console.print(
         _text(
-            tell(
+            tr(
                 "Run: {outcome}, {simulated_s:.1f} s simulated in {wall_s:.1f} s ({clock} time).",
                 outcome=wording.outcome(report.outcome(0)),
                 simulated_s=run.simulated_s,
@@ -77,20 +82,42 @@ def show(report: Report, console: Console) -> None:
             )
         )
     )
-    for flag in run.flags:
-        console.print(_text(tell("Note: {flag}", flag=flag)))
+    for flag in report.flags:
+        console.print(_text(tr("Note: {flag}", flag=flag)))
     for said in filter(None, (*report.handed_in, report.not_shown)):
         console.print(_text(said))
     console.print(_score(report))
 
 
 def _score(report: Report | ErrorReport) -> Text:
-    return _text(tell("Score: {score}", score=report.score_text), "bold")
+    return _text(tr("Score: {score}", score=report.score_text), "bold")
+
+
+def show_with_page(report: Report, page: Path | None) -> None:
+    """Print the report of a new result, and where its page is, if one was written."""
+    console = _PatientConsole()
+    try:
+        show(report, console)
+        if page is not None:
+            where = _text(tr("The page with picture and plots: {page}", page=page))
+            console.print(where, highlight=False, soft_wrap=True)
+    except BrokenPipeError:  # rich before 13.8 leaves it to us
+        console.on_broken_pipe()
+
+
+class _PatientConsole(Console):
+    """A console that goes on where its reader has seen enough, as `| head -1` does."""
+
+    def on_broken_pipe(self) -> None:
+        """Print nothing more: the exit code tells of the score, not of who reads."""
+        self.quiet = True
+        with Path(os.devnull).open("wb") as nowhere:
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
 def show_nominal(report: Report, console: Console) -> None:
     """Print what the nominal run decides while the varied ones still go."""
-    console.print(_text(tell("The nominal run is over, the others still go."), "bold"))
+    console.print(_text(tr("The nominal run is over, the others still go."), "bold"))
     if report.verdicts:
         _checks(report, console)
     if report.diagnosis is not None and not report.diagnosis.check:
@@ -120,10 +147,10 @@ def _checks(report: Report, console: Console) -> None:
         console.print(_table(report, judged, console.width))
     sign, color = _MARKS["not_judged"]
     for titles, verdicts in report.waiting.items():
-        since, *more = (tell("“{title}”", title=title) for title in titles)
+        since, *more = (tr("“{title}”", title=title) for title in titles)
         for title in more:
-            since = tell("{those} and {last}", those=since, last=title)
-        said = tell_many(
+            since = tr("{those} and {last}", those=since, last=title)
+        said = tr_many(
             "not judged, since {titles} did not pass: {names} ({worth} points)",
             "not judged, since {titles} did not pass: {names} ({worth} points)",
             len(titles),
@@ -159,7 +186,7 @@ def _row(verdict: Verdict, seen: str) -> tuple[Text, Text, Text, Text]:
     sign, color = _MARKS[verdict.status]
     notes = [_text(verdict.check, "dim")] if verdict.title else []
     if verdict.is_partial:
-        notes.append(_text(tell("partial credit"), "yellow"))
+        notes.append(_text(tr("partial credit"), "yellow"))
     if seen:
         notes.append(_text(seen, "dim"))
     said = Text(f" {sign} {word(verdict)}", color)
@@ -175,11 +202,11 @@ def _explanation(report: Report, verdict: Verdict) -> Group:
     sign, color = _MARKS[verdict.status]
     said = {"title": title_of(verdict), "score": score_text(verdict)}
     if verdict.is_partial:
-        head = tell("{title}: {score} (partial credit)", **said)
+        head = tr("{title}: {score} (partial credit)", **said)
     else:
-        head = tell("{title}: {score}", **said)
+        head = tr("{title}: {score}", **said)
     lines: list[RenderableType] = [Text(), _text(f"{sign} {head}", f"bold {color}")]
-    lines.append(Padding(_text(" ".join(verdict.rationale.split())), (0, 0, 0, 2)))
+    lines.append(Padding(_text(" ".join(translate(verdict.rationale).split())), (0, 0, 0, 2)))
     lines += [_indented("•", str(point)) for point in report.points_of(verdict)]
     if help_ := report.help_for(verdict):
         lines.append(_indented("→", " ".join(help_.split()), "italic"))
@@ -190,3 +217,6 @@ def _indented(sign: str, value: str, style: str = "") -> Padding:
     grid = Table.grid(padding=(0, 1))
     grid.add_row(sign, _text(value, style))
     return Padding(grid, (0, 0, 0, 2))
+
+
+FORMAT: Final = Format(msg("for reading in a terminal"), render, render_error)

@@ -7,79 +7,79 @@ from typing import Final
 
 from grader import text
 from grader.exercise.verdict import Evidence, Verdict
-from grader.language.phrase import Phrase, say
-from grader.language.telling import number, tell, tell_many, told
-from grader.result.result import NotShown, Result
+from grader.message import in_context, msg
+from grader.result.result import NotShown, Result, ResultProvenance
+from grader.translations import number, tr, tr_many, translate
 
 WORDS: Final = {
-    "passed": say("passed"),
-    "failed": say("failed"),
-    "not_judged": say("not judged"),
+    "passed": msg("passed"),
+    "failed": msg("failed"),
+    "not_judged": msg("not judged"),
 }
 #: What a teacher is told of a verdict that students do not see, or not all of.
 SEEN_BY_STUDENTS: Final = {
-    "after_due": say("students see it when the exercise is over"),
-    "points_only": say("students see its points alone"),
-    "never": say("students never see it"),
+    "after_due": msg("students see it when the exercise is over"),
+    "points_only": msg("students see its points alone"),
+    "never": msg("students never see it"),
 }
 #: What stands in place of a check's advice where the first line knows the cause.
-SEE_FIRST: Final = say("See the first line.")
+SEE_FIRST: Final = msg("See the first line.")
 #: What a run says of itself that ended because nothing had moved.
 NOTHING_MOVED: Final = "nothing moved"
 #: How a run ended, by what `Report.outcome` says.
 OUTCOMES: Final = {
-    "finished": say("finished"),
-    "exited": say("exited"),
-    "crashed": say("crashed"),
-    "stalled": say("stalled"),
-    "time limit": say("time limit"),
-    "killed": say("killed"),
-    "not run": say("not run"),
-    NOTHING_MOVED: say("nothing moved"),
+    "finished": msg("finished"),
+    "exited": msg("exited"),
+    "crashed": msg("crashed"),
+    "stalled": msg("stalled"),
+    "time limit": msg("time limit"),
+    "killed": msg("killed"),
+    "not run": msg("not run"),
+    NOTHING_MOVED: msg("nothing moved"),
 }
 #: The clock that a submission lived by.
-CLOCKS: Final = {"virtual": say("virtual"), "real": say("real")}
+CLOCKS: Final = {"virtual": msg("virtual"), "real": msg("real")}
 #: How a run was confined and kept apart; a result file puts it together from these.
 CONFINED: Final = {
-    "namespaces": say("namespaces (of a run)").key,
-    "limits": say("limits (of a run)").key,
-    "own user": say("own user").key,
-    "private network": say("private network").key,
-    "ROS domain": say("ROS domain").key,
-    "process group": say("process group").key,
-    "process tree": say("process tree").key,
-    "recording within reach": say("recording within reach").key,
+    "namespaces": in_context("namespaces", "of a run"),
+    "limits": in_context("limits", "of a run"),
+    "own user": msg("own user"),
+    "private network": msg("private network"),
+    "ROS domain": msg("ROS domain"),
+    "process group": msg("process group"),
+    "process tree": msg("process tree"),
+    "recording within reach": msg("recording within reach"),
 }
 _CONFINED: Final = re.compile("|".join(CONFINED))
 
 
 def word(verdict: Verdict) -> str:
     """The verdict in words."""
-    return told(WORDS[verdict.status])
+    return translate(WORDS[verdict.status])
 
 
 def so_many(status: str, count: int) -> str:
     """How many verdicts are of a kind: '6 passed'."""
     if status == "passed":
-        return tell_many("{n} passed", "{n} passed", count)
+        return tr_many("{n} passed", "{n} passed", count)
     if status == "failed":
-        return tell_many("{n} failed", "{n} failed", count)
-    return tell_many("{n} not judged", "{n} not judged", count)
+        return tr_many("{n} failed", "{n} failed", count)
+    return tr_many("{n} not judged", "{n} not judged", count)
 
 
 def outcome(key: str) -> str:
     """How a run ended, for people."""
-    return told(OUTCOMES.get(key, key))
+    return translate(OUTCOMES.get(key, key))
 
 
 def clock(time: str) -> str:
     """The clock of a run, for people: the word before "time"."""
-    return told(CLOCKS.get(time, time))
+    return translate(CLOCKS.get(time, time))
 
 
 def isolation(name: str) -> str:
-    """How a run was confined and kept apart, for people; see `grader.run.stage.Stage`."""
-    return _CONFINED.sub(lambda found: told(Phrase(found[0], CONFINED[found[0]])), name)
+    """How a run was confined and kept apart, for people; see `grader.run.run_context`."""
+    return _CONFINED.sub(lambda found: translate(CONFINED[found[0]]), name)
 
 
 def points(value: float) -> str:
@@ -89,7 +89,7 @@ def points(value: float) -> str:
 
 def title_of(verdict: Verdict) -> str:
     """What its check asks for; its name where that has no title."""
-    return verdict.title or verdict.check
+    return translate(verdict.title) or verdict.check
 
 
 def score_text(verdict: Verdict) -> str:
@@ -99,15 +99,19 @@ def score_text(verdict: Verdict) -> str:
 
 def all_passed(checks: int) -> str:
     """That nothing is to be mended: 'all 7 checks passed.'."""
-    return tell_many("the only check passed.", "all {n} checks passed.", checks)
+    return tr_many("the only check passed.", "all {n} checks passed.", checks)
 
 
 def where(evidence: Evidence) -> str:
     """Time and place: 'at 12.34 s, at (5.54, 7.20)'."""
-    place = text.place(evidence.x, evidence.y)
+    if evidence.place is None:
+        if not evidence.run:
+            return tr("at {time_s:.2f} s", time_s=evidence.time_s)
+        return tr("varied run {run}, at {time_s:.2f} s", run=evidence.run, time_s=evidence.time_s)
+    place = text.place(*evidence.place)
     if not evidence.run:
-        return tell("at {time_s:.2f} s, at {place}", time_s=evidence.time_s, place=place)
-    return tell(
+        return tr("at {time_s:.2f} s, at {place}", time_s=evidence.time_s, place=place)
+    return tr(
         "varied run {run}, at {time_s:.2f} s, at {place}",
         run=evidence.run,
         time_s=evidence.time_s,
@@ -118,12 +122,12 @@ def where(evidence: Evidence) -> str:
 def nothing_to_mend(passed: int, left_out: NotShown | None) -> str:
     """The headline where all verdicts that are shown passed."""
     if left_out is None:
-        return tell("Nothing to mend: {all_passed}", all_passed=all_passed(passed))
-    others = tell_many("{n:,} check is not shown", "{n:,} checks are not shown", left_out.checks)
+        return tr("Nothing to fix: {all_passed}", all_passed=all_passed(passed))
+    others = tr_many("{n:,} check is not shown", "{n:,} checks are not shown", left_out.checks)
     if not passed:
-        return tell("Nothing is shown here: {others}.", others=others)
-    some = tell_many("{n:,} check passed", "{n:,} checks passed", passed)
-    return tell("Nothing to mend in what is shown: {some}; {others}.", some=some, others=others)
+        return tr("Nothing is shown here: {others}.", others=others)
+    some = tr_many("{n:,} check passed", "{n:,} checks passed", passed)
+    return tr("Nothing to fix in what is shown: {some}; {others}.", some=some, others=others)
 
 
 def not_shown(left_out: NotShown | None) -> str:
@@ -131,17 +135,17 @@ def not_shown(left_out: NotShown | None) -> str:
     if left_out is None:
         return ""
     checks, later = left_out.checks, left_out.until_due
-    said = tell_many(
+    said = tr_many(
         "{n:,} check worth {points} points is not shown here, nor counted in this score",
         "{n:,} checks worth {points} points are not shown here, nor counted in this score",
         checks,
         points=points(left_out.max_score),
     )
     if not later:
-        return tell("{said}.", said=said)
+        return tr("{said}.", said=said)
     if later == checks:
-        return tell("{said}; shown when the exercise is over.", said=said)
-    return tell_many(
+        return tr("{said}; shown when the exercise is over.", said=said)
+    return tr_many(
         "{said}; {n} of them is shown when the exercise is over.",
         "{said}; {n} of them are shown when the exercise is over.",
         later,
@@ -156,20 +160,20 @@ def handed_in(result: Result) -> list[str]:
         return []
     who = {"who": found.name or found.id, "attempt": found.attempt}
     if found.at:
-        when = found.at.replace("T", " ")
-        said = [tell("{who}, attempt {attempt}, handed in {when}.", **who, when=when)]
+        when = found.at.isoformat(" ")
+        said = [tr("{who}, attempt {attempt}, handed in {when}.", **who, when=when)]
     else:
-        said = [tell("{who}, attempt {attempt}.", **who)]
+        said = [tr("{who}, attempt {attempt}.", **who)]
     if found.late_s <= 0:
         return said
     late = duration(found.late_s)
     if not found.deducted:
-        return [*said, tell("Handed in {late} late, which costs no points.", late=late)]
+        return [*said, tr("Handed in {late} late, which costs no points.", late=late)]
     less = points(found.deducted)
     if result.not_shown is not None:  # of a total from which what is hidden could be told
         return [
             *said,
-            tell(
+            tr(
                 "Handed in {late} late: {less} points less in the total of all checks.",
                 late=late,
                 less=less,
@@ -177,7 +181,7 @@ def handed_in(result: Result) -> list[str]:
         ]
     return [
         *said,
-        tell(
+        tr(
             "Handed in {late} late: {less} points less; {final} instead of {score}.",
             late=late,
             less=less,
@@ -190,12 +194,60 @@ def handed_in(result: Result) -> list[str]:
 def duration(seconds: float) -> str:
     """A time that people count in days, hours and minutes: '1 day 3 h', '2 h 10 min', '40 s'."""
     if seconds < 60:
-        return tell("{seconds:.0f} s", seconds=max(seconds, 1))
+        return tr("{seconds:.0f} s", seconds=max(seconds, 1))
     minutes = int(seconds // 60)
     days, hours, minutes = minutes // 1440, minutes // 60 % 24, minutes % 60
     parts = [
-        tell_many("{n:,} day", "{n:,} days", days) if days else "",
-        tell("{hours} h", hours=hours) if hours else "",
-        tell("{minutes} min", minutes=minutes) if minutes and not days else "",
+        tr_many("{n:,} day", "{n:,} days", days) if days else "",
+        tr("{hours} h", hours=hours) if hours else "",
+        tr("{minutes} min", minutes=minutes) if minutes and not days else "",
     ]
     return " ".join(part for part in parts if part)
+
+
+#: So many digits of a hash tell one from another; the result file has all.
+_DIGITS = 12
+
+
+def provenance(origin: ResultProvenance) -> list[str]:
+    """When and with what it was run and judged, and of what."""
+    judged, recorded = origin.judged, origin.recorded
+    found = []
+    if recorded is not None:
+        ros = f", ROS 2 {recorded.ros_distro}" if recorded.ros_distro else ""
+        found.append(
+            tr(
+                "Run {when} with grader {grader}, Python {python}, rclpy {rclpy}{ros}",
+                when=_when(recorded.date),
+                grader=recorded.grader,
+                python=recorded.python,
+                rclpy=recorded.rclpy,
+                ros=ros,
+            )
+        )
+    found.append(
+        tr("Judged {when} by grader {grader}", when=_when(judged.date), grader=judged.grader)
+    )
+    if recorded is not None:
+        sha256 = _short(recorded.submission_sha256)
+        found.append(tr("SHA-256 of the submission {sha256}", sha256=sha256))
+    sha256 = _short(judged.exercise_sha256)
+    found.append(tr("SHA-256 of the exercise {sha256}", sha256=sha256))
+    if recorded is not None and recorded.seed is not None:
+        found.append(tr("Seed {seed}", seed=str(recorded.seed)))
+    return [text.one_line(sentence) for sentence in found]
+
+
+def _when(date: str) -> str:
+    """'2026-11-21T23:52:52Z' for people."""
+    day, _, time = date.partition("T")
+    year, _, rest = day.partition("-")
+    month, _, of_month = rest.partition("-")
+    return tr(
+        "{year}-{month}-{day} at {time} UTC",
+        **{"year": year, "month": month, "day": of_month, "time": time[:5]},
+    )
+
+
+def _short(sha256: str) -> str:
+    return f"{sha256[:_DIGITS]}…" if sha256 else tr("unknown")

@@ -5,15 +5,15 @@ Its JSON Schema is `error.schema.json` beside this module.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
 from grader import files
 from grader.errors import GraderError, Whose
-from grader.language import stored
+from grader.message import Message
 from grader.result import json_file
-from grader.text import plain_phrase
+from grader.text import plain
 
 #: What the schemas of all versions begin with.
 FAMILY = "turtlesim-grader/error/"
@@ -32,22 +32,17 @@ class ErrorResult:
     """
 
     whose: Whose
-    message: str
+    message: Message
     max_score: float | None = None
 
     @classmethod
     def of(cls, error: GraderError, max_score: float | None) -> Self:
         """What an exception says."""
-        return cls(error.whose, plain_phrase(error.message), max_score)
+        return cls(error.whose, error.message.map_texts(plain), max_score)
 
     def to_json(self) -> dict[str, Any]:
         """The error as its file holds it."""
-        phrases = stored.phrases_in(self)
-        return {
-            "schema": SCHEMA,
-            **asdict(self),
-            **({"phrases": phrases} if phrases else {}),
-        }
+        return {"schema": SCHEMA, **json_file.with_phrases(self)}
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
@@ -58,8 +53,7 @@ class ErrorResult:
         """
         json_file.validate(data, "error", SCHEMA)
         told = {name: data[name] for name in ("whose", "message", "max_score")}
-        found = json_file.typed(cls, told)
-        return stored.restored(found, data.get("phrases", {}))
+        return json_file.typed(cls, told, data.get("phrases"))
 
     def write(self, path: Path) -> None:
         """Write the error file.

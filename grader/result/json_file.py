@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from grader import strict_json
 from grader.errors import UsageError
-from grader.files import read_own
-from grader.language.phrase import joined, reason, say
-from grader.strict_json import Made
+from grader.files import read_ours
+from grader.message import Message, joined, msg, plain_text, reason
+from grader.strict_json import Bounds, Made
 
 if TYPE_CHECKING:
     import jsonschema
@@ -55,33 +55,72 @@ def read(path: Path, *, is_ours: bool = False) -> Any:
     """Read JSON.
 
     Args:
-        is_ours: whether the file has a name of ours in a folder for results: see `read_own`.
+        is_ours: whether the file has a name of ours in a folder for results: see `read_ours`.
 
     Raises:
         UsageError: it cannot be read or is none.
     """
     try:
         # utf-8-sig: some editors put a mark at the start
-        data = read_own(path, MOST_BYTES) if is_ours else path.read_bytes()
+        data = read_ours(path, MOST_BYTES) if is_ours else path.read_bytes()
         return strict_json.loads(data.decode("utf-8-sig"))
     except OSError as error:
         raise UsageError(
-            say("cannot read the result {path}: {why}", path=path, why=error.strerror)
+            "cannot read the result {path}: {why}", path=path, why=error.strerror
         ) from None
     except (ValueError, RecursionError) as error:
-        raise UsageError(say("{path} is not JSON: {why}", path=path, why=str(error))) from None
+        raise UsageError("{path} is not JSON: {why}", path=path, why=str(error)) from None
 
 
-def typed(kind: type[Made], data: Any) -> Made:
+def with_phrases(value: Any) -> dict[str, Any]:
+    """A dataclass as a file has it: its messages in English.
+
+    Beside them, by these texts, is what they are made of, for other languages.
+    """
+    phrases: dict[str, Any] = {}
+
+    def write(message: Message) -> str:
+        text = str(message)
+        if message and message.text is None:
+            phrases[text] = message.serialise()
+        return text
+
+    data: dict[str, Any] = strict_json.to_json(value, strict_json.OURS._replace(write=write))
+    return {**data, **({"phrases": dict(sorted(phrases.items()))} if phrases else {})}
+
+
+def typed(kind: type[Made], data: Any, phrases: Any = None) -> Made:
     """A dataclass filled with a file's data.
+
+    Args:
+        phrases: what messages are made of, by their English texts.
 
     Raises:
         ValueError: something in it is not of its field's type.
     """
+    if not isinstance(phrases or {}, dict):
+        raise ValueError(msg("is damaged: {why}", why="its phrases: expected an object"))
+    known = phrases or {}
+
+    def read(text: Any) -> Message:
+        if not isinstance(text, str):
+            raise ValueError(f"expected a text, found {text!r:.80}")
+        return Message.parse(known[text]) if text in known else plain_text(text)
+
     try:
-        return strict_json.from_json(kind, data, strict_json.OURS)
+        return strict_json.from_json(kind, data, strict_json.OURS._replace(read=read))
     except ValueError as error:
-        raise ValueError(say("is damaged: {why}", why=str(error))) from None
+        raise ValueError(msg("is damaged: {why}", why=str(error))) from None
+
+
+def kept(
+    kind: type[Made], path: Path, most_bytes: int, bounds: Bounds = strict_json.OURS
+) -> Made | None:
+    """A dataclass from a small file of ours; None where nothing is there that can be used."""
+    try:
+        return strict_json.of_line(kind, read_ours(path, most_bytes), bounds)
+    except (OSError, ValueError):
+        return None
 
 
 def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
@@ -93,7 +132,7 @@ def made(make: Callable[[Any], Made], path: Path, data: object) -> Made:
     try:
         return make(data)
     except ValueError as error:
-        raise UsageError(joined([f"{path} ", reason(error)])) from None
+        raise UsageError(joined([str(path), reason(error)], " ")) from None
 
 
 @cache

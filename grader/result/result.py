@@ -8,20 +8,19 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any, Self
 
-from grader import files, strict_json
+from grader import files, versions
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.exercise import Exercise
+from grader.exercise.handing_in import Late, LatePolicy
 from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
-from grader.language import stored
-from grader.recording.recording import Recording, Recordings, Run
+from grader.recording.recording import Provenance, Recording, Recordings, Run, now
+from grader.recording.subject import Start
 from grader.result import json_file
-from grader.result.handed_in import HandedIn
-from grader.result.provenance import Origin
-from grader.scenes.scene import Start
 from grader.strict_json import SPARSE
 
 #: What the schemas of all versions begin with.
@@ -38,6 +37,91 @@ IN_ORDER = (
 )
 #: A total is rounded to hundredths, its parts need not be [points].
 ROUNDING = 0.01 + 1e-9
+
+
+def artifacts(nominal: Recording) -> dict[str, str]:
+    """What lies beside a result; a canvas only where the scene draws one."""
+    return {name: at for name, at in ARTIFACTS.items() if name != "canvas" or nominal.canvas}
+
+
+def put_artifacts(nominal: Recording, folder: Path) -> None:
+    """Write canvas and output beside a result; the recording comes there by itself.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    if nominal.canvas:
+        files.put(folder / ARTIFACTS["canvas"], nominal.canvas)
+    files.put(folder / ARTIFACTS["output"], nominal.output.encode("utf-8", "replace"))
+
+
+@dataclass(frozen=True)
+class HandedIn:
+    """A hand-in, and what its time costs.
+
+    Attributes:
+        id, name: of the student, or the group.
+        attempt: counts from 1.
+        at: when, with its zone; None where nobody knows.
+        late_s, days, deducted: see `grader.exercise.handing_in.Late`; `deducted` are its points.
+    """
+
+    id: str
+    name: str = ""
+    attempt: int = 1
+    at: datetime | None = None
+    late_s: float = 0.0
+    days: int = 0
+    deducted: float = 0.0
+
+    @classmethod
+    def of(
+        cls, id: str, name: str, attempt: int, at: datetime | None, policy: LatePolicy | None
+    ) -> Self:
+        """Of a hand-in, by what an exercise says of late ones.
+
+        Raises:
+            ValueError: the time has no zone.
+        """
+        late = Late() if at is None or policy is None else policy.deduction(at)
+        return cls(id, name, attempt, at, late.late_s, late.days, late.points)
+
+    def by(self, policy: LatePolicy | None) -> Self:
+        """The same hand-in by what another exercise, or another state of it, says."""
+        return type(self).of(self.id, self.name, self.attempt, self.at, policy)
+
+
+@dataclass(frozen=True)
+class Judging:
+    """When and by what the recordings were judged; the same day as the runs, or later.
+
+    Attributes:
+        date: as `grader.recording.recording.now` writes it.
+        grader: its version.
+        exercise_sha256: see `grader.exercise.exercise.Exercise`.
+    """
+
+    date: str
+    grader: str
+    exercise_sha256: str
+
+
+@dataclass(frozen=True)
+class ResultProvenance:
+    """Both of it.
+
+    Attributes:
+        recorded: None where the recordings do not tell.
+    """
+
+    judged: Judging
+    recorded: Provenance | None = field(default=None, metadata=SPARSE)
+
+    @classmethod
+    def of(cls, recordings: Recordings, exercise: Exercise) -> Self:
+        """Of recordings that are being judged."""
+        judged = Judging(now(), versions.grader(), exercise.sha256)
+        return cls(judged, recordings.nominal.provenance)
 
 
 @dataclass(frozen=True)
@@ -99,7 +183,7 @@ class Result:
     run: RunSummary
     varied_runs: tuple[RunSummary, ...] = ()
     artifacts: Mapping[str, str] = field(default_factory=dict)
-    provenance: Origin | None = field(default=None, compare=False, metadata=SPARSE)
+    provenance: ResultProvenance | None = field(default=None, compare=False, metadata=SPARSE)
     diagnosis: Diagnosis | None = field(default=None, metadata=SPARSE)
     handed_in: HandedIn | None = field(default=None, metadata=SPARSE)
     not_shown: NotShown | None = field(default=None, metadata=SPARSE)
@@ -112,13 +196,9 @@ class Result:
 
     def to_json(self) -> dict[str, Any]:
         """The result as its file holds it."""
-        told = strict_json.to_json(self, strict_json.OURS)
-        phrases = stored.phrases_in(self)
-        return {
-            "schema": SCHEMA,
-            **{name: told[name] for name in IN_ORDER if name in told},
-            **({"phrases": phrases} if phrases else {}),
-        }
+        told = json_file.with_phrases(self)
+        names = (*IN_ORDER, "phrases")
+        return {"schema": SCHEMA, **{name: told[name] for name in names if name in told}}
 
     @classmethod
     def from_json(cls, data: Any) -> Self:
@@ -129,8 +209,7 @@ class Result:
         """
         json_file.validate(data, "result", SCHEMA)
         told = {name: data[name] for name in IN_ORDER if name in data}
-        result = json_file.typed(cls, told)
-        return stored.restored(result, data.get("phrases", {}))
+        return json_file.typed(cls, told, data.get("phrases"))
 
     @classmethod
     def from_file(cls, data: Any) -> Self:
@@ -207,7 +286,7 @@ def build(
         _nominal(recordings.nominal, exercise, all_passed),
         tuple(RunSummary.of(recording, all_passed) for recording in recordings.varied),
         dict(artifacts),
-        provenance=Origin.of(recordings, exercise),
+        provenance=ResultProvenance.of(recordings, exercise),
         diagnosis=diagnosis,
     )
 

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
-from grader.diagnosis.costliest import costliest
-from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.verdict import Verdict, Visible
+from grader.message import NOTHING, Message, msg, plain_text
 from grader.result.result import NotShown, Result
 
 #: Who looks: a student, a student when the exercise is over, a teacher.
@@ -56,7 +56,7 @@ def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
     """A verdict without what may not be told of it, or of others."""
     if verdict.visible == "points_only":
         verdict = replace(
-            verdict, rationale=_no_finding(verdict), help="", evidence=(), expected=()
+            verdict, rationale=_no_finding(verdict), help=NOTHING, evidence=(), expected=()
         )
     if hidden.isdisjoint(verdict.depends_on):
         return verdict
@@ -65,13 +65,23 @@ def _shown(verdict: Verdict, hidden: set[str]) -> Verdict:
     if verdict.status != "not_judged":
         return verdict
     # No exercise of ours is loaded that comes to this, but a result file may have been changed.
-    return replace(verdict, rationale="Not judged: it waits for others.", help="")
+    return replace(verdict, rationale=msg("Not judged: it waits for others."), help=NOTHING)
 
 
-def _no_finding(verdict: Verdict) -> str:
-    title = verdict.title or verdict.check
-    said = {"passed": "passed", "failed": "did not pass in full", "not_judged": "was not judged"}
-    return f"“{title}” {said[verdict.status]}. What was found is not shown: only its points are."
+def _no_finding(verdict: Verdict) -> Message:
+    title = verdict.title or plain_text(verdict.check)
+    if verdict.status == "passed":
+        return msg(
+            "“{title}” passed. What was found is not shown: only its points are.", title=title
+        )
+    if verdict.status == "failed":
+        return msg(
+            "“{title}” did not pass in full. What was found is not shown: only its points are.",
+            title=title,
+        )
+    return msg(
+        "“{title}” was not judged. What was found is not shown: only its points are.", title=title
+    )
 
 
 def _diagnosis(found: Diagnosis | None, shown: Sequence[Verdict]) -> Diagnosis | None:

@@ -1,7 +1,8 @@
 """The environment variables of a run: none of the user's but those that Python and ROS stand on.
 
-Whoever grades may have tokens in his environment (a CI job has), which are none of a submission's
-business, and settings that would change a run. So variables are let through by name, not kept out.
+The environment of a grader may hold tokens (that of a CI job does), which are none of a
+submission's business, and settings that would change a run. So variables are let through by name,
+not kept out.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ PLACES = (
     *("PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FALLBACK_LIBRARY_PATH"),
     *("VIRTUAL_ENV", "CONDA_PREFIX"),
 )
-#: How times are told, and what a terminal can do, if one is asked for.
+#: How times are shown, and what a terminal can do, if a program asks for one.
 MANNERS = ("TZ", "TERM")
 #: Which ROS there is, and where its packages are; how strict its messages are about their fields.
 ROS = (
@@ -29,7 +30,7 @@ KEPT = frozenset((*PLACES, *MANNERS, *ROS))
 
 
 def lasting_environment() -> dict[str, str]:
-    """What is the same in all runs, and all that Python and libraries look at where they start."""
+    """The variables that are the same in all runs: all that Python and libraries read at start."""
     env = {name: value for name, value in os.environ.items() if name in KEPT}
     if system.is_ros_sourced() and "PYTHONPATH" in os.environ:
         env["PYTHONPATH"] = os.environ["PYTHONPATH"]  # ROS's own packages are there
@@ -66,23 +67,23 @@ def environment(folder: Path, isolated: Mapping[str, str]) -> dict[str, str]:
 
 
 def student_environment(env: Mapping[str, str]) -> dict[str, str]:
-    """A submission's messages look at what is put into them, as all did up to ROS 2 Humble.
+    """Have a submission's messages check what is put into them, as all did up to ROS 2 Humble.
 
     Later ones do so where they are asked to. Else `linear.x = 2`, an int where a float belongs, is
     sent as 1e-323 by the wheels of Jazzy, and aborts the process where rclpy's assertions in C are
     compiled in; 256 in an uint8 becomes 0. Each message module reads this where it is imported, so
-    a zygote has to have it as well.
+    a fork server has to have it as well.
     """
     return {**env, "ROS_PYTHON_CHECK_FIELDS": "1"}
 
 
 def virtual_environment(env: Mapping[str, str]) -> dict[str, str]:
-    """The same in virtual time, where a submission's sets have the same order every time."""
+    """The variables of a submission in virtual time: its sets have the same order every time."""
     return {**student_environment(env), "PYTHONHASHSEED": "0"}
 
 
 def simulator_environment(env: Mapping[str, str]) -> dict[str, str]:
-    """The simulator finds our own packages first, and nothing that lies about."""
+    """The variables of the simulator, which finds our packages first and none that lie about."""
     ours = str(Path(__file__).resolve().parents[2])
     path = os.pathsep.join(filter(None, [ours, env.get("PYTHONPATH", "")]))
     return {**env, "PYTHONPATH": path, "PYTHONSAFEPATH": "1"}

@@ -1,37 +1,55 @@
 """What a submission's process tells of itself, on its way to the recording.
 
-Its account lies in a page that both have (`student.account`), and so does what Python's
-faulthandler writes at a signal, or where the process dies by a mistake in C. Both are read
-strictly: where anything is not as our own code would have written it, nothing was told.
+Its account lies in a page that both have (`observe.account`), and so does what Python's
+faulthandler writes at a signal, or where the process dies by a fault in C. That is written in C,
+also where a program computes without end. Both may be anybody's: they are held against the
+annotations of `Observations`, and where anything is not as our own code writes it, nothing counts.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from itertools import chain
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
-from grader import strict_json, usage
-from grader.recording.conduct import STRANGERS, Conduct
-from grader.run import dumps
-from grader.run.student import account
-from grader.run.student.telling import asking_signal
-from grader.submission.opening import Submission
-from grader.submission.start import Slip
+from grader import linux, strict_json
+from grader.recording.observations import STRANGERS, Caught, Observations, Raised, SourceLine
+from grader.run.observe import account, stuck
+from grader.run.observe.files import Frame, SubmissionFiles
+from grader.submission.start import Submission
 
 #: How long a process may take to say where it is [s]; it has nothing else to do.
 PATIENCE_S = 1.0
 #: A dump comes line by line, and is over when nothing more comes for so long [s].
 QUIET_S = 0.1
-_LISTS = ("ends", "slips", "waits", "slow", "timers", "caught")
-#: How often it is looked at meanwhile, and how long a busy machine may keep it waiting [s].
-LOOK_S, LONGEST_S = 0.002, 20.0
+#: How often it is read meanwhile, and how long a busy machine may keep it waiting [s].
+PERIOD_S, LONGEST_S = 0.002, 20.0
+#: How a dump begins for a fault in C, and which signal ended the process then.
+SIGNALS = {
+    "Aborted": "SIGABRT",
+    "Segmentation fault": "SIGSEGV",
+    "Bus error": "SIGBUS",
+    "Floating-point exception": "SIGFPE",
+    "Floating point exception": "SIGFPE",
+    "Illegal instruction": "SIGILL",
+}
+_FATAL = re.compile(r"Fatal Python error: ([\w\- ]{1,40})")
+_THREAD = re.compile(
+    r"(?:Current thread|Thread) 0x[0-9a-f]{1,16}.{0,40}\(most recent call first\):"
+)
+_FRAME = re.compile(r'  File "([^"]{1,500})", line (\d{1,9}) in (.{1,500})')
+#: Of a process that has left no account, and says where it is all the same.
+_NOTHING: dict[str, Any] = {
+    **{"is_blind": False, "ends": [], "waits": [], "slow": [], "timers": [], "caught": []},
+    **{"spun_s": None, "stop": None, "raised": None, "returned_s": None},
+}
 
 
-class Evidence:
+class EvidencePage:
     """The grader's side of the page.
 
     Attributes:
@@ -43,7 +61,7 @@ class Evidence:
         self._account = self._dump = b""
 
     def close(self) -> None:
-        """Read what was told till now, and give back what is open."""
+        """Read what was told till now, and close what is open."""
         if self.page >= 0:
             self._account, _ = account.read(self.page)
             self._dump = account.dumped(self.page)
@@ -51,23 +69,25 @@ class Evidence:
             self.page = -1
 
     def ask(self, pid: int) -> None:
-        """Have a process that still runs say where its threads are, and wait for that."""
+        """Have a process that still runs dump where its threads are, and wait for that."""
         before, patience_s = account.dumped(self.page), PATIENCE_S
 
         def has_more() -> bool:
             return account.dumped(self.page) != before
 
         with suppress(OSError):
-            os.kill(pid, asking_signal())
+            os.kill(pid, account.DUMP_SIGNAL)
             while _awaited(pid, has_more, patience_s):
                 before, patience_s = account.dumped(self.page), QUIET_S
 
     def hear_out(self, pid: int) -> None:
-        """Wait until a process has said all, or has ended, which it does when its run is over."""
+        """Wait until a process has told all, or has ended, which it does when its run is over."""
         _awaited(pid, lambda: account.read(self.page)[1], PATIENCE_S)
 
-    def conduct(self, submission: Submission, ended_s: float, *, computes: bool) -> Conduct:
-        """All that was told; of a process that has told nothing, or nonsense, that it has not.
+    def observations(
+        self, submission: Submission, ended_s: float, *, computes: bool
+    ) -> Observations:
+        """Return all that was told; of a process that told nothing, or nonsense, that it did not.
 
         Args:
             ended_s: how far the process has got, on the clock of the run [s].
@@ -75,77 +95,110 @@ class Evidence:
         """
         self.close()
         try:
-            return _conduct(self._account, self._dump, submission, ended_s, computes)
+            return _observations(self._account, self._dump, submission, ended_s, computes)
         except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
-            return Conduct()
-
-
-def _awaited(pid: int, has_come: Callable[[], bool], patience_s: float) -> bool:
-    """Whether something comes; while a process waits for a processor, its time stands still."""
-    used_s, slept_s = usage.look(pid).cpu_s, 0.0
-    gives_up = time.monotonic() + LONGEST_S
-    while not has_come():
-        now = usage.look(pid)
-        if now.has_ended or now.cpu_s - used_s + slept_s >= patience_s:
-            return has_come()
-        if time.monotonic() > gives_up:
-            return False
-        time.sleep(LOOK_S)
-        slept_s += 0.0 if now.state == "R" else LOOK_S
-    return True
+            return Observations()
 
 
 @contextmanager
-def open_evidence() -> Iterator[Evidence]:
-    """A page for one run."""
-    evidence = Evidence()
+def open_evidence() -> Iterator[EvidencePage]:
+    """Make a page for one run."""
+    evidence = EvidencePage()
     try:
         yield evidence
     finally:
         evidence.close()
 
 
-def _conduct(
+def _awaited(pid: int, has_come: Callable[[], bool], patience_s: float) -> bool:
+    """Whether something comes; while a process waits for a processor, its time stands still."""
+    used_s, slept_s = linux.process_stat(pid).cpu_s, 0.0
+    gives_up = time.monotonic() + LONGEST_S
+    while not has_come():
+        now = linux.process_stat(pid)
+        if now.has_ended or now.cpu_s - used_s + slept_s >= patience_s:
+            return has_come()
+        if time.monotonic() > gives_up:
+            return False
+        time.sleep(PERIOD_S)
+        slept_s += 0.0 if now.state == "R" else PERIOD_S
+    return True
+
+
+# What was told --------------------------------------------------------------------------------
+
+
+def _observations(
     data: bytes, dumped: bytes, submission: Submission, ended_s: float, computes: bool
-) -> Conduct:
+) -> Observations:
     """Raises ValueError and its like: it is not what our own code writes."""
-    dump = dumps.read(dumped.decode("ascii").splitlines())
-    if not data and not dump.threads:
-        return Conduct()
-    told = strict_json.loads(data.decode("ascii")) if data else _nothing()
+    files = SubmissionFiles(str(submission.root))
+    signal, threads = _read_dump(dumped.decode("ascii").splitlines(), files)
+    if not data and not threads:
+        return Observations()
+    told = strict_json.loads(data.decode("ascii")) if data else dict(_NOTHING)
     if told.pop("is_blind"):
         raise ValueError("our own code does not know this rclpy")
-    told |= {"is_told": True, "slips": [_slip(each) for each in submission.slips]}
-    own = dumps.Own(submission)
     if all(told[key] is None for key in ("stop", "raised", "returned_s")):
-        told |= dumps.ending(dump, own, ended_s, computes=computes)
-    for place in _places(told):
-        place["file"] = own.as_handed_in(place["file"])
-    for error in filter(None, (told["raised"], *told["caught"])):
-        error["text"] = submission.as_handed_in(error["text"])[: int(STRANGERS.characters)]
-    return Conduct.from_json(told)
+        told |= _ending(signal, threads, files, ended_s, computes=computes)
+    found = [strict_json.to_json(each) for each in submission.lint_findings]
+    observations = Observations.from_json(told | {"is_known": True, "lint_findings": found})
+    shown: Observations = _as_handed_in(observations, submission)
+    return shown
 
 
-def _nothing() -> dict[str, Any]:
-    """Of a process that has left no account, and says where it is all the same."""
-    lists: dict[str, Any] = {name: [] for name in _LISTS if name != "slips"}
-    once = dict.fromkeys(("spun_s", "stop", "raised", "returned_s"))
-    return {"is_blind": False, **lists, **once}
+def _as_handed_in(value: Any, submission: Submission) -> Any:
+    """Return the same with the paths of what was handed in, in place of those of a run's copy."""
+    if isinstance(value, tuple):
+        return tuple(_as_handed_in(each, submission) for each in value)
+    if not is_dataclass(value) or isinstance(value, type):
+        return value
+    names = [each.name for each in fields(value)]
+    parts = {name: _as_handed_in(getattr(value, name), submission) for name in names}
+    if isinstance(value, SourceLine):
+        top = submission.copy.folder if submission.copy else submission.root
+        folder = submission.root.relative_to(top).as_posix()
+        parts["file"] = value.file if folder == "." else f"{folder}/{value.file}"
+    if isinstance(value, Raised | Caught):
+        parts["text"] = submission.as_handed_in(value.text)[: int(STRANGERS.characters)]
+    return replace(value, **parts)
 
 
-def _slip(found: Slip) -> dict[str, Any]:
-    """What the source has shown where it was read; it stands with what the process tells."""
-    place = {"file": found.file, "line": found.line, "function": "", "text": found.text}
-    return {"kind": found.kind, "name": found.name, "near": found.near, "place": place}
+# Dumps ----------------------------------------------------------------------------------------
 
 
-def _places(told: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Every place in it that there is."""
-    lists = (told[name] for name in _LISTS)
-    ends = [end for end in (told["stop"], told["raised"]) if end is not None]
-    for end in told["ends"]:
-        yield from end["lines"]
-    for entry in (*chain.from_iterable(lists), *ends):
-        for name in ("place", "used_at", "by"):
-            if entry.get(name) is not None:
-                yield entry[name]
+def _read_dump(lines: list[str], files: SubmissionFiles) -> tuple[str, list[list[Frame]]]:
+    """Read the last dump in these lines: the fault in C, '' for none, and the threads' frames.
+
+    First of the threads comes the one that wrote it, last the main thread.
+    """
+    fatal, threads = "", list[list[Frame]]()
+    for line in lines:
+        if found := _FATAL.match(line):
+            fatal, threads = SIGNALS.get(found[1], found[1]), []
+        elif _THREAD.match(line):
+            threads.append([])
+        elif (found := _FRAME.fullmatch(line)) and threads:
+            function = "" if found[3] == "<module>" else found[3]
+            threads[-1].append(files.frame(found[1], int(found[2]), function))
+    return fatal, threads
+
+
+def _ending(
+    fatal: str,
+    threads: list[list[Frame]],
+    files: SubmissionFiles,
+    ended_s: float,
+    *,
+    computes: bool,
+) -> dict[str, Any]:
+    """Return how a process has ended, or where it went no further; nothing where no dump tells."""
+    if fatal:
+        last = stuck.last_line(threads[0]) if threads else None
+        place = files.row_of_frame(last) if last else None
+        return {"raised": {"type": fatal, "text": "", "time_s": ended_s, "place": place}}
+    if computes:
+        found = stuck.computing(threads)
+    else:
+        found = stuck.waiting(threads) or (stuck.standing(threads[-1]) if threads else None)
+    return {"stop": found.row(files, ended_s)} if found else {}

@@ -1,32 +1,48 @@
-"""How a run ended, and the recording that is made of it."""
+"""How a run ended, and the recording that is made of it.
+
+A run whose simulator ended too early is repeated once, and then judged by what is there, nothing
+(`recording_of_nothing`). A simulator that ends beside one submission, whenever that runs, ends
+because of it: whoever could have the grader fail at will would get "not the submission's fault" for
+a wrong solution. Where it ends before the submission has said anything to it, the grader has
+failed.
+"""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import NamedTuple
 
-from grader.recording.conduct import Conduct
+from grader.errors import GraderFailure
+from grader.message import Message, msg
+from grader.recording.observations import Observations
 from grader.recording.recording import Clock, Outcome, PublishedTopic, Recording, Run
-from grader.run.plan import Plan
-from grader.run.processes.sandbox.limits import LIMITS, size
-from grader.run.processes.watched import Watched
-from grader.scenes import load_scene
-from grader.scenes.scene import Reason, Trace
+from grader.recording.subject import Trace, load_subject
+from grader.run.handover import Plan
+from grader.run.limits import LIMITS, size
+from grader.run.processes.started_process import SubmissionProcess
+from grader.scenes.scene import Reason
 from grader.submission.start import Submission
+from grader.text import without_controls
 
-NOTHING_TOLD = Conduct()
-#: How a scene says that there is nothing more to come.
+NOTHING_TOLD = Observations()
+#: Reasons of a scene's that mean: nothing more will come.
 DONE: tuple[Reason, ...] = ("rest", "seen")
-#: How much of a process's output is looked at for why it ended [characters], [lines].
+#: How much of a process's output is searched for why it ended [characters], [lines].
 LAST_WORDS, MOST_LAST_LINES = 8192, 20
 #: Exit codes that only a limit gives, SIGXCPU and SIGXFSZ, and what happened.
 SIGNALS = {
-    -24: f"the node used more than {LIMITS.cpu_s} s of processor time",
-    -25: f"the node wrote a file of more than {size(LIMITS.file_bytes)}: a run may not",
+    -24: msg("the node used more than {seconds} s of processor time", seconds=LIMITS.cpu_s),
+    -25: msg(
+        "the node wrote a file of more than {size}: a run may not", size=size(LIMITS.file_bytes)
+    ),
 }
-_MEMORY = f"one process may ask for {size(LIMITS.data_bytes)} of memory"
-_TASKS = f"a run may have {LIMITS.tasks} processes and threads"
-_READ_ONLY = "a run may write into its own folder, tempfile.gettempdir() and ~, and nowhere else"
+_MEMORY = msg("one process may ask for {size} of memory", size=size(LIMITS.data_bytes))
+_TASKS = msg("a run may have {number} processes and threads", number=LIMITS.tasks)
+_FULL = msg("the folder for temporary files is full: there is little room in it")
+_READ_ONLY = msg(
+    "a run may write into its own folder, tempfile.gettempdir() and ~, and nowhere else"
+)
 #: How the line begins with which a program ends that was refused something -> what the limit is.
 LAST_LINES = {
     "MemoryError": _MEMORY,
@@ -34,41 +50,45 @@ LAST_LINES = {
     "numpy.core._exceptions._ArrayMemoryError": _MEMORY,
     "what():  std::bad_alloc": _MEMORY,
     "OSError: [Errno 12]": _MEMORY,
-    "OSError: [Errno 24]": f"a process may have {LIMITS.open_files} open files",
+    "OSError: [Errno 24]": msg("a process may have {number} open files", number=LIMITS.open_files),
     "OSError: [Errno 30]": _READ_ONLY,
     "PermissionError: [Errno 13]": _READ_ONLY,
     "sqlite3.OperationalError: unable to open database file": _READ_ONLY,
-    "OSError: [Errno 27]": f"a file may have {size(LIMITS.file_bytes)}",
-    "OSError: [Errno 28]": "the folder for temporary files is full: there is little room in it",
+    "OSError: [Errno 27]": msg("a file may have {size}", size=size(LIMITS.file_bytes)),
+    "OSError: [Errno 28]": _FULL,
     "RuntimeError: can't start new thread": _TASKS,
-    "BlockingIOError: [Errno 11]": f"{_TASKS}, if that was one more",
+    "BlockingIOError: [Errno 11]": msg("{limit}, if that was one more", limit=_TASKS),
 }
+#: For the result of a run that was lost twice, with how the simulator ended and its last line.
+LOST_TWICE = msg(
+    "the simulator ended while the node was running, in both tries, and nothing was recorded: "
+    "{words}. What only drives cannot do that; if this node does nothing else, the grader is wrong"
+)
+LONGEST_WORDS = 200
 
 
-@dataclass(frozen=True)
-class Ending:
-    """What the grader knows of a run beside its trace; see `grader.recording.recording.Run`."""
+class Ending(NamedTuple):
+    """What the grader knows of a run beside its trace: how it went, and what was printed."""
 
-    time: Clock
-    outcome: Outcome
-    exit_code: int | None
-    wall_s: float
-    isolation: str
-    output: str
-    flags: tuple[str, ...] = ()
+    run: Run
+    output: str = ""
+
+    def with_flags(self, *flags: Message) -> Ending:
+        """The same with these remarks alone."""
+        return self._replace(run=replace(self.run, flags=flags))
 
 
 def ended(
     clock: Clock,
     submission: Submission,
-    process: Watched,
+    process: SubmissionProcess,
     isolation: str,
     since_s: float,
     how: Outcome,
     exit_code: int | None,
-    flags: tuple[str, ...] = (),
+    flags: tuple[Message, ...] = (),
 ) -> Ending:
-    """How a run ended of which nothing is to come.
+    """Return how a run ended that is over.
 
     Args:
         process: the submission's.
@@ -76,12 +96,14 @@ def ended(
     """
     output = submission.as_handed_in(process.output())
     struck = limits_struck(exit_code, output, process.excess)
-    flags = (*map(submission.as_handed_in, flags), *struck)
-    return Ending(clock, how, exit_code, time.monotonic() - since_s, isolation, output, flags)
+    flags = (*(flag.map_texts(submission.as_handed_in) for flag in flags), *struck)
+    wall_s = time.monotonic() - since_s
+    run = Run(clock, how, exit_code, wall_s=wall_s, isolation=isolation, flags=flags)
+    return Ending(run, output)
 
 
 def outcome(reason: Reason, exit_code: int | None) -> Outcome:
-    """How a run ended: what the simulator saw, and how the submission's process ended."""
+    """The outcome of a run, from what the simulator saw and how the submission's process ended."""
     if exit_code is None:
         return "finished" if reason in DONE else "time_limit"
     if exit_code < 0:
@@ -92,29 +114,46 @@ def outcome(reason: Reason, exit_code: int | None) -> Outcome:
 
 
 def not_run(plan: Plan) -> Recording:
-    """What is left of a run that was not begun: the grading had used up its budget."""
-    ending = Ending(
-        time="virtual",
-        outcome="not_run",
-        exit_code=None,
-        wall_s=0.0,
-        isolation="",
-        output="",
-        flags=(plan.budget.remark,),
-    )
-    return record(plan, load_scene(plan.scene).untouched(plan.start), (), ending)
+    """The recording of a run that was not begun: the grading had used up its budget."""
+    ending = Ending(Run("virtual", "not_run", flags=(plan.budget.remark,)))
+    return record(plan, load_subject(plan.scene).untouched(plan.start), (), ending)
 
 
-def limits_struck(exit_code: int | None, output: str, excess: str) -> tuple[str, ...]:
+class SimulatorLost(GraderFailure):
+    """The simulator's process ended, or left nothing to be read, beside a submission's.
+
+    Attributes:
+        ending: what is known of the run.
+    """
+
+    def __init__(self, failure: GraderFailure, ending: Ending) -> None:
+        super().__init__(failure.message)
+        self.ending = ending
+
+
+def recording_of_nothing(plan: Plan, lost: SimulatorLost) -> Recording:
+    """The recording of a run that was lost twice: nothing has happened in it."""
+    values = lost.message.values
+    how, last_words = str(values.get("how", lost.message)), str(values.get("last", ""))
+    # what stands in brackets is ROS's log, and has the submission's words in it
+    lines = [line for line in last_words.splitlines() if line and not line.startswith("[")]
+    told = [without_controls(text, "?")[:LONGEST_WORDS] for text in (how.rstrip("."), *lines[-1:])]
+    flags = (*lost.ending.run.flags, LOST_TWICE.given(words="; ".join(told)))
+    trace = load_subject(plan.scene).untouched(plan.start)
+    return record(plan, trace, (), lost.ending.with_flags(*flags))
+
+
+def limits_struck(exit_code: int | None, output: str, excess: Message) -> tuple[Message, ...]:
     """Remarks on what a submission was refused, or ended for, because a run may use no more.
 
-    What the grader has seen itself (`excess`) or the kernel tells by its signal is so. What a limit
-    has refused only the process knows: its last words are believed, since they excuse nothing.
+    What the grader has seen itself (`excess`), or the kernel shows by its signal, is a fact. What a
+    limit has refused only the process knows: its last lines are believed, since they excuse
+    nothing.
 
     Args:
         exit_code: of the submission's process; None if it still ran.
         output: what it has printed.
-        excess: of what it took too much, as seen from outside; '' if of nothing.
+        excess: of what it took too much, as seen from outside; nothing if of nothing.
     """
     if excess:
         return (excess,)
@@ -123,9 +162,9 @@ def limits_struck(exit_code: int | None, output: str, excess: str) -> tuple[str,
     if exit_code in SIGNALS:
         return (SIGNALS[exit_code],)
     last = output[-LAST_WORDS:].splitlines()[-MOST_LAST_LINES:]
-    for said, remark in LAST_LINES.items():
-        if any(line.strip().startswith(said) for line in last):
-            return (f"the node ended with {said}: {remark}",)
+    for error, remark in LAST_LINES.items():
+        if any(line.strip().startswith(error) for line in last):
+            return (msg("the node ended with {said}: {limit}", said=error, limit=remark),)
     return ()
 
 
@@ -134,27 +173,17 @@ def record(
     trace: Trace,
     topics: tuple[PublishedTopic, ...],
     ending: Ending,
-    conduct: Conduct = NOTHING_TOLD,
+    observations: Observations = NOTHING_TOLD,
 ) -> Recording:
-    """Everything about a run that is over."""
-    return Recording(
-        trace=trace,
-        run=Run(
-            time=ending.time,
-            outcome=ending.outcome,
-            exit_code=ending.exit_code,
-            ticks=trace.ticks,
-            simulated_s=trace.simulated_s,
-            wall_s=round(ending.wall_s, 3),
-            trace_sha256=trace.sha256(),
-            isolation=ending.isolation,
-            flags=(*ending.flags, *plan.flags),
-            seed=plan.seed,
-            interfaces=plan.interfaces,
-        ),
-        topics=topics,
-        output=ending.output,
-        start=plan.start,
-        scene=plan.scene,
-        conduct=conduct,
+    """Put together the recording of a run that is over."""
+    run = replace(
+        ending.run,
+        ticks=trace.ticks,
+        simulated_s=trace.duration_ns / 1e9,
+        wall_s=round(ending.run.wall_s, 3),
+        trace_sha256=trace.sha256(),
+        flags=(*ending.run.flags, *plan.flags),
+        seed=plan.seed,
+        interfaces=plan.interfaces,
     )
+    return Recording(trace, run, topics, ending.output, plan.start, plan.scene, observations)

@@ -1,58 +1,121 @@
-"""The file in which the simulator's process leaves what it has recorded.
+"""What the grader and a simulator's process hand each other: a run's plan, and its recording.
 
-The topics as JSON, behind its length in eight bytes; then the trace (`grader.scenes.transfer`).
-Nothing is unpickled: whoever wrote the file could have the grader do as he likes.
+The plan is an argument. The recording is left in a file: its topics as JSON, behind their length in
+eight bytes, then the trace (`grader.recording.transfer`). Nothing is unpickled: a pickle could have
+the grader do anything.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from struct import Struct
+from typing import Self
 
+from grader import strict_json
 from grader.errors import GraderFailure
-from grader.language.phrase import say
+from grader.message import Message
+from grader.recording import transfer
 from grader.recording.recording import PublishedTopic
-from grader.scenes import transfer
-from grader.scenes.scene import Scene, Trace
+from grader.recording.subject import Start, Trace
+from grader.run.limits import RECORDING_BYTES, CpuBudget
+from grader.scenes.scene import Limits, Scene
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One run.
+
+    Attributes:
+        limits: when it ends.
+        start: where it begins; None for the scene's usual place.
+        scene: the name of what runs beside the submission.
+        seed: of the varied runs that this one has beside it, for the record.
+        flags: remarks that are known before it begins.
+        interfaces: those that the submission was written for, where the scene has several; '' for
+            its usual ones.
+        setting: what the exercise sets the scene up with; '' for nothing.
+        looks_at_package: whether the package around the submission's program is inspected as well.
+        budget: the one of the whole grading, which the simulator's process does not know.
+    """
+
+    limits: Limits
+    start: Start | None = None
+    scene: str = "turtlesim"
+    seed: int | None = None
+    flags: tuple[Message, ...] = ()
+    interfaces: str = ""
+    setting: str = ""
+    looks_at_package: bool = False
+    budget: CpuBudget = field(
+        default_factory=CpuBudget, compare=False, metadata=strict_json.UNSTORED
+    )
+
+    def to_json(self) -> str:
+        """As an argument of the simulator's process."""
+        return json.dumps(strict_json.to_json(self, strict_json.OURS))
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """The plan that `to_json` has written.
+
+        Raises:
+            ValueError: it has written none such.
+        """
+        return strict_json.from_json(cls, json.loads(text), strict_json.OURS)
+
+
+# The recording --------------------------------------------------------------------------------
 
 _LENGTH = Struct("<Q")
-#: More than any run leaves; the grader's process holds it a few times over.
-MOST_BYTES = 256_000_000
+#: Every node has these, and ROS publishes on them by itself.
+USUAL = ("/rosout", "/parameter_events")
 
 
-def leave(path: Path, scene: Scene, trace: Trace, topics: tuple[PublishedTopic, ...]) -> None:
-    """In the simulator's process: write it."""
-    facts = json.dumps([asdict(topic) for topic in topics]).encode()
+def leave(path: Path, scene: Scene, trace: Trace, published: Mapping[str, str]) -> None:
+    """Write the file, in the simulator's process.
+
+    Args:
+        published: on which topics the submission has published: topic -> type.
+    """
+    topics = {topic: kind for topic, kind in sorted(published.items()) if topic not in USUAL}
+    facts = json.dumps(topics).encode()
     path.write_bytes(_LENGTH.pack(len(facts)) + facts + transfer.pack(trace, scene))
 
 
-def _topic(words: dict[str, str]) -> PublishedTopic:
-    topic = PublishedTopic(**words)
-    if not isinstance(topic.topic, str) or not isinstance(topic.type, str):
-        raise TypeError("a topic and its type are texts")
-    return topic
-
-
 def fetch(file: int, scene: Scene) -> tuple[Trace, tuple[PublishedTopic, ...]]:
-    """In the grader's process: read it from an open file descriptor.
+    """Read the file from an open descriptor, in the grader's process.
 
     Raises:
         GraderFailure: it is not what `leave` writes.
     """
     try:
-        with open(file, "rb", closefd=False) as opened:
-            opened.seek(0)
-            data = opened.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            raise ValueError(f"more than {MOST_BYTES} bytes")
+        data = read_bounded(file, RECORDING_BYTES)
         (length,) = _LENGTH.unpack_from(data)
         end = _LENGTH.size + length
         # of bytes, json.loads would guess the encoding
-        topics = tuple(map(_topic, json.loads(data[_LENGTH.size : end].decode("utf-8"))))
-        return transfer.unpack(data[end:], scene), topics
+        text = data[_LENGTH.size : end].decode("utf-8")
+        topics = strict_json.from_json(dict[str, str], json.loads(text), strict_json.OURS)
+        trace = transfer.unpack(data[end:], scene)
+        return trace, tuple(PublishedTopic(topic, kind) for topic, kind in topics.items())
     except Exception as error:
         raise GraderFailure(
-            say("the simulator left no recording: {why}", why=str(error)[:200])
+            "the simulator left no recording: {why}", why=str(error)[:200]
         ) from error
+
+
+def read_bounded(file: int, most_bytes: int) -> bytes:
+    """Return all that an open file holds.
+
+    Raises:
+        ValueError: it is more than `most_bytes`.
+        OSError: it cannot be read.
+    """
+    with open(file, "rb", closefd=False) as opened:
+        opened.seek(0)
+        data = opened.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise ValueError(f"more than {most_bytes} bytes")
+    return data

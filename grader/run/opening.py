@@ -1,27 +1,31 @@
-"""`open_submission`: what was handed in, and what of it to start.
+"""`open_submission`: what was handed in — a file, a folder, a package, an archive — and its start.
 
-A single file is found without running anything. What a package has to start, its set-up and launch
-files say, so they are evaluated first, by one look in a process of the submission's
-(`static.inspect`).
+Nothing of it is read in this process: a file can be made so that its parser takes all memory, or
+falls over. `grader.submission.finding` has the rules, and goes by them in a process with limits. A
+single file is found without running anything. What a package has to start stands in its set-up and
+launch files, so an inspection evaluates them in between, in a process of the submission's.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.language.phrase import say
-from grader.run.budget import Budget
-from grader.submission import opening
+from grader.message import NOTHING, Message
+from grader.run.limits import CpuBudget
+from grader.scratch import make_folder
+from grader.submission import reader
 from grader.submission.folder import USUAL_NAME
-from grader.submission.opening import EntryPoint, Seen, Submission
+from grader.submission.private_copy import PrivateCopy, copy_privately
+from grader.submission.set_ups import NotInspected
+from grader.submission.start import EntryPoint, Script, Submission, Whole
 
 if TYPE_CHECKING:
-    from grader.scenes.package.inspection import Inspection
+    from grader.scenes.package.trace import PackageTrace
 
 
 @contextmanager
@@ -38,12 +42,11 @@ def open_submission(
 
     `executable` chooses among the console scripts or Python files of a folder or zip; a single
     .py file leaves no choice. Without it, `usual` is taken where there are several. Where nothing
-    is started (`is_started`), all of it is taken, which must be a folder or an archive with a
-    package; `executable` then chooses among packages.
+    is started (`is_started`), the submission is all of it, a folder or an archive with a package;
+    `executable` then chooses among packages.
 
     Args:
-        is_whole: whether the package around what is started is looked at as well, which is done
-            by the same look.
+        is_whole: whether the same inspection looks at the whole package around what is started.
         cpu_s: the processor time that it may take [s].
 
     Raises:
@@ -52,45 +55,61 @@ def open_submission(
         OSError: something is wrong with the machine.
         GraderFailure: it could not be read or inspected, for a reason of ours.
     """
-    inspected: list[Inspection] = []
-
-    def inspect(submission: Submission, folders: Sequence[str], program: str) -> Seen:
-        from grader.run import static  # here: most submissions are a file
-        from grader.scenes.package.inspection import encode
-
-        budget = Budget(cpu_s)
-        said, remarks = static.inspect(submission, folders, program, budget, is_whole=is_whole)
-        inspected.append(said)
-        whole = said.trace if is_whole and said.trace.setup is not None else None
-        return Seen(encode(said), remarks, budget.spent_s, said.package, whole)
-
-    with opening.opened(
-        path, executable, inspect, is_started=is_started, usual=usual
-    ) as submission:
-        if inspected and not is_whole:  # a whole look is told of with the run
-            submission = replace(
-                submission, notes=(*submission.notes, *_unlike(submission, inspected[0]))
-            )
-        yield submission
+    with make_folder() as folder:
+        scratch = folder.resolve() / "submission"
+        scratch.mkdir()
+        try:
+            found = reader.read(path, executable, scratch, is_started=is_started, usual=usual)
+        except NotInspected as asked:
+            budget = CpuBudget(cpu_s)
+            found, copy = _inspected(path, executable, scratch, usual, asked, budget, is_whole)
+        else:
+            copy = copy_privately(path, found.root, scratch)
+        yield _in_private(found, copy)
 
 
-def _unlike(submission: Submission, said: Inspection) -> Iterator[str]:
-    """In what the start of a program by itself differs from what launch files make of it."""
-    from grader.scenes.package.by_itself import unlike_launched
-    from grader.scenes.package.said import said as told
+def _inspected(
+    path: Path,
+    executable: str | None,
+    scratch: Path,
+    usual: str,
+    asked: NotInspected,
+    budget: CpuBudget,
+    is_whole: bool,
+) -> tuple[Submission, PrivateCopy]:
+    """A package as it is started by what an inspection says of it, and the copy of it."""
+    from grader.run import inspecting  # here: most submissions are a file
 
-    start, setup = submission.start, said.trace.setup
-    if not isinstance(start, EntryPoint) or setup is None:
-        return
-    target = (start.module, start.function)
-    name = next((s.name for s in setup.scripts if (s.module, s.function) == target), "")
-    for launch in said.trace.launches:
-        if name and launch.problem is not None:
-            yield say(
-                "{file} was not run, and what it starts cannot be read ({unread}): "
-                "judged is {program} alone",
-                file=launch.file,
-                unread=told(launch.problem),
-                program=name,
-            )
-    yield from unlike_launched(said.trace, *target)
+    copy = copy_privately(path, asked.base, scratch)
+    everything = Submission(path.name, copy.of(asked.base), Whole(), NOTHING, copy=copy)
+    said, remarks = inspecting.inspect(
+        everything, asked.folders, executable or usual, budget, is_whole=is_whole
+    )
+    found = reader.read(path, executable, scratch, usual=usual, again=(asked, said))
+    notes = (*remarks, *found.notes)
+    if not is_whole:  # else that is reported with the run
+        notes = (*notes, *_by_itself(found, said.trace))
+    elif said.trace.setup and found.package == asked.base / said.package and not found.added:
+        found = replace(found, seen=said.trace)
+    if found.added:  # it was mended in a copy of its own
+        copy = copy_privately(path, found.root, scratch)
+    return replace(found, notes=notes, spent_s=budget.spent_s), copy
+
+
+def _in_private(submission: Submission, copy: PrivateCopy) -> Submission:
+    """The same in a copy of its own."""
+    start = submission.start
+    if isinstance(start, Script):
+        start = replace(start, path=copy.of(start.path))
+    root, package = copy.of(submission.root), submission.package and copy.of(submission.package)
+    return replace(submission, root=root, start=start, package=package, copy=copy)
+
+
+def _by_itself(submission: Submission, trace: PackageTrace) -> list[Message]:
+    """Notes on how a program started by itself differs from what launch files make of it."""
+    from grader.scenes.package.by_itself import not_read, unlike_launched
+
+    if not isinstance(submission.start, EntryPoint):
+        return []
+    target = submission.start.module, submission.start.function
+    return [*not_read(trace, *target), *unlike_launched(trace, *target)]

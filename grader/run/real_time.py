@@ -9,28 +9,32 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from grader import usage
+from grader import linux
 from grader.errors import GraderFailure, NotNow
+from grader.message import Message
 from grader.recording.recording import Recording
-from grader.run import evidence, handover, stage
-from grader.run.audience import Audience, seats
+from grader.run import evidence, handover, run_context
 from grader.run.environment import student_environment
-from grader.run.finish import ended, outcome, record
-from grader.run.lost import SimulatorLost
-from grader.run.plan import Plan
-from grader.run.processes.watched import Watched
-from grader.run.simulator_process import Message, Simulator, start_simulator
+from grader.run.finish import SimulatorLost, ended, outcome, record
+from grader.run.handover import Plan
+from grader.run.limits import FIRST_NODE_S
+from grader.run.processes.started_process import SubmissionProcess
+from grader.run.simulator_process import (
+    Audience,
+    Simulator,
+    SimulatorMessage,
+    live_feed,
+    start_simulator,
+)
 from grader.scenes import load_scene
 from grader.scenes.scene import Introduction
-from grader.submission.opening import Launch, Submission
+from grader.submission.start import Submission
 
 #: Told the simulated time [s] now and then.
 Progress = Callable[[float], None]
 
 #: A program that used so much of the run's time on a processor has computed rather than waited.
 COMPUTES = 0.5
-#: How long the clock of the run waits for the submission's first node [s].
-FIRST_NODE_S = 8.0
 #: Where what runs as the submission's process is.
 STUDENT = Path(__file__).with_name("student")
 #: What runs as the simulator's process.
@@ -42,14 +46,12 @@ def run(
     plan: Plan,
     progress: Progress | None = None,
     audience: Audience | None = None,
-    first_node_s: float = FIRST_NODE_S,
 ) -> Recording:
     """Run a submission once beside a simulator of its own.
 
     Args:
         progress: called about once a second with the simulated time [s].
-        audience: who looks on; at no other speed than this.
-        first_node_s: how long the clock of the run waits for its first node [s].
+        audience: receives the run live, at no other speed than this.
 
     Raises:
         GraderFailure: the simulator could not be started.
@@ -58,57 +60,56 @@ def run(
     started = time.monotonic()
     scene = load_scene(plan.scene)
     with (
-        stage.open_stage(plan.budget) as place,
+        run_context.open_context(plan.budget) as context,
         evidence.open_evidence() as told,
-        seats(audience, plan, "real") as seat,
-        start_simulator(MODULE, place, plan, None, str(first_node_s), seat=seat) as simulator,
+        live_feed(audience, plan, "real") as feed,
+        start_simulator(MODULE, context, plan, (), str(FIRST_NODE_S), feed=feed) as simulator,
     ):
-        seat.taken()
         simulator.expect("ready")
-        submission, student = place.start(
+        submission, student = context.start(
             submission,
-            lambda own: command(own, scene.introduction, told.page),
+            lambda private: command(private, scene.introduction, told.page),
             (told.page,),
             student_environment({}),
         )
-        ending = partial(ended, "real", submission, student, place.isolation, started)
+        ending = partial(ended, "real", submission, student, context.isolation, started)
         began_s = time.monotonic()
         try:
-            try:
+            with student.ended_at_exit():
                 done, exit_code, ended_s = _watch(simulator, student, progress)
                 ended_s -= began_s
-                computes = usage.look(student.pid).cpu_s > COMPUTES * ended_s
+                computes = linux.process_stat(student.pid).cpu_s > COMPUTES * ended_s
                 if exit_code is None:
                     told.ask(student.pid)
                 told.close()  # what comes then is how it ends when it is told to
-            finally:
-                student.end()
-            trace, topics = handover.fetch(place.recording, scene)
+            trace, topics = handover.fetch(context.recording, scene)
         except NotNow:  # it was never started
             raise
         except GraderFailure as failure:
             raise SimulatorLost(failure, ending("killed", None)) from failure
     how = outcome(done["reason"], exit_code)
-    conduct = told.conduct(submission, ended_s, computes=computes)
-    return record(plan, trace, topics, ending(how, exit_code, tuple(done["flags"])), conduct)
+    observations = told.observations(submission, ended_s, computes=computes)
+    flags = tuple(map(Message.parse, done["flags"]))
+    return record(plan, trace, topics, ending(how, exit_code, flags), observations)
 
 
 def command(submission: Submission, introduction: Introduction, page: int) -> list[str]:
-    """How the submission's process is started."""
+    """The command of the submission's process."""
     awaited = json.dumps([introduction.topics, introduction.services])
-    words = [awaited, str(page), *stage.target(submission)]
-    program = "launched.py" if isinstance(submission.start, Launch) else "main.py"
-    return [sys.executable, str(STUDENT / program), *words]
+    words = [awaited, str(page), *run_context.start_arguments(submission)]
+    return [sys.executable, str(STUDENT / "main.py"), *words]
 
 
 def _watch(
-    simulator: Simulator, student: Watched, progress: Progress | None
-) -> tuple[Message, int | None, float]:
-    """Start the clock of the run, wait for its end: how it came, the student's exit code, and when.
+    simulator: Simulator, student: SubmissionProcess, progress: Progress | None
+) -> tuple[SimulatorMessage, int | None, float]:
+    """Start the clock of the run and wait for its end.
 
-    When the student's process ended, or the run: on the machine's monotonic clock [s].
+    Returns:
+        The simulator's last message; the exit code of the submission's process; when that, or the
+        run, ended, on the machine's monotonic clock [s].
     """
-    simulator.say("start")
+    simulator.send("start")
     exit_code: int | None = None
     ended_s = 0.0
     while True:
@@ -119,4 +120,4 @@ def _watch(
             progress(message["seconds"])
         if exit_code is None and (exit_code := student.poll()) is not None:
             ended_s = time.monotonic()
-            simulator.say("exited")
+            simulator.send("exited")

@@ -1,4 +1,8 @@
-"""The simulator's process as the grader sees it: started, talked with, ended."""
+"""The simulator's process from the grader's side: start it, exchange messages, end it.
+
+While a run goes on it also reports to an audience, over a socket of its own. Nothing goes the other
+way there, so what is recorded does not depend on it. The submission's process has neither end.
+"""
 
 from __future__ import annotations
 
@@ -6,32 +10,37 @@ import json
 import selectors
 import socket
 import sys
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, Protocol
 
 from grader.errors import GraderFailure
-from grader.language.phrase import say
-from grader.run.audience import NOBODY, Seat
+from grader.message import Message, msg
+from grader.recording.recording import Clock
 from grader.run.environment import simulator_environment
-from grader.run.plan import Plan
-from grader.run.processes.line import Line
-from grader.run.processes.watched import Watched
-from grader.run.processes.zygote import Zygote
-from grader.run.stage import Stage
+from grader.run.handover import Plan
+from grader.run.limits import SIMULATOR_S
+from grader.run.processes.fork_server import ForkServer
+from grader.run.processes.fork_server_main import ProcessCommand
+from grader.run.processes.started_process import StartedProcess
+from grader.run.run_context import RunContext
+from grader.run.simulator.process import say
 
-#: How long the simulator may take to come up, and to save the recording [s].
-SIMULATOR_PATIENCE_S = 60.0
-
-Message = dict[str, Any]
+SimulatorMessage = dict[str, Any]
+#: News of so long travels together [s]: 31 times a second.
+TOGETHER_S: Final = 0.032
+#: The most that is read at once, and the longest line [bytes].
+CHUNK_BYTES, LONGEST_BYTES = 1 << 20, 64_000_000
 
 
 class Simulator:
-    """The simulator's process, and the line to it."""
+    """The simulator's process, and the socket over which the grader talks with it."""
 
-    def __init__(self, process: Watched, ours: socket.socket) -> None:
+    def __init__(self, process: StartedProcess, ours: socket.socket) -> None:
         #: whether a submission has something to do with it
         self.is_driven = False
         self._process = process
@@ -49,33 +58,33 @@ class Simulator:
         Raises:
             GraderFailure: another one comes, none comes in time, or the simulator dies.
         """
-        deadline = time.monotonic() + SIMULATOR_PATIENCE_S
+        deadline = time.monotonic() + SIMULATOR_S
         while (message := self.next(0.2)) is None:
             if time.monotonic() > deadline:
                 raise self.failure(
-                    say(
+                    msg(
                         "did not say {what!r} in {seconds:.0f} s",
                         what=what,
-                        seconds=SIMULATOR_PATIENCE_S,
+                        seconds=SIMULATOR_S,
                     )
                 )
         if message["say"] != what:
             raise self.failure(
-                say("said {message!r} where {what!r} was expected", message=message, what=what)
+                msg("said {message} where {what!r} was expected", message=repr(message), what=what)
             )
 
-    def say(self, what: str) -> None:
-        """Tell it something.
+    def send(self, what: str) -> None:
+        """Send it a message.
 
         Raises:
             GraderFailure: it does not listen.
         """
         try:
-            self._socket.sendall(json.dumps({"say": what}).encode() + b"\n")
+            say(self._socket, what)
         except OSError:
-            raise self.failure("stopped listening") from None
+            raise self.failure(msg("stopped listening")) from None
 
-    def next(self, patience_s: float) -> Message | None:
+    def next(self, patience_s: float) -> SimulatorMessage | None:
         """The next message, or None if there is none yet.
 
         Raises:
@@ -91,56 +100,142 @@ class Simulator:
             except ConnectionError:
                 chunk = b""
             if not chunk:
-                raise self.failure("died")
+                raise self.failure(msg("died"))
             self._text += chunk
             return None
         line, _, self._text = self._text.partition(b"\n")
-        message: Message = json.loads(line)
+        message: SimulatorMessage = json.loads(line)
         return message
 
-    def failure(self, what: str) -> GraderFailure:
+    def failure(self, what: Message) -> GraderFailure:
         """The exception for a simulator that did not do its work."""
         code = self._process.wait(2.0)
-        state = say("it still runs") if code is None else say("its exit code is {code}", code=code)
-        last = self._process.output().strip() or say("(it printed nothing)")
+        state = msg("it still runs") if code is None else msg("its exit code is {code}", code=code)
+        last = self._process.output().strip()[-2000:]
         return GraderFailure(
-            say(
-                "the simulator {what}; {state}. Its last words:\n{last}",
-                what=what,
-                state=state,
-                last=last[-2000:],
-            )
+            "{how}. Its last words:\n{last}",
+            how=msg("the simulator {what}; {state}", what=what, state=state),
+            last=last or msg("(it printed nothing)"),
         )
+
+
+# What an audience sees ------------------------------------------------------------------------
+
+
+class Audience(Protocol):
+    """Somebody who watches runs, one after the other."""
+
+    @property
+    def speed(self) -> float | None:
+        """How many times as fast as in real time virtual time goes; None: as fast as it can."""
+
+    def begins(self, plan: Plan, time: Clock) -> None:
+        """A run begins by this clock; another one of the same plan, where the first was in vain."""
+
+    def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
+        """Receive what is to be seen of the run, in order; called in a thread of its own."""
+
+    def ends(self, is_whole: bool) -> None:
+        """Nothing more comes of this run; `is_whole`: and nothing was left out."""
+
+
+@dataclass(frozen=True)
+class LiveFeed:
+    """What the simulator's process needs to report on a run while it goes on.
+
+    Attributes:
+        argument: an argument of it; '' where there is no audience.
+        fds: descriptors that it inherits.
+    """
+
+    argument: str = ""
+    fds: tuple[int, ...] = ()
+
+
+NO_FEED: Final = LiveFeed()
+
+
+@contextmanager
+def live_feed(audience: Audience | None, plan: Plan, time: Clock) -> Iterator[LiveFeed]:
+    """Open the feed of a run; leaving the context waits until the audience has all of it."""
+    if audience is None:
+        yield NO_FEED
+        return
+    ours, theirs = socket.socketpair()
+    ours.shutdown(socket.SHUT_WR)
+    audience.begins(plan, time)
+    listener = threading.Thread(target=_listen, args=(ours, audience), name="audience", daemon=True)
+    listener.start()
+    try:
+        with theirs:
+            argument = json.dumps({"descriptor": theirs.fileno(), "speed": audience.speed})
+            yield LiveFeed(argument, (theirs.fileno(),))
+    finally:
+        listener.join()
+
+
+def _listen(ours: socket.socket, audience: Audience) -> None:
+    """Pass on what comes until the other end is closed."""
+    pause = threading.Event()
+    text, is_whole = b"", False
+    try:
+        with ours:  # the simulator does not wait for an audience that has left
+            while len(text) < LONGEST_BYTES and (chunk := _more(ours)):
+                *lines, text = (text + chunk).split(b"\n")
+                news = [json.loads(line) for line in lines]
+                audience.hear([each for each in news if "over" not in each])
+                is_whole = bool(news) and "over" in news[-1]
+                if len(chunk) < CHUNK_BYTES and not is_whole:
+                    pause.wait(TOGETHER_S)
+    finally:
+        audience.ends(is_whole)
+
+
+def _more(ours: socket.socket) -> bytes:
+    try:
+        return ours.recv(CHUNK_BYTES)
+    except ConnectionError:
+        return b""
+
+
+# Its start ------------------------------------------------------------------------------------
 
 
 @contextmanager
 def start_simulator(
     module: str,
-    stage: Stage,
+    context: RunContext,
     plan: Plan,
-    link: socket.socket | None = None,
+    shared: Sequence[int] = (),
     *more: str,
-    zygote: Zygote | None = None,
-    seat: Seat = NOBODY,
+    server: ForkServer | None = None,
+    feed: LiveFeed = NO_FEED,
 ) -> Iterator[Simulator]:
     """Start `module` as the simulator's process.
 
     Args:
-        link: inherited as well; its number follows the first three arguments.
+        shared: descriptors that it inherits as well; their numbers follow the first three
+            arguments.
         more: further arguments.
-        seat: how it is told that somebody looks on; the last argument.
-        zygote: what it is forked from, if that can be.
+        server: what it is forked from, if that can be.
+        feed: for its reports on the run while it goes on; its argument comes last.
     """
-    with Line() as line:
-        links = [link.fileno()] if link else []
-        words = [line.word, stage.recording_path, plan.to_json(), *map(str, links), *more]
-        command = [sys.executable, "-m", module, *words, seat.word]
-        env = simulator_environment(stage.env)
-        folder = stage.simulator_folder
-        fds = (*line.fds, *links, stage.recording, folder, *seat.fds)
-        here = Path(f"/proc/self/fd/{folder}")
-        process = Watched(command, env, here, fds, stage.namespaces, zygote)
-        try:
-            yield Simulator(process, line.connect())
-        finally:
-            process.end()
+    ours, theirs = socket.socketpair()
+    with ours:
+        with theirs:
+            control, *others = map(str, (theirs.fileno(), *shared))
+            # /proc/self is the simulator's by then
+            recording = f"/proc/self/fd/{context.recording}"
+            here = Path(f"/proc/self/fd/{context.simulator_folder}")
+            fds = (theirs.fileno(), *shared, context.recording, context.simulator_folder)
+            words = [control, recording, plan.to_json(), *others, *more, feed.argument]
+            command = ProcessCommand(
+                [sys.executable, "-m", module, *words],
+                simulator_environment(context.env),
+                here,
+                (*fds, *feed.fds),
+                context.namespaces,
+            )
+            process = StartedProcess(command, server)
+        with process.ended_at_exit():
+            yield Simulator(process, ours)

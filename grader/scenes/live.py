@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from grader.scenes.playback import Judged
+from grader.recording.playback import JudgedCheck
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Grading:
     run: str = ""
     score: str = ""
     first: str = ""
-    judged: tuple[Judged, ...] = ()
+    judged: tuple[JudgedCheck, ...] = ()
     is_over: bool = False
 
 

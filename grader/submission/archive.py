@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say
+from grader.message import Message, as_message, msg, plain_text
 from grader.submission import tar_archive, zip_archive
 from grader.submission.archive_members import PACK_AGAIN, Budget, ListTooLong, write
 from grader.submission.folder import MAX_BYTES, shown
@@ -46,17 +46,15 @@ def unpack(archive: Path, into: Path, budget: Budget) -> None:
     size = archive.stat().st_size
     if size == 0:
         raise SubmissionError(
-            say("{name} is empty (0 bytes). {pack_again}", name=name, pack_again=PACK_AGAIN)
+            "{name} is empty (0 bytes). {pack_again}", name=name, pack_again=PACK_AGAIN
         )
     if size > MAX_BYTES:
         raise SubmissionError(
-            say(
-                "{name} has more than {max_bytes:g} MB, the limit for a submission. "
-                "Leave out recordings, videos and virtual environments, and pack it "
-                "again.",
-                name=name,
-                max_bytes=MAX_BYTES / 1e6,
-            )
+            "{name} has more than {max_bytes:g} MB, the limit for a submission. "
+            "Leave out recordings, videos and virtual environments, and pack it "
+            "again.",
+            name=name,
+            max_bytes=MAX_BYTES / 1e6,
         )
     is_zip = archive.suffix.lower() == ".zip"
     kind = "zip" if is_zip else "tar"
@@ -69,37 +67,33 @@ def unpack(archive: Path, into: Path, budget: Budget) -> None:
             write(name, members, into, budget)
     except ListTooLong as error:
         raise SubmissionError(
-            say(
-                "{name} lists too many files, or too long names: {error}. {pack_again}",
-                name=name,
-                error=error.args[0],
-                pack_again=PACK_AGAIN,
-            )
+            "{name} lists too many files, or too long names: {error}. {pack_again}",
+            name=name,
+            error=error.args[0],
+            pack_again=PACK_AGAIN,
         ) from error
     except NotImplementedError as error:
         raise SubmissionError(
-            say(
-                "{name} is packed in a way that cannot be read here ({why}). {pack_again}",
-                name=name,
-                why=shown(str(error)),
-                pack_again=PACK_AGAIN,
-            )
+            "{name} is packed in a way that cannot be read here ({why}). {pack_again}",
+            name=name,
+            why=shown(str(error)),
+            pack_again=PACK_AGAIN,
         ) from error
     except DAMAGED as error:
-        raise _damaged(name, kind, shown(str(error)) or say("it ends too early")) from error
+        raise _damaged(
+            name, kind, as_message(shown(str(error))) or msg("it ends too early")
+        ) from error
     except OSError as error:
         if error.errno not in _DAMAGED_ERRNOS:
             raise
-        raise _damaged(name, kind, shown(error.strerror or str(error))) from error
+        raise _damaged(name, kind, plain_text(shown(error.strerror or str(error)))) from error
 
 
-def _damaged(name: str, kind: str, why: str) -> SubmissionError:
+def _damaged(name: str, kind: str, why: Message) -> SubmissionError:
     return SubmissionError(
-        say(
-            "{name} cannot be unpacked as a {kind} file: {why}. {pack_again}",
-            name=name,
-            kind=kind,
-            why=why,
-            pack_again=PACK_AGAIN,
-        )
+        "{name} cannot be unpacked as a {kind} file: {why}. {pack_again}",
+        name=name,
+        kind=kind,
+        why=why,
+        pack_again=PACK_AGAIN,
     )

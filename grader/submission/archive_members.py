@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import joined, say
+from grader.message import Message, joined, msg
 from grader.submission.folder import (
     BEGINNING_BYTES,
     MAX_BYTES,
@@ -24,7 +24,7 @@ from grader.submission.folder import (
 
 MAX_MEMBERS: Final = 10_000  # but for caches, venvs and colcon's output
 MAX_NAME: Final = 1_000  # characters, with all folders; a path on disk may have a few more
-PACK_AGAIN: Final = say("Pack your .py file or package folder into a new .zip and hand that in.")
+PACK_AGAIN: Final = msg("Pack your .py file or package folder into a new .zip and hand that in.")
 
 _CHUNK_BYTES: Final = 1 << 16
 
@@ -36,13 +36,13 @@ class Member:
     Attributes:
         name: as it stands there.
         is_folder: it holds nothing itself.
-        refusal: what is wrong with it, as what follows the archive's name; '' for a plain file.
+        refusal: what is wrong with it, if anything, as what follows the archive's name.
         open: gives what is in it.
     """
 
     name: str
     is_folder: bool
-    refusal: str
+    refusal: Message
     open: Callable[[], IO[bytes]]
 
 
@@ -58,7 +58,7 @@ class Bounded(io.BufferedReader):
         why: of the refusal.
     """
 
-    def __init__(self, path: Path, most: int, why: str) -> None:
+    def __init__(self, path: Path, most: int, why: Message) -> None:
         super().__init__(io.FileIO(path))
         self._most, self._why = most, why
 
@@ -92,13 +92,11 @@ class Budget:
         self._bytes_left -= count
         if self._bytes_left < 0:
             raise SubmissionError(
-                say(
-                    "{name} unpacks to more than {all_bytes:g} MB, the limit for a "
-                    "submission. Leave out recordings, videos and virtual environments, and"
-                    " pack it again.",
-                    name=name,
-                    all_bytes=self._all_bytes / 1e6,
-                )
+                "{name} unpacks to more than {all_bytes:g} MB, the limit for a "
+                "submission. Leave out recordings, videos and virtual environments, and"
+                " pack it again.",
+                name=name,
+                all_bytes=self._all_bytes / 1e6,
             )
 
     def take_files(self, name: str, count: int) -> None:
@@ -110,14 +108,12 @@ class Budget:
         self._files_left -= count
         if self._files_left < 0:
             raise SubmissionError(
-                say(
-                    "{name} holds {count:,} files; the limit for a submission is "
-                    "{all_files:,}. {pack_again}",
-                    name=name,
-                    count=count,
-                    all_files=self._all_files,
-                    pack_again=PACK_AGAIN,
-                )
+                "{name} holds {count:,} files; the limit for a submission is "
+                "{all_files:,}. {pack_again}",
+                name=name,
+                count=count,
+                all_files=self._all_files,
+                pack_again=PACK_AGAIN,
             )
 
 
@@ -156,11 +152,9 @@ def _chosen(
     ]
     if not chosen:
         raise SubmissionError(
-            say(
-                "{name} is an empty archive: it holds no files. {pack_again}",
-                name=name,
-                pack_again=PACK_AGAIN,
-            )
+            "{name} is an empty archive: it holds no files. {pack_again}",
+            name=name,
+            pack_again=PACK_AGAIN,
         )
     budget.take_files(name, len(chosen))
     for _, member in chosen:
@@ -182,25 +176,20 @@ def _inside(name: str, member: str) -> PurePosixPath:
     text = member.replace("\\", "/")
     if len(text) > MAX_NAME:
         raise SubmissionError(
-            say(
-                "{name} holds a name of {length:,} characters ({member}); the limit is "
-                "{max_name:,}. {pack_again}",
-                name=name,
-                length=len(text),
-                member=shown(member),
-                max_name=MAX_NAME,
-                pack_again=PACK_AGAIN,
-            )
+            "{name} holds a name of {length:,} characters ({member}); the limit is "
+            "{max_name:,}. {pack_again}",
+            name=name,
+            length=len(text),
+            member=shown(member),
+            max_name=MAX_NAME,
+            pack_again=PACK_AGAIN,
         )
     path = PurePosixPath(text)
     if path.is_absolute() or ".." in path.parts or re.match("[A-Za-z]:/", text):
         raise SubmissionError(
-            say(
-                "{name} holds {member}, which would be written outside of its own "
-                "folder. {pack_again}",
-                name=name,
-                member=shown(member),
-                pack_again=PACK_AGAIN,
-            )
+            "{name} holds {member}, which would be written outside of its own folder. {pack_again}",
+            name=name,
+            member=shown(member),
+            pack_again=PACK_AGAIN,
         )
     return path

@@ -11,15 +11,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from grader.language.phrase import say
-from grader.submission.folder import HandedIn, listed, shown
+from grader.message import Message, msg
+from grader.submission.folder import HandedInFolder, listed, shown
 from grader.submission.manifest import FILE, Manifest, read_manifest
-from grader.submission.set_ups import ConsoleScript, Package
+from grader.submission.set_ups import ConsoleScript, PackageFolder
 
 
 def shortcomings(
-    handed_in: HandedIn, package: Package, script: ConsoleScript | None
-) -> Iterator[str]:
+    handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript | None
+) -> Iterator[Message]:
     """A sentence on each, without a point at its end.
 
     Args:
@@ -37,7 +37,7 @@ def shortcomings(
         return
     manifest = None
     if not (folder / FILE).is_file():
-        why = say("no {file} beside {other}", file=FILE, other=handed_in.called(setup_py))
+        why = msg("no {file} beside {other}", file=FILE, other=handed_in.called(setup_py))
         yield _not_built(why) if FILE in _installed(package) else _not_found(why)
     elif (manifest := read_manifest(folder / FILE)) is not None:
         yield from _of_manifest(manifest, handed_in.called(folder / FILE))
@@ -46,21 +46,21 @@ def shortcomings(
         yield from _of_place(handed_in, package, manifest.name)
 
 
-def _of_manifest(manifest: Manifest, called: str) -> Iterator[str]:
+def _of_manifest(manifest: Manifest, called: str) -> Iterator[Message]:
     if manifest.fault:
         yield _not_found(
-            say(
+            msg(
                 "{file} {fault}, so that colcon takes it for no ROS package",
                 file=called,
                 fault=manifest.fault,
             )
         )
     elif manifest.build_type is not None and manifest.build_type != "ament_python":
-        named = say("no build type")
+        named = msg("no build type")
         if manifest.build_type:
-            named = say("the build type {name}", name=shown(manifest.build_type))
+            named = msg("the build type {name}", name=shown(manifest.build_type))
         yield _not_built(
-            say(
+            msg(
                 "{file} names {named}; expected <build_type>ament_python</build_type> in <export>",
                 file=called,
                 named=named,
@@ -68,13 +68,15 @@ def _of_manifest(manifest: Manifest, called: str) -> Iterator[str]:
         )
 
 
-def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | None) -> Iterator[str]:
+def _of_setup(
+    handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript | None
+) -> Iterator[Message]:
     """What setup.py installs, and what it does not."""
     called = handed_in.called(package.folder / "setup.py")
     named = (name for name in _installed(package) if name != FILE)
     if missing := [name for name in named if not _may_be_there(package.folder, name)]:
         yield _not_built(
-            say(
+            msg(
                 "{file} installs {names}, and there is no such file",
                 file=called,
                 names=listed(missing),
@@ -86,7 +88,7 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
     absent = [name for name in packages or () if not (package.folder / _path(name)).is_dir()]
     if absent:
         yield _not_built(
-            say(
+            msg(
                 "{file} lists the package {names}, and there is no such folder",
                 file=called,
                 names=listed(absent),
@@ -98,17 +100,17 @@ def _of_setup(handed_in: HandedIn, package: Package, script: ConsoleScript | Non
     if parent and packages is not None and parent not in packages:
         words = {"file": called, "parent": shown(parent)}
         yield _not_started(
-            say(
+            msg(
                 "{file} lists the packages {names}, and so does not install {parent}",
                 names=listed(packages),
                 **words,
             )
             if packages
-            else say("{file} lists no packages, and so does not install {parent}", **words)
+            else msg("{file} lists no packages, and so does not install {parent}", **words)
         )
 
 
-def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]:
+def _of_place(handed_in: HandedInFolder, package: PackageFolder, name: str) -> Iterator[Message]:
     """Where the programs are installed, and where they are looked for."""
     told = package.told
     if told is None or told.has_commands:
@@ -118,15 +120,15 @@ def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]
     expected = f"$base/lib/{name}"
     setup_cfg = package.folder / "setup.cfg"
     if not told.scripts_folder:
-        lacking = say("install_scripts={expected} below [install]", expected=expected)
+        lacking = msg("install_scripts={expected} below [install]", expected=expected)
         if setup_cfg.is_file():
             file = handed_in.called(setup_cfg)
-            yield _not_found(say("{file} has no {lacking}", file=file, lacking=lacking))
+            yield _not_found(msg("{file} has no {lacking}", file=file, lacking=lacking))
         else:
             why = _no("setup.cfg", handed_in, package.folder)
-            yield _not_found(say("{none} with {lacking}", none=why, lacking=lacking))
+            yield _not_found(msg("{none} with {lacking}", none=why, lacking=lacking))
     elif told.scripts_folder.rstrip("/") != f"lib/{name}":
-        yield say(
+        yield msg(
             "ros2 run {name} would find nothing: {setup} installs programs in {place}, and "
             "{manifest} calls the package {name}: expected install_scripts={expected}",
             name=name,
@@ -137,19 +139,19 @@ def _of_place(handed_in: HandedIn, package: Package, name: str) -> Iterator[str]
         )
 
 
-def _not_built(why: str) -> str:
-    return say("colcon would not build this: {why}", why=why)
+def _not_built(why: Message) -> Message:
+    return msg("colcon would not build this: {why}", why=why)
 
 
-def _not_found(why: str) -> str:
-    return say("ros2 run would not find this: {why}", why=why)
+def _not_found(why: Message) -> Message:
+    return msg("ros2 run would not find this: {why}", why=why)
 
 
-def _not_started(why: str) -> str:
-    return say("ros2 run would not start this: {why}", why=why)
+def _not_started(why: Message) -> Message:
+    return msg("ros2 run would not start this: {why}", why=why)
 
 
-def _installed(package: Package) -> list[str]:
+def _installed(package: PackageFolder) -> list[str]:
     """The files that setup.py installs by `data_files`."""
     told = package.told
     return list(dict.fromkeys(f for each in told.data_files for f in each.files)) if told else []
@@ -169,7 +171,7 @@ def _path(package: str) -> str:
     return package.replace(".", "/")
 
 
-def _no(file: str, handed_in: HandedIn, folder: Path) -> str:
+def _no(file: str, handed_in: HandedInFolder, folder: Path) -> Message:
     if folder == handed_in.base:
-        return say("no {file}", file=file)
-    return say("no {file} in {folder}", file=file, folder=handed_in.called(folder))
+        return msg("no {file}", file=file)
+    return msg("no {file} in {folder}", file=file, folder=handed_in.called(folder))

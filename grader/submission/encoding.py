@@ -13,22 +13,22 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
-from grader.language.phrase import joined, say
+from grader.message import NOTHING, Message, joined, msg
 from grader.submission.folder import read_bounded, shown
 
-_SAVE: Final = say("save it as UTF-8")
+_SAVE: Final = msg("save it as UTF-8")
 _UTF_16: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
-def fault(data: bytes) -> str:
+def fault(data: bytes) -> Message:
     """Say why Python refuses a file with these bytes, as what follows its name; '' if it does not.
 
     "is saved as UTF-16, and Python reads UTF-8: save it as UTF-8"
     """
     if data.startswith(_UTF_16):
-        return say("is saved as UTF-16, and Python reads UTF-8: {save}", save=_SAVE)
+        return msg("is saved as UTF-16, and Python reads UTF-8: {save}", save=_SAVE)
     if b"\0" in data:
-        return say(
+        return msg(
             "has a null byte in line {line}, as no text has: {save}",
             line=_line(data, data.index(0)),
             save=_SAVE,
@@ -37,7 +37,7 @@ def fault(data: bytes) -> str:
         encoding = _declared(data)
         data.decode(encoding)
     except UnicodeDecodeError as error:
-        return say(
+        return msg(
             "has a byte (0x{byte:02x}) in line {line} that is no {encoding}, so that"
             " `python3` refuses it: {save}",
             byte=error.object[error.start],
@@ -47,12 +47,12 @@ def fault(data: bytes) -> str:
         )
     except (SyntaxError, LookupError, ValueError):
         pass  # of the declaration: Python's own words are clear
-    return ""
+    return NOTHING
 
 
-def faults(files: Iterable[Path], root: Path) -> list[str]:
+def faults(files: Iterable[Path], root: Path) -> list[Message]:
     """A sentence on each of some files below a folder that Python refuses for its bytes."""
-    found: list[str] = []
+    found: list[Message] = []
     for file in files:
         try:
             why = fault(read_bounded(file) or b"")

@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say
-from grader.submission.folder import USUAL_NAME, HandedIn, files_below, listed, near, shown
+from grader.message import Message, msg
+from grader.submission.folder import USUAL_NAME, HandedInFolder, files_below, listed, near, shown
 from grader.submission.python_source import read_source
-from grader.submission.set_ups import ConsoleScript, Package, read_package
+from grader.submission.set_ups import ConsoleScript, PackageFolder, read_package
 
 if TYPE_CHECKING:
     from grader.scenes.package.inspection import SetUp
 
-Choice = tuple[Package, ConsoleScript]
+Choice = tuple[PackageFolder, ConsoleScript]
 #: Of what there may be several that could be started.
 Kind = Literal["console script", "Python file", "program"]
 
@@ -33,8 +33,8 @@ class Module:
 class Packages:
     """The folders of a submission that have set-up files, from the top down."""
 
-    handed_in: HandedIn
-    readable: tuple[Package, ...]
+    handed_in: HandedInFolder
+    readable: tuple[PackageFolder, ...]
     faults: tuple[SubmissionError, ...]  # of the others; they matter if no script fits
 
     def choose(self, executable: str | None) -> Choice | None:
@@ -65,7 +65,7 @@ class Packages:
         target = (chosen.module, chosen.function)
         return [each.name for each in every if (each.module, each.function) != target]
 
-    def holding(self, file: Path) -> Package | None:
+    def holding(self, file: Path) -> PackageFolder | None:
         """The package with a setup.py in whose folder a file lies."""
         with_setup = (package for package in self.readable if package.has_setup_py)
         return next((each for each in with_setup if file.is_relative_to(each.folder)), None)
@@ -73,30 +73,26 @@ class Packages:
     def _twice(self, matching: list[Choice]) -> SubmissionError:
         where = listed(self.handed_in.called(script.file) for _, script in matching)
         return SubmissionError(
-            say(
-                "{name} has the console script {script} more than once: {where}. Hand in"
-                " only one of these packages.",
-                name=self.handed_in.name,
-                script=shown(matching[0][1].name),
-                where=where,
-            )
+            "{name} has the console script {script} more than once: {where}. Hand in"
+            " only one of these packages.",
+            name=self.handed_in.name,
+            script=shown(matching[0][1].name),
+            where=where,
         )
 
     def _several(self, names: list[str]) -> SubmissionError:
         return SubmissionError(
-            say(
-                "{name} has several console scripts: {names}. Expected one called "
-                "{usual}; choose another with --executable NAME.",
-                name=self.handed_in.name,
-                names=listed(names),
-                usual=self.handed_in.usual,
-            )
+            "{name} has several console scripts: {names}. Expected one called "
+            "{usual}; choose another with --executable NAME.",
+            name=self.handed_in.name,
+            names=listed(names),
+            usual=self.handed_in.usual,
         )
 
 
-def find_packages(handed_in: HandedIn, said: Sequence[SetUp]) -> Packages:
+def find_packages(handed_in: HandedInFolder, said: Sequence[SetUp]) -> Packages:
     """The folders with set-up files; not those below a folder that has a console script."""
-    readable: list[Package] = []
+    readable: list[PackageFolder] = []
     faults: list[SubmissionError] = []
     have_script: set[Path] = set()
     for each in said:
@@ -113,7 +109,7 @@ def find_packages(handed_in: HandedIn, said: Sequence[SetUp]) -> Packages:
     return Packages(handed_in, tuple(readable), tuple(faults))
 
 
-def find_module(handed_in: HandedIn, package: Package, script: ConsoleScript) -> Module:
+def find_module(handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript) -> Module:
     """Find the script's module in its package, and nowhere else.
 
     Raises:
@@ -133,20 +129,20 @@ def find_module(handed_in: HandedIn, package: Package, script: ConsoleScript) ->
 
 
 def no_such_executable(
-    handed_in: HandedIn, kind: Kind, executable: str, names: list[str]
+    handed_in: HandedInFolder, kind: Kind, executable: str, names: list[str]
 ) -> SubmissionError:
     """Say that nothing has the name that was asked for."""
     words = {"name": handed_in.name, "executable": shown(executable), "names": listed(names)}
     if kind == "console script":
         return SubmissionError(
-            say(
+            msg(
                 "{name} has no console script {executable}; it has: {names}. Choose one of these "
                 "with --executable NAME, or correct the name.",
                 **words,
             )
         )
     return SubmissionError(
-        say(
+        msg(
             "{name} has no Python file {executable}; it has: {names}. Choose one of these with "
             "--executable NAME, or correct the name.",
             **words,
@@ -154,18 +150,18 @@ def no_such_executable(
     )
 
 
-def not_started(kind: Kind, names: list[str]) -> list[str]:
+def not_started(kind: Kind, names: list[str]) -> list[Message]:
     """A note on what of a submission nobody has started; none where there is nothing."""
     if not names:
         return []
     words = {"names": listed(names)}
     if kind == "console script":
         if len(names) > 1:
-            return [say("other console scripts were not started: {names}", **words)]
-        return [say("another console script was not started: {names}", **words)]
+            return [msg("other console scripts were not started: {names}", **words)]
+        return [msg("another console script was not started: {names}", **words)]
     if len(names) > 1:
-        return [say("other programs were not started: {names}", **words)]
-    return [say("another program was not started: {names}", **words)]
+        return [msg("other programs were not started: {names}", **words)]
+    return [msg("another program was not started: {names}", **words)]
 
 
 def example(module: str, name: str = USUAL_NAME) -> str:
@@ -173,26 +169,24 @@ def example(module: str, name: str = USUAL_NAME) -> str:
     return f"'console_scripts': ['{name} = {module}:main']"
 
 
-def _must_define(handed_in: HandedIn, script: ConsoleScript, file: Path) -> None:
+def _must_define(handed_in: HandedInFolder, script: ConsoleScript, file: Path) -> None:
     source = read_source(file)
     wanted = script.function.split(".")[0]
     if not source.surely_lacks(wanted):
         return
     names = dict.fromkeys([*near(wanted, source.defined), *source.defined])
     raise SubmissionError(
-        say(
-            "{file} defines no function {wanted} (it defines: {names}). {starts}: "
-            "give the function that name, or correct the entry point.",
-            file=handed_in.called(file),
-            wanted=shown(wanted),
-            names=listed(names) or say("nothing"),
-            starts=_starts(handed_in, script),
-        )
+        "{file} defines no function {wanted} (it defines: {names}). {starts}: "
+        "give the function that name, or correct the entry point.",
+        file=handed_in.called(file),
+        wanted=shown(wanted),
+        names=listed(names) or msg("nothing"),
+        starts=_starts(handed_in, script),
     )
 
 
 def _no_module(
-    handed_in: HandedIn, package: Package, script: ConsoleScript, expected: Path
+    handed_in: HandedInFolder, package: PackageFolder, script: ConsoleScript, expected: Path
 ) -> SubmissionError:
     found = [file for file in files_below(package.folder) if file.suffix == ".py"]
     wanted = handed_in.called(expected)
@@ -201,24 +195,22 @@ def _no_module(
     others = [handed_in.called(file) for file in nodes]
     meant = list(dict.fromkeys(near(wanted, others) + same_name))
     there = (
-        say("Near: {names}.", names=listed(meant))
+        msg("Near: {names}.", names=listed(meant))
         if meant
-        else say("Python files: {names}.", names=listed(others) or say("none"))
+        else msg("Python files: {names}.", names=listed(others) or msg("none"))
     )
     return SubmissionError(
-        say(
-            "{starts}, but there is no file {wanted}. {there} Correct the entry "
-            "point, or the name or place of the file.",
-            starts=_starts(handed_in, script),
-            wanted=wanted,
-            there=there,
-        )
+        "{starts}, but there is no file {wanted}. {there} Correct the entry "
+        "point, or the name or place of the file.",
+        starts=_starts(handed_in, script),
+        wanted=wanted,
+        there=there,
     )
 
 
-def _starts(handed_in: HandedIn, script: ConsoleScript) -> str:
+def _starts(handed_in: HandedInFolder, script: ConsoleScript) -> Message:
     target = shown(f"{script.module}:{script.function}")
-    return say(
+    return msg(
         "{file} starts {script} by {target}",
         file=handed_in.called(script.file),
         script=shown(script.name),

@@ -19,14 +19,13 @@ What these do not settle is a SubmissionError that lists the candidates.
 
 from __future__ import annotations
 
-import errno
 from dataclasses import replace
 from pathlib import Path
 from sys import stdlib_module_names
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from grader.errors import SubmissionError, UsageError
-from grader.language.phrase import Phrase, say
+from grader.message import Message, joined, msg
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import (
     Choice,
@@ -41,7 +40,7 @@ from grader.submission.folder import (
     HAND_IN,
     MAX_ENTRIES,
     USUAL_NAME,
-    HandedIn,
+    HandedInFolder,
     entries_of,
     files_below,
     is_junk,
@@ -52,19 +51,14 @@ from grader.submission.folder import (
 from grader.submission.launching import find_launched, is_launch_file
 from grader.submission.manifest import FILE as MANIFEST
 from grader.submission.private_copy import copy_folder
-from grader.submission.python_source import Source, read_source
-from grader.submission.refusals import CPP, advice, missing, no_python, unreadable
-from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, Package
+from grader.submission.python_source import PythonSource, read_source
+from grader.submission.refusals import CPP, advice, missing, no_python, readable
+from grader.submission.set_ups import MOST, SETUP_FILES, NotInspected, PackageFolder
 from grader.submission.start import EntryPoint, Script, Submission
 from grader.submission.unpacking import Unpacking, is_archive
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.scenes.package.inspection import Inspection
-
-_UNREADABLE: Final = (
-    *(errno.EACCES, errno.EPERM, errno.ENOENT),
-    *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
-)
 
 
 def find(
@@ -87,12 +81,25 @@ def find(
         UsageError: there is no such path; or a choice is asked for where there is none.
         OSError: something is wrong with the machine.
     """
-    try:
+    with readable(path):
         return _find(path, executable, scratch, usual)
-    except OSError as error:
-        if error.errno not in _UNREADABLE:
-            raise
-        raise unreadable(path, error) from error
+
+
+def find_inspected(
+    asked: NotInspected,
+    inspection: Inspection,
+    name: str,
+    executable: str | None,
+    scratch: Path,
+    usual: str,
+) -> Submission:
+    """The same of a package, by what an inspection says of it; see `find`."""
+    with readable(asked.base):
+        handed_in = HandedInFolder(shown(name), asked.base, usual)
+        found = _in_folder(handed_in, executable, Unpacking(scratch), inspection)
+    for archive in asked.inside:
+        found = _told_of_archive(found, archive)
+    return found
 
 
 def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Submission:
@@ -100,58 +107,36 @@ def _find(path: Path, executable: str | None, scratch: Path, usual: str) -> Subm
     if not path.exists():
         raise missing(path)
     if path.is_dir():
-        handed_in = HandedIn(name, path.resolve(), usual)
+        handed_in = HandedInFolder(name, path.resolve(), usual)
         return _in_folder(handed_in, executable, Unpacking(scratch))
     is_python = path.suffix == ".py"
     if not is_python and not is_archive(path):
         raise SubmissionError(
-            say(
-                "{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice}",
-                name=name,
-                advice=advice(path),
-            )
+            "{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz. {advice}",
+            name=name,
+            advice=advice(path),
         )
     if not path.is_file():
         raise SubmissionError(
-            say("{name} is not an ordinary file. {hand_in}", name=name, hand_in=HAND_IN)
+            "{name} is not an ordinary file. {hand_in}", name=name, hand_in=HAND_IN
         )
     if is_python:
         if executable is not None and executable not in (path.stem, path.name):
             raise UsageError(
-                say(
-                    "there is no {executable!r} in {name}: a single .py file is itself what"
-                    " is started, and there is nothing to choose. Leave out --executable.",
-                    executable=Phrase(executable),
-                    name=name,
-                )
+                "there is no {executable!r} in {name}: a single .py file is itself what"
+                " is started, and there is nothing to choose. Leave out --executable.",
+                executable=executable,
+                name=name,
             )
         folder = path.parent.resolve()
-        return _from_file(HandedIn(name, folder, usual), folder / path.name)
+        return _from_file(HandedInFolder(name, folder, usual), folder / path.name)
     unpacking = Unpacking(scratch)
-    handed_in = HandedIn(name, unpacking.unpack(path), usual)
+    handed_in = HandedInFolder(name, unpacking.unpack(path), usual)
     return _in_folder(handed_in, executable, unpacking)
 
 
-def find_inspected(
-    base: Path,
-    name: str,
-    executable: str | None,
-    scratch: Path,
-    usual: str,
-    inspection: Inspection,
-) -> Submission:
-    """The same of all that lies in a folder, by what an inspection says of it; see `find`."""
-    try:
-        handed_in = HandedIn(shown(name), base, usual)
-        return _in_folder(handed_in, executable, Unpacking(scratch), inspection)
-    except OSError as error:
-        if error.errno not in _UNREADABLE:
-            raise
-        raise unreadable(base, error) from error
-
-
 def _in_folder(
-    handed_in: HandedIn,
+    handed_in: HandedInFolder,
     executable: str | None,
     unpacking: Unpacking,
     inspection: Inspection | None = None,
@@ -159,14 +144,14 @@ def _in_folder(
     top = top_of(handed_in.base)
     if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
         raise SubmissionError(
-            say("{name} is an empty folder. {hand_in}", name=handed_in.name, hand_in=HAND_IN)
+            "{name} is an empty folder. {hand_in}", name=handed_in.name, hand_in=HAND_IN
         )
     files = files_below(top)
     archives = [file for file in files if is_archive(file)]
     if archives and not any(_is_source(file) for file in files):
         return _in_archive(handed_in, archives, executable, unpacking)
     if inspection is None and (folders := _set_ups(handed_in, files)):
-        raise NotInspected(handed_in.base, folders)
+        raise NotInspected(handed_in.base, tuple(folders))
     packages = find_packages(handed_in, inspection.set_ups if inspection else ())
     if inspection and executable is None:
         launched = find_launched(handed_in, packages, inspection)
@@ -182,7 +167,7 @@ def _in_folder(
     several = executable is None and len(_usual(handed_in, starting)) > 1
     if several and (package := packages.holding(starting[0])):
         told = package.problem or _no_script(handed_in, package, starting)
-        raise SubmissionError(f"{told}.")
+        raise SubmissionError(joined([told, "."]))
     chosen = _only(handed_in, starting, executable)
     handed_in.must_hold(chosen)
     if package := packages.holding(chosen):
@@ -194,17 +179,15 @@ def _in_folder(
 
 
 def _in_archive(
-    handed_in: HandedIn, archives: list[Path], executable: str | None, unpacking: Unpacking
+    handed_in: HandedInFolder, archives: list[Path], executable: str | None, unpacking: Unpacking
 ) -> Submission:
     """Look into the one archive that a folder holds, as those are that a course's server makes."""
     if len(archives) > 1:
         raise SubmissionError(
-            say(
-                "{name} holds several archives, and no Python file beside them: "
-                "{names}. Hand in only one of them.",
-                name=handed_in.name,
-                names=listed(map(handed_in.called, archives)),
-            )
+            "{name} holds several archives, and no Python file beside them: "
+            "{names}. Hand in only one of them.",
+            name=handed_in.name,
+            names=listed(map(handed_in.called, archives)),
         )
     (archive,) = archives
     handed_in.must_hold(archive)
@@ -212,17 +195,17 @@ def _in_archive(
     try:
         found = _in_folder(inside, executable, unpacking)
     except NotInspected as asks:
-        asks.inside.append(handed_in.called(archive))
+        asks.inside = (*asks.inside, handed_in.called(archive))
         raise
-    return in_archive(found, handed_in.called(archive))
+    return _told_of_archive(found, handed_in.called(archive))
 
 
-def in_archive(found: Submission, archive: str) -> Submission:
+def _told_of_archive(found: Submission, archive: str) -> Submission:
     """The same, told as what it is: found in an archive within what was handed in."""
-    return replace(found, found=say("{found}, in {file}", found=found.found, file=archive))
+    return replace(found, found=msg("{found}, in {file}", found=found.found, file=archive))
 
 
-def _set_ups(handed_in: HandedIn, files: list[Path]) -> list[str]:
+def _set_ups(handed_in: HandedInFolder, files: list[Path]) -> list[str]:
     """The folders with set-up files, which an inspection is to evaluate."""
     found = dict.fromkeys(file.parent for file in files if file.name in SETUP_FILES)
     for file in files:
@@ -233,12 +216,12 @@ def _set_ups(handed_in: HandedIn, files: list[Path]) -> list[str]:
 
 
 def _from_script(
-    handed_in: HandedIn, packages: Packages, choice: Choice, scratch: Path
+    handed_in: HandedInFolder, packages: Packages, choice: Choice, scratch: Path
 ) -> Submission:
     package, script = choice
     module = find_module(handed_in, package, script)
     start = EntryPoint(script.module, script.function)
-    found = say(
+    found = msg(
         "console script {script} in {file}",
         script=shown(script.name),
         file=handed_in.called(script.file),
@@ -255,7 +238,7 @@ def _from_script(
     added = tuple(each / "__init__.py" for each in module.bare)
     for each in added:
         (root / each).touch()
-    found = say(
+    found = msg(
         "{found}, with the missing {missing} added", found=found, missing=listed(map(str, added))
     )
     folder = mended / folder.relative_to(handed_in.base)
@@ -263,7 +246,7 @@ def _from_script(
     return Submission(handed_in.name, root, start, found, notes=notes, added=added, package=folder)
 
 
-def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submission:
+def _without_script(handed_in: HandedInFolder, package: PackageFolder, file: Path) -> Submission:
     """Start a file of a package that names no console script, as one would that named it."""
     source = read_source(file)
     short = tuple(shortcomings(handed_in, package, None))
@@ -273,35 +256,35 @@ def _without_script(handed_in: HandedIn, package: Package, file: Path) -> Submis
     if not source.has_main or source.is_refused or not source.parses or "." in file.stem:
         return replace(_from_file(handed_in, file), notes=short, package=package.folder)
     start = EntryPoint(".".join(inside), "main")
-    found = say("function main of {file}", file=handed_in.called(file))
+    found = msg("function main of {file}", file=handed_in.called(file))
     folder = package.folder
     return Submission(handed_in.name, folder, start, found, notes=short, package=folder)
 
 
-def _unbuilt(handed_in: HandedIn, file: Path) -> list[str]:
+def _unbuilt(handed_in: HandedInFolder, file: Path) -> list[Message]:
     """What a file's package lacks that has a package.xml alone."""
     for folder in file.parents:
         if not folder.is_relative_to(handed_in.base):
             break
         if (folder / MANIFEST).is_file():
-            return list(shortcomings(handed_in, Package(folder), None))
+            return list(shortcomings(handed_in, PackageFolder(folder), None))
     return []
 
 
-def _from_file(handed_in: HandedIn, file: Path) -> Submission:
+def _from_file(handed_in: HandedInFolder, file: Path) -> Submission:
     """Start a file that no package describes."""
     source = read_source(file)
     called = handed_in.called(file)
     is_imported = source.parses and not source.is_refused and source.has_main
     if not is_imported or source.has_guard or source.calls_main:
         return Submission(
-            handed_in.name, file.parent, Script(file), say("file {file}", file=called)
+            handed_in.name, file.parent, Script(file), msg("file {file}", file=called)
         )
     # one called like a module of Python may find that loaded already, instead of itself
     by_name = "." not in file.stem and file.stem not in stdlib_module_names
     start = EntryPoint(file.stem, "main") if by_name else Script(file, "main")
     return Submission(
-        handed_in.name, file.parent, start, say("function main of {file}", file=called)
+        handed_in.name, file.parent, start, msg("function main of {file}", file=called)
     )
 
 
@@ -315,7 +298,7 @@ def _may_be_node(file: Path) -> bool:
     return file.suffix == ".py" and not is_other
 
 
-def _only(handed_in: HandedIn, candidates: list[Path], executable: str | None) -> Path:
+def _only(handed_in: HandedInFolder, candidates: list[Path], executable: str | None) -> Path:
     """Choose the Python file to start."""
     if executable:
         chosen = [file for file in candidates if executable in (file.stem, file.name)]
@@ -326,36 +309,34 @@ def _only(handed_in: HandedIn, candidates: list[Path], executable: str | None) -
         chosen = _usual(handed_in, candidates)
     if len(chosen) > 1:
         raise SubmissionError(
-            say(
-                "{name} has several Python files to start: {names}. Expected one, "
-                "called {usual}.py; choose another with --executable NAME, or hand in "
-                "only that file.",
-                name=handed_in.name,
-                names=listed(map(handed_in.called, chosen)),
-                usual=handed_in.usual,
-            )
+            "{name} has several Python files to start: {names}. Expected one, "
+            "called {usual}.py; choose another with --executable NAME, or hand in "
+            "only that file.",
+            name=handed_in.name,
+            names=listed(map(handed_in.called, chosen)),
+            usual=handed_in.usual,
         )
     return chosen[0]
 
 
-def _usual(handed_in: HandedIn, candidates: list[Path]) -> list[Path]:
+def _usual(handed_in: HandedInFolder, candidates: list[Path]) -> list[Path]:
     """Those of the first usual name that any has; all of them if none has one."""
     usual = [[file for file in candidates if file.stem == s] for s in (handed_in.usual, "main")]
     return usual[0] or usual[1] or candidates
 
 
-def _starts(source: Source) -> bool:
+def _starts(source: PythonSource) -> bool:
     return source.has_guard or source.has_main
 
 
-def _no_script(handed_in: HandedIn, package: Package, starting: list[Path]) -> str:
+def _no_script(handed_in: HandedInFolder, package: PackageFolder, starting: list[Path]) -> Message:
     """Say that a setup.py names no console script, with the line that it lacks."""
     likely = [file for file in starting if file.stem == handed_in.usual] or starting
     module = "my_package.turtle_controller"
     if len(likely) == 1:
         module = ".".join(likely[0].relative_to(package.folder).with_suffix("").parts)
     called = handed_in.called(package.folder / "setup.py")
-    return say(
+    return msg(
         "{file} names no console script, so that `ros2 run` finds nothing to "
         "start. Expected in its entry_points: {example}",
         file=called,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from collections.abc import Iterable, Sequence
@@ -11,10 +12,15 @@ from pathlib import Path, PurePath
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import Phrase, joined, say
+from grader.message import Message, Text, joined, msg
 from grader.text import clip_inside, without_controls
 
 MAX_DEPTH: Final = 8  # folders below the top that are searched
+#: What is wrong with one file, and not with the machine.
+UNREADABLE: Final = (
+    *(errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENXIO),
+    *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
+)
 MAX_ENTRIES: Final = 10_000  # files and folders that are looked at
 MAX_SOURCE_BYTES: Final = 1_000_000  # a Python or set-up file larger than this is not read here
 MAX_BYTES: Final = 200_000_000  # of all files together, where they are unpacked or copied
@@ -27,7 +33,7 @@ _OUR_RESULT: Final = re.compile(rb'\s*\{\s*"schema"\s*:\s*"turtlesim-grader/resu
 _NEAR_NAMES: Final = 200  # that a name is compared with: the time goes with the cube of their
 _NEAR_LENGTH: Final = 100  # length
 
-HAND_IN: Final = say("Hand in a .py file, the folder of your package, or a .zip of it.")
+HAND_IN: Final = msg("Hand in a .py file, the folder of your package, or a .zip of it.")
 
 _JUNK: Final = {"__pycache__", "__MACOSX", "Thumbs.db", "desktop.ini"}
 _COLCON: Final = {"build", "install", "log"}
@@ -39,7 +45,7 @@ USUAL_NAME: Final = "turtle_controller"
 
 
 @dataclass(frozen=True)
-class HandedIn:
+class HandedInFolder:
     """A folder, handed in as such or unpacked, and its words in messages."""
 
     name: str  # "alice.zip"
@@ -58,12 +64,10 @@ class HandedIn:
         """
         if not Path(os.path.realpath(file)).is_relative_to(os.path.realpath(self.base)):
             raise SubmissionError(
-                say(
-                    "{file} is a link to a place outside of {name}. Hand in the file "
-                    "itself in that place.",
-                    file=self.called(file),
-                    name=self.name,
-                )
+                "{file} is a link to a place outside of {name}. Hand in the file "
+                "itself in that place.",
+                file=self.called(file),
+                name=self.name,
             )
 
 
@@ -82,10 +86,11 @@ def marks_generated(path: PurePath) -> bool:
 def is_generated(folder: Path) -> bool:
     """Tell whether a folder holds such a mark, or what an earlier grading has left."""
     marks = (folder / "pyvenv.cfg", folder / "COLCON_IGNORE")
-    if any(marks_generated(mark) and mark.exists() for mark in marks):
+    # of os: what has too long a path for the system is not there
+    if any(marks_generated(mark) and os.path.exists(mark) for mark in marks):  # noqa: PTH110
         return True
     result = folder / RESULT
-    if result.is_symlink() or not result.is_file():
+    if os.path.islink(result) or not os.path.isfile(result):  # noqa: PTH113, PTH114
         return False
     with result.open("rb") as file:
         begin = file.read(BEGINNING_BYTES)
@@ -152,13 +157,11 @@ def files_below(top: Path) -> list[Path]:
 def too_many(top: Path) -> SubmissionError:
     """The refusal of a folder with more than MAX_ENTRIES files and folders."""
     return SubmissionError(
-        say(
-            "{name} holds more than {max_entries:,} files and folders, too many "
-            "for a submission. {hand_in}",
-            name=shown(top.name),
-            max_entries=MAX_ENTRIES,
-            hand_in=HAND_IN,
-        )
+        "{name} holds more than {max_entries:,} files and folders, too many "
+        "for a submission. {hand_in}",
+        name=shown(top.name),
+        max_entries=MAX_ENTRIES,
+        hand_in=HAND_IN,
     )
 
 
@@ -177,23 +180,19 @@ def read_bounded(path: Path) -> bytes | None:
     return data if len(data) <= MAX_SOURCE_BYTES else None
 
 
-def shown(name: str | PurePath) -> Phrase:
-    """A name of a student's in a message: in one line, and not longer than anybody reads.
-
-    It is the same in any language; what is a phrase already, and fit to be shown, stays one.
-    """
-    text = clip_inside(without_controls(str(name), "?"), MAX_SHOWN)
-    return name if isinstance(name, Phrase) and name == text else Phrase(text)
+def shown(name: str | PurePath) -> str:
+    """A name of a student's in a message: in one line, and not longer than anybody reads."""
+    return clip_inside(without_controls(str(name), "?"), MAX_SHOWN)
 
 
-def listed(names: Iterable[str], limit: int = 10) -> str:
+def listed(names: Iterable[Text], limit: int = 10) -> Message:
     """Join names as in "a, b, c and 4 more"."""
     every = list(names)
-    first = joined([shown(name) for name in every[:limit]], ", ")
+    first = joined([shown(n) if isinstance(n, str) else n for n in every[:limit]], ", ")
     return (
         first
         if len(every) <= limit
-        else say("{names} and {n} more", names=first, n=len(every) - limit)
+        else msg("{names} and {n} more", names=first, n=len(every) - limit)
     )
 
 

@@ -9,17 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say
+from grader.message import msg
 from grader.submission.building import shortcomings
 from grader.submission.entry_points import Packages, find_module, not_started
-from grader.submission.folder import HandedIn, listed
-from grader.submission.set_ups import ConsoleScript, Package
+from grader.submission.folder import HandedInFolder, listed
+from grader.submission.set_ups import ConsoleScript, PackageFolder
 from grader.submission.start import EntryPoint, Launch, Program, Submission
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.scenes.package import trace
     from grader.scenes.package.inspection import Inspection
-    from grader.scenes.package.trace import Node
+    from grader.scenes.package.trace import LaunchedNode
 
 _ENDINGS: Final = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 #: What the simulator stands in for.
@@ -32,17 +32,17 @@ _NAME: Final = re.compile(r"[A-Za-z_~/{}][\w~/{}.]*")
 class Launched:
     """A launch file that starts several programs of the package that it lies in."""
 
-    launch: trace.Launch
-    package: Package
+    launch: trace.LaunchFile
+    package: PackageFolder
     programs: tuple[tuple[ConsoleScript, tuple[str, ...]], ...]  # with their arguments
-    others: tuple[Node, ...]  # of other packages, but for the simulator
+    others: tuple[LaunchedNode, ...]  # of other packages, but for the simulator
 
     @property
-    def first(self) -> tuple[Package, ConsoleScript]:
+    def first(self) -> tuple[PackageFolder, ConsoleScript]:
         """The program that it names first."""
         return self.package, self.programs[0][0]
 
-    def start(self, handed_in: HandedIn, found: Submission) -> Submission:
+    def start(self, handed_in: HandedInFolder, found: Submission) -> Submission:
         """A submission that would start the first program, with all of them."""
         called = handed_in.called(self.package.folder / self.launch.file)
         programs = tuple(
@@ -55,7 +55,7 @@ class Launched:
         if self.others:
             names = listed(f"{node.package} {node.executable}" for node in self.others)
             notes.append(
-                say(
+                msg(
                     "{file} starts programs of other packages, and these were not: {names}",
                     file=called,
                     names=names,
@@ -65,7 +65,7 @@ class Launched:
         return replace(
             found,
             start=Launch(programs),
-            found=say("{file}, which starts {names}", file=called, names=names),
+            found=msg("{file}, which starts {names}", file=called, names=names),
             notes=tuple(notes),
         )
 
@@ -76,7 +76,7 @@ def is_launch_file(file: Path) -> bool:
 
 
 def find_launched(
-    handed_in: HandedIn, packages: Packages, inspection: Inspection
+    handed_in: HandedInFolder, packages: Packages, inspection: Inspection
 ) -> Launched | None:
     """The launch file by which several programs are started; None if there is none, or many."""
     folder = handed_in.base / inspection.package
@@ -97,7 +97,7 @@ def find_launched(
     return found[0] if len(modules) == 1 else None  # else they lie in several places
 
 
-def _launched(launch: trace.Launch, package: Package, names: set[str]) -> Launched | None:
+def _launched(launch: trace.LaunchFile, package: PackageFolder, names: set[str]) -> Launched | None:
     scripts = {script.name: script for script in package.scripts}
     own = [node for node in launch.nodes if node.package in names]
     if len(own) < 2 or launch.problem or launch.skipped:
@@ -117,7 +117,7 @@ def _launched(launch: trace.Launch, package: Package, names: set[str]) -> Launch
     )
 
 
-def _arguments(node: Node) -> tuple[str, ...] | None:
+def _arguments(node: LaunchedNode) -> tuple[str, ...] | None:
     """What `ros2 launch` gives a program; None where what was taken down does not tell."""
     space = node.namespace
     space = space if space.startswith("/") or not space else f"/{space}"

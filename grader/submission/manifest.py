@@ -1,7 +1,7 @@
 """package.xml, as far as colcon goes by it: a ROS package or none, its name, its build type.
 
 What has to stand in it is by catkin_pkg, which colcon reads it with (`package.py`: `parse_package`,
-`Package.validate`).
+`PackageFolder.validate`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from grader.language.phrase import say
+from grader.message import NOTHING, Message, msg
 from grader.submission.folder import read_bounded, shown
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Manifest:
 
     name: str
     build_type: str | None
-    fault: str
+    fault: Message
 
 
 def read_manifest(file: Path) -> Manifest | None:
@@ -54,7 +54,7 @@ def read_manifest(file: Path) -> Manifest | None:
     if data is None:
         return None
     root = parse_xml(data)
-    if root is None or isinstance(root, str):
+    if root is None or isinstance(root, Message):
         return None if root is None else Manifest("", "", root)
     name = (root.findtext("name") or "").strip()
     types = root.findall("export/build_type")
@@ -63,7 +63,7 @@ def read_manifest(file: Path) -> Manifest | None:
     return Manifest(name, build_type, _fault(root, name))
 
 
-def parse_xml(data: bytes) -> Element | str | None:
+def parse_xml(data: bytes) -> Element | Message | None:
     """Parse XML: its root; or why it does not parse; or None where it has a DOCTYPE.
 
     That may declare entities, which make a long text out of a short one; nothing of ROS needs it.
@@ -80,29 +80,29 @@ def parse_xml(data: bytes) -> Element | str | None:
         return None
     except ElementTree.ParseError as error:
         line, _ = error.position
-        return say(
+        return msg(
             "does not parse, line {line}: {found}",
             line=line,
             found=shown(str(error).partition(":")[0]),
         )
     except (ValueError, LookupError) as error:  # its encoding
-        return say("does not parse: {found}", found=shown(str(error)))
+        return msg("does not parse: {found}", found=shown(str(error)))
 
 
-def _fault(root: Element, name: str) -> str:
+def _fault(root: Element, name: str) -> Message:
     if root.tag != "package":
-        return say("begins with <{found}>; expected <package>", found=shown(root.tag))
+        return msg("begins with <{found}>; expected <package>", found=shown(root.tag))
     for tag in _REQUIRED:
         nodes = root.findall(tag)
         if not nodes or not any("".join(node.itertext()).strip() for node in nodes):
-            return say("has no <{tag}>", tag=tag)
+            return msg("has no <{tag}>", tag=tag)
     if not _NAME.fullmatch(name):
-        return say("names the package {found}; expected letters, digits and _", found=shown(name))
+        return msg("names the package {found}; expected letters, digits and _", found=shown(name))
     version = (root.findtext("version") or "").strip()
     if not _VERSION.fullmatch(version):
-        return say(
+        return msg(
             "has the version {found}; expected three numbers, as 0.1.0", found=shown(version)
         )
     if not all(node.get("email") for node in root.findall("maintainer")):
-        return say('has a <maintainer> without email="..."')
-    return ""
+        return msg('has a <maintainer> without email="..."')
+    return NOTHING

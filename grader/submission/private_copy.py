@@ -1,9 +1,11 @@
 """A copy of what was handed in, for its runs alone: they see nothing that lies beside it.
 
 A submission's process that ran in the place where it was handed in could read its neighbours, and
-write into them and into its own source. What it gets instead is a copy, made once for a grading and
-once more for each run (`PrivateCopy.again`), in which it may do as it likes: nobody else sees it.
-People are shown paths as they were handed in.
+write into them and into its own source. So there is one copy for a grading, which nobody may write
+into: its runs are of the same files, whatever becomes of those that were handed in. Each run gets
+what is in it once more, to do as it likes (`grader.run.processes.levels.prepare`): in the memory of
+its process where that has a file system of its own, else in the run's folder. People are shown
+paths as they were handed in.
 
 Of a folder come all files but what a system or a program has left there, as out of a zip. Links
 that stay inside remain links; what is no file, no folder and no such link is left out.
@@ -15,7 +17,6 @@ import errno
 import importlib.util
 import os
 import re
-import shutil
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -25,32 +26,27 @@ from sys import stdlib_module_names
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say
+from grader.message import Message, msg
 from grader.submission.folder import (
     MAX_BYTES,
     MAX_ENTRIES,
+    UNREADABLE,
     is_generated,
     is_junk,
     listed,
     shown,
     too_many,
 )
-from grader.text import without_controls
 
 MAX_LEVELS: Final = 32  # of folders; what lies deeper is left out
 _CHUNK_BYTES: Final = 1 << 20
 
 #: Folders in which nothing to start is looked for: they come last, if there is room for them.
 _LAST: Final = {"venv", "env", "test", "tests", "build", "install", "log"}
-#: What is wrong with one file, and not with the machine.
-UNREADABLE: Final = (
-    *(errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENXIO),
-    *(errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG),
-)
 _BINARY: Final = getattr(os, "O_BINARY", 0)
 _READ: Final = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | _BINARY
 _WRITE: Final = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _BINARY
-#: Where the middle of a long output is missing; see `grader.run.processes.watched`.
+#: Where the middle of a long output is missing; see `grader.run.processes.started_process`.
 _LEFT_OUT: Final = re.compile(r"(\n\[\.\.\. \d+ bytes left out \.\.\.\]\n)")
 #: So much of a path that was cut through is known as part of one: less are letters like others.
 _LEAST: Final = 8
@@ -74,7 +70,7 @@ class PrivateCopy:
     prefix: str
     shown: str
     beside: Path | None = None
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
 
     def of(self, path: Path) -> Path:
         """Where in the copy a path is that was found; what is in it stays."""
@@ -82,16 +78,10 @@ class PrivateCopy:
             return path
         return self.folder / path.relative_to(self.origin)
 
-    def again(self, place: Path) -> PrivateCopy:
-        """One more below an empty folder, for one run, which may write into it."""
+    def moved(self, folder: Path) -> PrivateCopy:
+        """The same in another folder of this name."""
         is_all = self.prefix == str(self.folder)
-        folder = place / self.folder.name
-        shutil.copytree(self.folder, folder, symlinks=True)
-        for at, _, files in os.walk(folder):
-            for path in (Path(at), *(Path(at, name) for name in files)):
-                if not path.is_symlink():
-                    path.chmod(path.stat().st_mode | stat.S_IWUSR)
-        return replace(self, folder=folder, prefix=str(folder if is_all else place))
+        return replace(self, folder=folder, prefix=str(folder if is_all else folder.parent))
 
     def as_handed_in(self, text: str) -> str:
         """What a run has printed, with the paths that it would have printed in the first place."""
@@ -137,7 +127,7 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
     base = origin if path.is_dir() else origin.parent
     copies = scratch / "copy"
     folder = copies / (base.name or "submission")
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
     if path.is_dir():
         remarks = copy_folder(base, folder)
     else:
@@ -154,7 +144,7 @@ def copy_privately(path: Path, root: Path, scratch: Path) -> PrivateCopy:
     )
 
 
-def copy_folder(top: Path, into: Path) -> tuple[str, ...]:
+def copy_folder(top: Path, into: Path) -> tuple[Message, ...]:
     """Copy a folder into a new one; what was left out, for the result.
 
     Raises:
@@ -167,7 +157,9 @@ def copy_folder(top: Path, into: Path) -> tuple[str, ...]:
     return copying.remarks()
 
 
-def not_handed_in(name: str, copy: PrivateCopy | None, modules: Iterable[str]) -> tuple[str, ...]:
+def not_handed_in(
+    name: str, copy: PrivateCopy | None, modules: Iterable[str]
+) -> tuple[Message, ...]:
     """Say which modules lie beside a single file that imports them, and so are missing.
 
     Args:
@@ -179,7 +171,7 @@ def not_handed_in(name: str, copy: PrivateCopy | None, modules: Iterable[str]) -
         return ()
     found = [lying for module in modules if (lying := _lying(beside, module))]
     return tuple(
-        say(
+        msg(
             "{module} lies beside {name}, but was not handed in: grade the folder",
             module=shown(each),
             name=shown(name),
@@ -234,31 +226,29 @@ class _Copying:
     pending: list[tuple[Path, Path, int]] = field(default_factory=list)
     last: list[tuple[Path, Path, int]] = field(default_factory=list)
 
-    def remarks(self) -> tuple[str, ...]:
+    def remarks(self) -> tuple[Message, ...]:
         """What to say about the copy."""
         found = []
         if self.outside:
             found.append(
-                say(
+                msg(
                     "not handed in, but links to somewhere else: {names}",
                     names=listed(self.outside),
                 )
             )
         if self.failed:
             found.append(
-                say("left out, since they cannot be copied: {names}", names=listed(self.failed))
+                msg("left out, since they cannot be copied: {names}", names=listed(self.failed))
             )
-        return tuple(without_controls(remark, "?") for remark in found)
+        return tuple(found)
 
     def copy_alone(self, file: Path, into: Path) -> None:
         """Copy one file."""
         real = file.resolve()
         if not real.is_relative_to(self.top):
             raise SubmissionError(
-                say(
-                    "{name} is a link to a place outside of its folder. Hand in the file itself.",
-                    name=shown(file.name),
-                )
+                "{name} is a link to a place outside of its folder. Hand in the file itself.",
+                name=shown(file.name),
             )
         self._copy_file(real, into / file.name)
 
@@ -314,13 +304,11 @@ class _Copying:
                     self.size += len(chunk)
                     if self.size > MAX_BYTES:
                         raise SubmissionError(
-                            say(
-                                "{name} has more than {max_bytes:g} MB, the limit for a "
-                                "submission. Leave out recordings and videos, and hand it in "
-                                "again.",
-                                name=shown(self.top.name),
-                                max_bytes=MAX_BYTES / 1e6,
-                            )
+                            "{name} has more than {max_bytes:g} MB, the limit for a "
+                            "submission. Leave out recordings and videos, and hand it in "
+                            "again.",
+                            name=shown(self.top.name),
+                            max_bytes=MAX_BYTES / 1e6,
                         )
                     writing.write(chunk)
 

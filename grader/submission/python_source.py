@@ -18,7 +18,7 @@ _UNPARSED_MAIN: Final = re.compile(rb"^(async\s+)?def\s+main\b", re.MULTILINE)
 
 
 @dataclass(frozen=True)
-class Source:
+class PythonSource:
     """A Python file as far as it can be seen without running it."""
 
     parses: bool  # if not, the two below are guesses from the text, and `names` is empty
@@ -51,18 +51,18 @@ def parse(data: bytes, file_name: str) -> ast.Module:
         raise SyntaxError(str(error) or "nested too deeply, or too large") from error
 
 
-def read_source(path: Path) -> Source:
+def read_source(path: Path) -> PythonSource:
     """Look at a student's file.
 
     One that does not parse is no error here: the run shows the interpreter's own message.
     """
     data = read_bounded(path)
     if data is None:
-        return Source(parses=False, has_guard=False, has_main=False)
+        return PythonSource(parses=False, has_guard=False, has_main=False)
     try:
         tree = parse(data, path.name)
     except SyntaxError:
-        return Source(
+        return PythonSource(
             parses=False,
             has_guard=any(map(_looks_like_guard, data.splitlines())),
             has_main=bool(_UNPARSED_MAIN.search(data)),
@@ -81,7 +81,7 @@ def _looks_like_guard(line: bytes) -> bool:
     return bool(name) and re.search(rb"""['"]__main__['"]""", rest) is not None
 
 
-def _seen(tree: ast.Module) -> Source:
+def _seen(tree: ast.Module) -> PythonSource:
     top = sorted(_module_level(tree), key=lambda node: getattr(node, "lineno", 0))
     defined: dict[str, None] = {}
     imported: set[str] = set()
@@ -106,7 +106,7 @@ def _seen(tree: ast.Module) -> Source:
     used = {node.id for node in everywhere if isinstance(node, ast.Name)}
     names = frozenset(defined) | imported | made_global
     open_ended = bool(used & _NAMES_UNSEEN or names & {"*", "__getattr__"})
-    return Source(True, has_guard, has_main, calls_main, tuple(defined), names, open_ended)
+    return PythonSource(True, has_guard, has_main, calls_main, tuple(defined), names, open_ended)
 
 
 def _module_level(tree: ast.Module) -> Iterator[ast.AST]:

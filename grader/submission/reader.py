@@ -1,70 +1,43 @@
-"""The process that reads what was handed in, from the grader's side.
+"""Reads what was handed in, in a copy of this process with limits of time and memory.
 
-Each submission is read by a fork of it, which has limits of memory and time (`limits.py`), so that
-no submission can make the grader's own process large, slow or dead, or reach the next one. It says
-where it is as it goes, and at last one answer (`answer.py`). Starting the process takes 70 ms of a
-core, a fork 5: it waits for the next submission, and whoever knows that one will come can have it
-started before (`warm`).
+A file can be made so that its parser takes all memory, or falls over. So nothing that was handed in
+is read in this process: each submission is read by a copy (`grader.limited`), which gives one
+answer (`answer.py`) and reaches nothing else.
 """
 
 from __future__ import annotations
 
-import atexit
-import contextlib
-import json
+import mmap
 import os
 import signal
-import subprocess
 import sys
-import threading
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
-from grader import strict_json
-from grader.errors import GraderFailure, SubmissionError
-from grader.language.phrase import say
-from grader.submission import answer, limits
+from grader import limited, strict_json
+from grader.errors import SubmissionError, UsageError
+from grader.message import NOTHING, Message, msg
+from grader.submission import encoding, folder, unpacking, whole
+from grader.submission.answer import MAX_BYTES, Answer, decoded
+from grader.submission.finding import find, find_inspected
 from grader.submission.folder import USUAL_NAME, shown
+from grader.submission.imports import read_imports
+from grader.submission.lint import lint
 from grader.submission.set_ups import NotInspected
-from grader.submission.start import Submission
+from grader.submission.start import Submission, Whole
 
-#: No module but Python's own and ours, nothing from the environment, no start-up code of a venv.
-_COMMAND: Final = (
-    *("-I", "-S", "-c"),
-    "import sys; sys.path.append(sys.argv[1]); "
-    "from grader.submission import reader_main; reader_main.main()",
-    str(Path(__file__).parents[2]),
+if TYPE_CHECKING:  # what only a package needs takes time to import
+    from grader.scenes.package.inspection import Inspection
+
+#: What the reading of one submission may take. A file of MAX_SOURCE_BYTES of ordinary Python takes
+#: some 150 MB; an ordinary submission takes 0.1 s of a processor, a zip of MAX_BYTES two.
+LIMITS: Final = limited.WorkLimits(
+    cpu_s=10.0, wall_s=120.0, memory_bytes=512_000_000, answer_bytes=MAX_BYTES
 )
-#: What Python needs to start, and to take the same bytes of a name for the same characters.
-_ENVIRONMENT: Final = (
-    *("LANG", "LC_ALL", "LC_CTYPE", "SYSTEMROOT"),
-    *("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH"),
-)
-_PLAIN: Final = say("Hand in nothing but the files of your package, written plainly.")
-_SHORT_OF_MEMORY: Final = "SIGKILL"
-#: What was too much, by how the process has ended.
-_TOO_MUCH: Final = {
-    "SIGXCPU": say("that takes more than {cpu_s} s of a processor's time", cpu_s=limits.CPU_S),
-    answer.TOO_LATE: say("that takes more than {wall_s} s", wall_s=limits.WALL_S),
-    _SHORT_OF_MEMORY: say(
-        "that takes more than {memory_bytes:.0f} MB of memory",
-        memory_bytes=limits.MEMORY_BYTES / 1e6,
-    ),
-    **dict.fromkeys(
-        ("SIGSEGV", "SIGBUS", "SIGABRT"), say("Python's own parser breaks down over it")
-    ),
-}
-
-#: Those that wait to be asked; as many as were asked at the same time.
-_idle: list[_Process] = []
-_lock = threading.Lock()
-
-
-def warm() -> None:
-    """Start a process for the next submission, if none is waiting; it goes with this process."""
-    with _lock:
-        if not _idle:
-            _idle.append(_Process())
+_PLAIN: Final = msg("Hand in nothing but the files of your package, written plainly.")
+_PARSER_BREAKS: Final = (signal.SIGSEGV, signal.SIGBUS, signal.SIGABRT)
 
 
 def read(
@@ -74,7 +47,7 @@ def read(
     *,
     is_started: bool = True,
     usual: str = USUAL_NAME,
-    again: tuple[NotInspected, bytes] | None = None,
+    again: tuple[NotInspected, Inspection] | None = None,
 ) -> Submission:
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
@@ -85,140 +58,119 @@ def read(
         NotInspected: it is a package; read it again, with what an inspection says.
         SubmissionError: as there, or it takes more than the limits.
         UsageError, OSError: as there.
-        GraderFailure: the process has failed.
+        GraderFailure: the copy has failed.
     """
-    at, last, end = _asked(
-        {
-            "cwd": str(Path.cwd()),
-            "path": str(path),
-            "executable": executable,
-            "scratch": str(scratch),
-            "is_started": is_started,
-            "usual": usual,
-            "inspected": None,
-            **({} if again is None else _told(*again)),
-        }
-    )
-    said = answer.parsed(last)
-    if said is not None and not answer.is_short_of_memory(said):
-        return answer.decoded(said)
-    name = shown(path.name or path.resolve().name)
-    if said is not None:
-        end = _SHORT_OF_MEMORY
-    if end not in _TOO_MUCH:
-        told = shown(last.decode("utf-8", "replace").strip())
-        raise GraderFailure(
-            say(
-                "{name} could not be read: the process for it ended ({end}): {told}",
-                name=name,
-                end=end,
-                told=told,
-            )
-        )
-    raise SubmissionError(
-        say(
+    name = path.name or path.resolve().name
+
+    def found() -> Submission:
+        if not is_started:
+            return whole.find(path, executable, scratch)
+        if again is None:
+            return _with_its_source(find(path, executable, scratch, usual), path)
+        return _with_its_source(find_inspected(*again, name, executable, scratch, usual), path)
+
+    with mmap.mmap(-1, mmap.PAGESIZE) as place:  # shared with the copy
+        try:
+            answer = decoded(limited.call(lambda: _answered(found, path, scratch, place), LIMITS))
+        except limited.LimitHit as hit:
+            answer = _of_hit(hit, name, place)
+    return answer.submission()
+
+
+def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> Answer:
+    """The answer for a copy that has given none."""
+    too_much = _too_much(hit)
+    if not too_much:
+        return Answer(failed=f"the process for it {hit.why!s}")
+    at = bytes(place).rstrip(b"\0").decode("utf-8", "replace")
+    return Answer.of_refusal(
+        SubmissionError(
             "{name} cannot be read: {too_much}{place}. {plain}",
-            name=name,
-            too_much=_TOO_MUCH[end],
-            place=_place(at),
+            name=shown(name),
+            too_much=too_much,
+            place=msg(" (it got as far as {place})", place=shown(at)) if at else NOTHING,
             plain=_PLAIN,
         )
     )
 
 
-def _told(asked: NotInspected, said: bytes) -> dict[str, object]:
-    return {"base": str(asked.base), "inside": asked.inside, "inspected": said.decode("ascii")}
-
-
-def _asked(request: dict[str, object]) -> tuple[str, bytes, str]:
-    """Where the reading was at last, the last line that it said, and how it ended."""
-    with _lock:
-        process = _idle.pop() if _idle else None
-    if process is not None and not process.is_there:
-        process.close()
-        process = None
-    process = process or _Process()
-    try:
-        answered = process.ask(request)
-    except BaseException:
-        process.close()
-        raise
-    with _lock:
-        _idle.append(process)
-    return answered
-
-
-class _Process:
-    """A process that reads, or has others of its kind do so."""
-
-    def __init__(self) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, *_COMMAND],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            env={name: os.environ[name] for name in _ENVIRONMENT if name in os.environ},
-            start_new_session=True,  # Ctrl-C is for the grader, which ends all of them
+def _too_much(hit: limited.LimitHit) -> Message:
+    """What was too much; nothing where the reading ended for a reason of ours."""
+    if isinstance(hit, limited.Slow):
+        return msg("that takes more than {wall_s} s", wall_s=int(LIMITS.wall_s))
+    if isinstance(hit, limited.NoEnd):
+        return msg("that takes more than {cpu_s} s of a processor's time", cpu_s=int(LIMITS.cpu_s))
+    ended_by = hit.why.values.get("signal")
+    if hit.why == limited.TOO_MUCH or ended_by == str(int(signal.SIGKILL)):
+        return msg(
+            "that takes more than {memory_bytes:.0f} MB of memory",
+            memory_bytes=LIMITS.memory_bytes / 1e6,
         )
-
-    @property
-    def is_there(self) -> bool:
-        """Whether it can be asked."""
-        return self._process.poll() is None
-
-    def close(self) -> None:
-        """End it, and what it has forked."""
-        with contextlib.suppress(OSError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.kill()
-        self._process.wait()
-        self.hang_up()
-
-    def hang_up(self) -> None:
-        """Let go of it: it ends when nobody holds its standard input any more."""
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                with contextlib.suppress(OSError):
-                    pipe.close()
-
-    def ask(self, request: dict[str, object]) -> tuple[str, bytes, str]:
-        """Where the reading was at last, the last line that it said, and how it ended."""
-        asks, answers = self._process.stdin, self._process.stdout
-        assert asks is not None
-        assert answers is not None
-        with contextlib.suppress(OSError):  # it is gone; how it ended tells why
-            asks.write(json.dumps(request).encode() + b"\n")
-            asks.flush()
-        at, last = answers.readline(), answers.readline()
-        if not last:
-            return "", at, answer.end(self._process.wait())
-        how = json.loads(at)
-        return how["at"], last, how["end"]
+    if ended_by in [str(int(each)) for each in _PARSER_BREAKS]:
+        return msg("Python's own parser breaks down over it")
+    return NOTHING
 
 
-def _place(at: str) -> str:
-    """How far it got: a name of the submission's, which comes as a string in JSON."""
-    with contextlib.suppress(ValueError):
-        return say(" (it got as far as {place})", place=shown(str(strict_json.loads(at))))
-    return ""
+# In the copy ----------------------------------------------------------------------------------
 
 
-@atexit.register
-def close() -> None:
-    """End those that wait; the next submission has another started."""
-    with _lock:
-        while _idle:
-            _idle.pop().close()
+def _answered(
+    found: Callable[[], Submission], path: Path, scratch: Path, place: mmap.mmap
+) -> bytes:
+    import resource  # here: Windows has none
+
+    from grader import linux
+
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for stream in range(3):
+        os.dup2(nowhere, stream)
+    linux.lower_limit(resource.RLIMIT_FSIZE, folder.MAX_BYTES, folder.MAX_BYTES)
+    base = path if path.is_dir() else path.parent
+    _note_what_is_read(place, base, *unpacking.places(scratch))
+    return strict_json.line(_answer(found, path))
 
 
-def _leave_to_parent() -> None:
-    """In a fork of this process: they are its parent's."""
-    global _lock
-    _lock = threading.Lock()
-    for process in _idle:
-        process.hang_up()
-        process._process.returncode = 0  # nothing is to wait for it here
-    _idle.clear()
+def _answer(found: Callable[[], Submission], path: Path) -> Answer:
+    """What there is to start, or why there is nothing."""
+    try:
+        return Answer.of_found(found())
+    except NotInspected as asks:
+        return Answer(asks=asks)
+    except (SubmissionError, UsageError) as error:
+        return Answer.of_refusal(error)
+    except OSError as error:
+        return Answer(unable=error.strerror or str(error), errno=error.errno)
+    except RecursionError:
+        name = shown(path.name or path.resolve().name)
+        deep = SubmissionError("{name} is nested too deeply to be read.", name=name)
+        return Answer.of_refusal(deep)
+    except MemoryError:
+        raise
+    except Exception:
+        import traceback  # here: most submissions are read without
+
+        return Answer(failed=traceback.format_exc())
 
 
-os.register_at_fork(after_in_child=_leave_to_parent)
+def _with_its_source(found: Submission, path: Path) -> Submission:
+    """The same with what its source shows: imports, faults and lint findings."""
+    only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
+    assert not isinstance(found.start, Whole)
+    imports = read_imports(found.root, found.start, only)
+    refused = encoding.faults(imports.files, found.root)
+    notes, shows = (*refused, *found.notes), lint(found.root, imports.files)
+    return replace(found, imports=imports, notes=notes, lint_findings=shows)
+
+
+def _note_what_is_read(place: mmap.mmap, *folders: Path) -> None:
+    """Write down which file of these folders is opened, before it is: it may be the last."""
+    bases = [str(folder.resolve()) + os.sep for folder in folders]
+
+    def note(event: str, arguments: tuple[Any, ...]) -> None:
+        if event == "open" and isinstance(arguments[0], str):
+            for base in bases:
+                if arguments[0].startswith(base):
+                    name = os.fsencode(arguments[0].removeprefix(base))[: len(place)]
+                    place[:] = name.ljust(len(place), b"\0")
+
+    sys.addaudithook(note)

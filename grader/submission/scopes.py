@@ -6,15 +6,17 @@ import ast
 from collections.abc import Iterator
 from functools import lru_cache
 
+from grader.recording.observations import LintKind
+
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def not_declared(
     node: ast.AST, outer: tuple[ast.AST, ...] = ()
-) -> Iterator[tuple[str, str, str, int]]:
+) -> Iterator[tuple[LintKind, str, str, int]]:
     """Functions that set a name which what is round them has set, too.
 
-    Yields: the kind of slip, the name, the declaration that lacks, and a line; as in `Slip`.
+    Yields: the kind of `LintFinding`, the name, the declaration that lacks, and a line.
     """
     for inner in _functions_in(node):
         scopes = [*outer, node]

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say
-from grader.submission.folder import HandedIn, read_bounded, shown
+from grader.message import NOTHING, Message, msg
+from grader.submission.folder import HandedInFolder, read_bounded, shown
 
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.scenes.package.inspection import SetUp, Told
@@ -27,6 +26,7 @@ MOST: Final = 50
 _TARGET: Final = re.compile(r"(\w+(?:\.\w+)*)\s*:\s*(\w+(?:\.\w+)*)\s*(?:\[.*\])?")
 
 
+@dataclass(eq=False)
 class NotInspected(Exception):
     """What there is to start only an inspection can tell.
 
@@ -36,10 +36,9 @@ class NotInspected(Exception):
         inside: the archives in what was handed in that are looked into, the innermost first.
     """
 
-    def __init__(self, base: Path, folders: Sequence[str]) -> None:
-        super().__init__(base)
-        self.base, self.folders = base, folders
-        self.inside: list[str] = []
+    base: Path
+    folders: tuple[str, ...]
+    inside: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ class ConsoleScript:
 
 
 @dataclass(frozen=True)
-class Package:
+class PackageFolder:
     """A folder with set-up files, and what they say.
 
     Attributes:
@@ -70,12 +69,12 @@ class Package:
         return self.said.told if self.said else None
 
     @property
-    def problem(self) -> str:
+    def problem(self) -> Message:
         """A sentence on what ended its set-up; '' where that came to its end."""
         from grader.scenes.package.said import how_it_ends
 
         if self.said is None or self.said.problem is None:
-            return ""
+            return NOTHING
         file = self.said.problem.file
         return how_it_ends(file if file in SETUP_FILES else "setup.py", self.said.problem)
 
@@ -99,7 +98,7 @@ class Package:
         return [root for root in dict.fromkeys(roots) if root.is_relative_to(folder)] or [folder]
 
 
-def read_package(said: SetUp, handed_in: HandedIn) -> Package:
+def read_package(said: SetUp, handed_in: HandedInFolder) -> PackageFolder:
     """A folder by what its set-up files say.
 
     Raises:
@@ -112,24 +111,24 @@ def read_package(said: SetUp, handed_in: HandedIn) -> Package:
         name, _, target = line.partition("=") if "=" in line else ("", "", line)
         script = _console_script(name.strip(), target.strip(), folder, handed_in)
         scripts.setdefault(script.name, script)
-    return Package(folder, tuple(scripts.values()), said)
+    return PackageFolder(folder, tuple(scripts.values()), said)
 
 
-def _console_script(name: str, target: str, folder: Path, handed_in: HandedIn) -> ConsoleScript:
+def _console_script(
+    name: str, target: str, folder: Path, handed_in: HandedInFolder
+) -> ConsoleScript:
     file = _file_of(folder, name or target)
     match = _TARGET.fullmatch(target)
     if not name or match is None:
         found = shown(f"{name} = {target}" if name else target)
-        hint = say(" A comma seems to be missing between two entries.") if "=" in target else ""
+        hint = msg(" A comma seems to be missing between two entries.") if "=" in target else ""
         raise SubmissionError(
-            say(
-                "{file} has the console script '{found}'.{hint} Expected 'name = "
-                "package.module:function', for example 'turtle_controller = "
-                "my_package.turtle_controller:main'.",
-                file=handed_in.called(file),
-                found=found,
-                hint=hint,
-            )
+            "{file} has the console script '{found}'.{hint} Expected 'name = "
+            "package.module:function', for example 'turtle_controller = "
+            "my_package.turtle_controller:main'.",
+            file=handed_in.called(file),
+            found=found,
+            hint=hint,
         )
     return ConsoleScript(name, match[1], match[2], file)
 

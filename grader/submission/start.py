@@ -6,6 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
+from grader.message import Message
+from grader.recording.observations import LintFinding
 from grader.strict_json import UNSTORED, not_empty
 from grader.submission.private_copy import PrivateCopy
 
@@ -75,34 +77,18 @@ class Imports:
 
 
 @dataclass(frozen=True)
-class Slip:
-    """What a look at the source shows; see `grader.recording.conduct.Slip`.
-
-    Attributes:
-        text: the line as it stands there.
-    """
-
-    kind: str
-    name: str
-    near: str
-    file: str
-    line: int
-    text: str = ""
-
-
-@dataclass(frozen=True)
 class Submission:
     """What was handed in, and how it starts."""
 
     name: str  # as handed in: "alice.zip", "turtle_controller.py"
     root: Path  # in its copy, absolute; comes first on sys.path and is the working directory
     start: EntryPoint | Script | Launch | Whole
-    found: str  # a sentence for the user: "console script turtle_controller in setup.py"
+    found: Message  # a sentence for the user: "console script turtle_controller in setup.py"
     imports: Imports = field(default_factory=Imports, compare=False)
     #: for the result: what is wrong with it that a run does not show, and what was not started
-    notes: tuple[str, ...] = field(default=(), compare=False)
+    notes: tuple[Message, ...] = field(default=(), compare=False)
     #: what its source shows that is seldom meant
-    slips: tuple[Slip, ...] = field(default=(), compare=False)
+    lint_findings: tuple[LintFinding, ...] = field(default=(), compare=False)
     #: files that it lacked, and has been given, below `root`
     added: tuple[Path, ...] = field(default=(), compare=False)
     #: the folder of the package that its program is in, absolute; None where it is in none
@@ -115,20 +101,29 @@ class Submission:
     copy: PrivateCopy | None = field(default=None, compare=False, metadata=UNSTORED)
 
     @property
-    def remarks(self) -> tuple[str, ...]:
+    def remarks(self) -> tuple[Message, ...]:
         """For the result: its notes, and what of it was left out."""
         return (*self.notes, *(self.copy.remarks if self.copy else ()))
 
-    def again(self, place: Path) -> Submission:
-        """The same for one run, which may write into it: copied below an empty folder."""
-        if self.copy is None:
+    @property
+    def folder(self) -> Path:
+        """All of it, as its runs find it; nobody may write into it."""
+        return self.copy.folder if self.copy else self.root
+
+    def moved(self, folder: Path) -> Submission:
+        """The same for one run, which has a copy of its own in another folder."""
+        before = self.folder
+        if folder == before:
             return self
-        copy, start = self.copy.again(place), self.start
+
+        def there(path: Path) -> Path:
+            return folder / path.relative_to(before)
+
+        start = self.start
         if isinstance(start, Script):
-            start = replace(start, path=copy.folder / start.path.relative_to(self.copy.folder))
-        root = copy.folder / self.root.relative_to(self.copy.folder)
-        package = self.package and copy.folder / self.package.relative_to(self.copy.folder)
-        return replace(self, root=root, start=start, package=package, copy=copy)
+            start = replace(start, path=there(start.path))
+        package, copy = self.package and there(self.package), self.copy and self.copy.moved(folder)
+        return replace(self, root=there(self.root), start=start, package=package, copy=copy)
 
     def as_handed_in(self, text: str) -> str:
         """What a run of it has printed, with paths as if it had run where it was handed in."""

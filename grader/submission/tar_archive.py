@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import IO, Final
 
-from grader.language.phrase import say
+from grader.message import NOTHING, Message, msg
 from grader.submission.archive_members import (
     PACK_AGAIN,
     Bounded,
@@ -23,7 +23,7 @@ from grader.submission.folder import shown
 MAX_HEADERS: Final = 50_000  # with those of caches and venvs, which are not written
 MAX_HEADER_BYTES: Final = 100_000  # of one header, with the long names that come before it
 
-_LONG: Final = say(
+_LONG: Final = msg(
     "one of its headers has more than {max_header_bytes:g} kB",
     max_header_bytes=MAX_HEADER_BYTES / 1e3,
 )
@@ -72,7 +72,7 @@ def _decompress(archive: Path, plain: Path, budget: Budget) -> None:
 def _members(packed: tarfile.TarFile, most: int) -> Iterator[Member]:
     for number, info in enumerate(packed):
         if number >= most:
-            raise ListTooLong(say("it has more than {most:,} entries", most=most))
+            raise ListTooLong(msg("it has more than {most:,} entries", most=most))
         yield Member(info.name, info.isdir(), _refusal(info), partial(_file, packed, info))
 
 
@@ -83,16 +83,16 @@ def _file(packed: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
     return file
 
 
-def _refusal(info: tarfile.TarInfo) -> str:
+def _refusal(info: tarfile.TarInfo) -> Message:
     path = shown(info.name)
     if info.issym() or info.islnk():
-        return say(
+        return msg(
             "holds {path} as a link. Pack it again with the file itself in that place.", path=path
         )
     if not info.isreg() or info.issparse():
-        return say(
+        return msg(
             "holds {path}, which is not an ordinary file. {pack_again}",
             path=path,
             pack_again=PACK_AGAIN,
         )
-    return ""
+    return NOTHING

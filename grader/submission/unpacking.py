@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say
 from grader.submission.folder import shown
 
 if TYPE_CHECKING:
@@ -47,14 +46,12 @@ class Unpacking:
 
         if not self._places:
             raise SubmissionError(
-                say(
-                    "{name} lies in an archive in an archive in an archive, which is too "
-                    "deep. Hand in the innermost.",
-                    name=shown(archive.name),
-                )
+                "{name} lies in an archive in an archive in an archive, which is too "
+                "deep. Hand in the innermost.",
+                name=shown(archive.name),
             )
         if not archive.is_file():
-            raise SubmissionError(say("{name} is not an ordinary file.", name=shown(archive.name)))
+            raise SubmissionError("{name} is not an ordinary file.", name=shown(archive.name))
         self._budget = self._budget or Budget()
         place = self._places.pop(0)
         place.mkdir()

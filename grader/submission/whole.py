@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import Final
 
 from grader.errors import SubmissionError
-from grader.language.phrase import say, say_many
-from grader.submission.folder import HandedIn, files_below, listed, near, shown, top_of
+from grader.message import msg, msg_many
+from grader.submission.folder import HandedInFolder, files_below, listed, near, shown, top_of
 from grader.submission.manifest import FILE, read_manifest
-from grader.submission.refusals import missing, unreadable
+from grader.submission.refusals import missing, readable
 from grader.submission.set_ups import SETUP_FILES
 from grader.submission.start import Submission, Whole
 from grader.submission.unpacking import Unpacking, is_archive
 
-_HAND_IN: Final = say("Hand in the folder of your ROS 2 package, or a .zip of it.")
+_HAND_IN: Final = msg("Hand in the folder of your ROS 2 package, or a .zip of it.")
 _MARKS: Final = (FILE, "CMakeLists.txt", *SETUP_FILES)
 
 
@@ -29,10 +29,8 @@ def find(path: Path, package: str | None, scratch: Path) -> Submission:
         SubmissionError: there is none, or none of this name.
         UsageError: there is no such path.
     """
-    try:
+    with readable(path):
         return _find(path, package, scratch)
-    except OSError as error:
-        raise unreadable(path, error) from error
 
 
 def _find(path: Path, package: str | None, scratch: Path) -> Submission:
@@ -41,48 +39,42 @@ def _find(path: Path, package: str | None, scratch: Path) -> Submission:
         raise missing(path)
     unpacking = Unpacking(scratch)
     if path.is_dir():
-        handed_in = HandedIn(name, path.resolve())
+        handed_in = HandedInFolder(name, path.resolve())
     elif is_archive(path):
-        handed_in = HandedIn(name, unpacking.unpack(path))
+        handed_in = HandedInFolder(name, unpacking.unpack(path))
     else:
         raise SubmissionError(
-            say(
-                "{name} is neither a folder nor a .zip or .tar.gz. {hand_in}",
-                name=name,
-                hand_in=_HAND_IN,
-            )
+            "{name} is neither a folder nor a .zip or .tar.gz. {hand_in}",
+            name=name,
+            hand_in=_HAND_IN,
         )
     files = files_below(top_of(handed_in.base))
     archives = [file for file in files if is_archive(file)]
     if len(archives) == 1 and not any(file.name in _MARKS for file in files):
         handed_in.must_hold(archives[0])
-        handed_in = HandedIn(name, unpacking.unpack(archives[0]))
+        handed_in = HandedInFolder(name, unpacking.unpack(archives[0]))
         files = files_below(top_of(handed_in.base))
     folders = sorted({file.parent for file in files if file.name in _MARKS})
     if not folders:
         names = [handed_in.called(file) for file in files]
         raise SubmissionError(
-            say(
-                "{name} holds no ROS 2 package: no package.xml, setup.py or "
-                "CMakeLists.txt (it holds: {names}). {hand_in}",
-                name=name,
-                names=listed(names) or say("only folders that are not searched"),
-                hand_in=_HAND_IN,
-            )
+            "{name} holds no ROS 2 package: no package.xml, setup.py or "
+            "CMakeLists.txt (it holds: {names}). {hand_in}",
+            name=name,
+            names=listed(names) or msg("only folders that are not searched"),
+            hand_in=_HAND_IN,
         )
     manifests = (read_manifest(each / FILE) for each in folders if (each / FILE).is_file())
     names = sorted({shown(each.name) for each in manifests if each is not None and each.name})
     if package is not None and package not in names:
         meant = near(package, names) or names
         raise SubmissionError(
-            say(
-                "{name} has no package {package}; there is: {names}.",
-                name=name,
-                package=shown(package),
-                names=listed(meant) or say("none"),
-            )
+            "{name} has no package {package}; there is: {names}.",
+            name=name,
+            package=shown(package),
+            names=listed(meant) or msg("none"),
         )
-    found = say("a package without {file}", file=FILE)
+    found = msg("a package without {file}", file=FILE)
     if names:
-        found = say_many("the package {names}", "packages {names}", len(names), names=listed(names))
+        found = msg_many("the package {names}", "packages {names}", len(names), names=listed(names))
     return Submission(name, handed_in.base, Whole(package or ""), found)

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from grader.language.phrase import say
+from grader.message import NOTHING, Message, msg
 from grader.submission.archive_members import PACK_AGAIN, Bounded, Member
 from grader.submission.folder import shown
 
@@ -35,7 +35,7 @@ def opened(archive: Path, most: int | None = None) -> Iterator[list[Member]]:
         Exception: it is damaged; see `archive.DAMAGED`.
     """
     most = most or MAX_LIST_BYTES
-    why = say("its list has more than {most:g} MB", most=most / 1e6)
+    why = msg("its list has more than {most:g} MB", most=most / 1e6)
     with Bounded(archive, most, why) as file, zipfile.ZipFile(file) as packed:
         yield [
             Member(
@@ -58,22 +58,22 @@ def _name(info: zipfile.ZipInfo) -> str:
         return info.filename
 
 
-def _refusal(info: zipfile.ZipInfo) -> str:
+def _refusal(info: zipfile.ZipInfo) -> Message:
     path = shown(_name(info).replace("\\", "/"))
     if info.flag_bits & _ENCRYPTED:
-        return say(
+        return msg(
             "is encrypted: {path} asks for a password. Pack it again without a password.", path=path
         )
     kind = stat.S_IFMT(info.external_attr >> 16)
     if kind == stat.S_IFLNK:
-        return say(
+        return msg(
             "holds {path} as a symbolic link. Pack it again with the file itself in that place.",
             path=path,
         )
     if kind not in (0, stat.S_IFREG):
-        return say(
+        return msg(
             "holds {path}, which is not an ordinary file. {pack_again}",
             path=path,
             pack_again=PACK_AGAIN,
         )
-    return ""
+    return NOTHING

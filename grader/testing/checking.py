@@ -8,17 +8,20 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from grader.diagnosis.diagnose import diagnose
+from grader.exercise.asking import Answers, NoFinding, NotReached
+from grader.exercise.check import answers, judge_by
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
-from grader.grading import run_all, runner
+from grader.exercise.places import describe
+from grader.exercise.verdict import Evidence, Finding, Verdict
+from grader.grading import gather, run_all, runner
 from grader.judging import AnyPath
-from grader.language.phrase import say
-from grader.recording.recording import Recordings
+from grader.message import Message, msg, plain_text
+from grader.recording.recording import Recording, Recordings, Run
+from grader.recording.subject import Start, Trace
 from grader.run.opening import open_submission
 from grader.scratch import make_folder
-from grader.testing.examination import Examination, Problem, Trial
-from grader.testing.oddities import odd_recordings
-from grader.testing.sanity import Fault, examine
+from grader.testing.examination import Examination, Fault, Problem, Trial
 from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
 
 #: Told how many runs are through, how many there are, and whose run that was.
@@ -72,6 +75,26 @@ def check_exercise(
     return Examination(asked.name, tuple(asked.points), tuple(trials), tuple(problems))
 
 
+def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
+    """Recordings of what its scene calls odd, from every start."""
+
+    def recorded(trace: Trace, start: Start | None) -> Recording:
+        run = Run(
+            time="virtual",
+            ticks=trace.ticks,
+            simulated_s=trace.duration_ns / 1e9,
+            trace_sha256=trace.sha256(),
+        )
+        return Recording(trace, run, start=start, scene=exercise.scene)
+
+    starts = (None, *exercise.starts())
+    runs = [exercise.subject.odd_traces(exercise.setting, start) for start in starts]
+    return {
+        what: gather((n, recorded(r[what], starts[n])) for n, r in enumerate(runs))
+        for what in runs[0]
+    }
+
+
 def _run(
     exercise: Exercise, solutions: Sequence[Solution], jobs: int, progress: Progress | None
 ) -> Mapping[str, Recordings]:
@@ -106,17 +129,17 @@ def _unexpected(trial: Trial) -> Iterator[Fault]:
             if verdict.status != "passed":
                 yield Fault(
                     verdict.check,
-                    say("a right solution loses points: {rationale}", rationale=verdict.rationale),
+                    msg("a right solution loses points: {rationale}", rationale=verdict.rationale),
                 )
         return
     if not trial.caught_by:
-        yield Fault("", say("nobody catches a mutant"))
+        yield Fault("", msg("nobody catches a mutant"))
     if solution.leaves is None:
         return
     for verdict in trial.verdicts:
         expected = solution.leaves.get(verdict.check, 1.0)
         if not _fits(verdict.score, verdict.max_score, expected):
-            text = say(
+            text = msg(
                 "leaves {score:g} of {max_score:g} points; {file} says {said}",
                 score=verdict.score,
                 max_score=verdict.max_score,
@@ -132,13 +155,13 @@ def _unsaid(trial: Trial, recordings: Recordings) -> Iterator[Fault]:
     if not says:
         return
     found = diagnose(recordings, trial.verdicts)
-    told = "" if found is None else found.cause
+    told = "" if found is None else str(found.cause)
     if found is not None and found.place is not None:
         told += f" ({found.place.file}, line {found.place.line})"
     if says not in told:
         yield Fault(
             "",
-            say(
+            msg(
                 "its first line is {told!r}; {file} says {says!r}",
                 told=told,
                 file=FILE_NAME,
@@ -153,8 +176,8 @@ def _fits(score: float, max_score: float, expected: Left) -> bool:
     return score == round(max_score * expected, 2)
 
 
-def _said(expected: Left) -> str:
-    return "some" if expected == "some" else say("{share:g} of them", share=expected)
+def _said(expected: Left) -> str | Message:
+    return "some" if expected == "some" else msg("{share:g} of them", share=expected)
 
 
 def _twice(
@@ -163,22 +186,83 @@ def _twice(
     """What differs between two runs of the same solution."""
     hashes = [[run.run.trace_sha256 for run in recordings] for recordings in (first, second)]
     if hashes[0] != hashes[1]:
-        yield Fault("", say("two runs of a right solution are not the same run"))
+        yield Fault("", msg("two runs of a right solution are not the same run"))
         return
     for once, again in zip(trial.verdicts, examine(exercise, second)[0], strict=True):
         if once != again:
-            yield Fault(once.check, say("two equal runs get different findings"))
+            yield Fault(once.check, msg("two equal runs get different findings"))
 
 
 def _never_failing(examination: Examination) -> Iterator[Fault]:
     if not examination.mutants:
-        yield Fault("", say("there are no mutants in {file}", file=FILE_NAME))
+        yield Fault("", msg("there are no mutants in {file}", file=FILE_NAME))
         return
     for check, caught in examination.catches.items():
         if not caught:
-            yield Fault(check, say("never fails on any mutant"))
+            yield Fault(check, msg("never fails on any mutant"))
 
 
-def _remarks(recordings: Recordings) -> tuple[str, ...]:
+def _remarks(recordings: Recordings) -> tuple[Message, ...]:
     found = [flag for recording in recordings for flag in recording.run.flags]
     return tuple(dict.fromkeys(found))
+
+
+def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], list[Fault]]:
+    """The verdicts on recordings, and what is wrong with the checks that made them."""
+    faults: list[Fault] = []
+    is_whole = True
+
+    def judged(answered: Answers) -> list[Verdict]:
+        def watched(name: str) -> Finding:
+            nonlocal is_whole
+            try:
+                finding = answered(name)
+            except NoFinding as error:
+                text = error.args[0]
+                faults.append(
+                    Fault(name, msg("raises {error}", error=text) if error.was_raised else text)
+                )
+                return Finding(0, plain_text("The check found nothing."))
+            except NotReached as hit:
+                is_whole = False
+                if hit.by == name:
+                    faults.append(Fault(name, hit.what))
+                return Finding(0, plain_text("The check found nothing."))
+            odd = list(_odd_about(finding, exercise, recordings))
+            faults.extend(Fault(name, text) for text in odd)
+            return finding
+
+        return judge_by(watched, exercise.checks, exercise.points)
+
+    def told(_: object, error: BaseException) -> str:
+        return str(describe(error, exercise.folder))
+
+    # both times in the same process, which may remember what it should not
+    judging = (exercise.checks, exercise.points, exercise.tolerances)
+    first, second = map(judged, answers(recordings, *judging, told, rounds=2))
+    for once, again in zip(first, second, strict=True):
+        if is_whole and repr(once) != repr(again):  # not a number is none but looks like itself
+            text = msg("finds something else when it is asked again about the same recordings")
+            faults.append(Fault(once.check, text))
+    return first, list(dict.fromkeys(faults))
+
+
+def _odd_about(finding: Finding, exercise: Exercise, recordings: Recordings) -> Iterator[Message]:
+    if not str(finding.rationale).strip():
+        yield msg("has an empty rationale: what was seen?")
+    if finding.share < 1 and not str(finding.help).strip():
+        yield msg("fails without help: what is there to look at?")
+    for item in finding.evidence:
+        yield from _odd_about_evidence(item, exercise, recordings)
+
+
+def _odd_about_evidence(
+    item: Evidence, exercise: Exercise, recordings: Recordings
+) -> Iterator[Message]:
+    end_s = list(recordings)[item.run].run.simulated_s
+    if item.time_s > end_s + 0.001:
+        yield msg("evidence: {time_s} s is outside the recording", time_s=item.time_s)
+    if item.place and not exercise.subject.plane.holds(*item.place):
+        yield msg("evidence: the place ({x}, {y}) is outside the picture", x=item.x, y=item.y)
+    if not item.note:
+        yield msg("evidence: has an empty note")

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.exercise.verdict import Verdict
-from grader.language.phrase import Phrase, joined, say
-from grader.testing.sanity import Fault
+from grader.message import Message, joined, msg
 from grader.testing.solutions import Solution
 
 SCHEMA = "turtlesim-grader/examination/v1"
+
+
+class Fault(NamedTuple):
+    """Something to mend; `check` is "" where it is none of one check."""
+
+    check: str
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -24,7 +30,7 @@ class Trial:
 
     solution: Solution
     verdicts: tuple[Verdict, ...]
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
 
     @property
     def caught_by(self) -> tuple[str, ...]:
@@ -39,16 +45,21 @@ class Problem:
     fault: Fault
     on: tuple[str, ...] = ()
 
-    def __str__(self) -> str:
-        parts = [f"{self.fault.check}: " if self.fault.check else "", self.fault.text]
+    @property
+    def text(self) -> Message:
+        """It in words: 'CHECK: what is wrong (on SOLUTIONS)'."""
+        parts: list[str | Message] = [
+            f"{self.fault.check}: " if self.fault.check else "",
+            self.fault.text,
+        ]
         if self.on:
-            parts.append(say(" (on {solutions})", solutions=self._solutions))
+            parts.append(msg(" (on {solutions})", solutions=self._solutions))
         return joined(parts)
 
     @property
-    def _solutions(self) -> str:
-        first, more = joined([Phrase(name) for name in self.on[:3]], ", "), len(self.on) - 3
-        return say("{names} and {n} more", names=first, n=more) if more > 0 else first
+    def _solutions(self) -> Message:
+        first, more = joined(self.on[:3], ", "), len(self.on) - 3
+        return msg("{names} and {n} more", names=first, n=more) if more > 0 else first
 
 
 @dataclass(frozen=True)
@@ -97,7 +108,7 @@ class Examination:
             "exercise": self.exercise,
             "fine": self.is_fine,
             "problems": [
-                {"check": p.fault.check, "text": p.fault.text, "on": list(p.on)}
+                {"check": p.fault.check, "text": str(p.fault.text), "on": list(p.on)}
                 for p in self.problems
             ],
             "catches": {check: list(names) for check, names in self.catches.items()},
@@ -106,7 +117,7 @@ class Examination:
                 {
                     "name": trial.solution.name,
                     "right": trial.solution.is_right,
-                    "remarks": list(trial.remarks),
+                    "remarks": list(map(str, trial.remarks)),
                     "checks": {
                         v.check: {"status": v.status, "score": v.score, "max_score": v.max_score}
                         for v in trial.verdicts

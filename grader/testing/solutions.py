@@ -32,7 +32,8 @@ in the same way:
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import shutil
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -41,8 +42,102 @@ from grader.errors import ExerciseError
 from grader.exercise import places
 from grader.exercise.exercise import Exercise
 from grader.exercise.yaml_file import Keys, Mistake, read_yaml
-from grader.language.phrase import reason, say
-from grader.testing.changes import MADE, Change, changed, lay_out, read
+from grader.message import reason
+
+#: The keys of a solution that is made of the first one.
+MADE = frozenset(("replace", "files", "put"))
+
+
+@dataclass(frozen=True)
+class Change:
+    """One of them.
+
+    Attributes:
+        old, new: a passage that stands there exactly once, and what stands there instead. Without
+            `old`, `new` is all of the file, and None takes it away.
+        file: in which file of a folder; '' where the solution is a file.
+    """
+
+    old: str | None
+    new: str | None
+    file: str = ""
+
+
+def read(words: Mapping[str, Any], program: str, folder: Path) -> tuple[Change, ...]:
+    """The changes that `put`, `files` and `replace` name, in this order.
+
+    Args:
+        program: the file of a folder in which passages stand where `in` names none.
+        folder: beside what is `put` somewhere.
+
+    Raises:
+        TypeError, KeyError, AttributeError: they are no such.
+        OSError: what is put somewhere cannot be read.
+    """
+    put = {
+        file: places.locate(folder, str(where)).read_text(encoding="utf-8")
+        for file, where in words.get("put", {}).items()
+    }
+    written = {**put, **words.get("files", {})}
+    return (
+        *(Change(None, None if t is None else str(t), str(f)) for f, t in written.items()),
+        *(
+            Change(str(each["old"]), str(each["new"]), str(each.get("in", program)))
+            for each in words.get("replace", ())
+        ),
+    )
+
+
+def changed(name: str, path: Path, changes: Sequence[Change]) -> Mapping[str, str | None]:
+    """File -> its text with the changes, None where it is taken away; '' is the solution itself.
+
+    Raises:
+        ExerciseError: a passage does not stand there exactly once, or there is no such file.
+    """
+    texts: dict[str, str | None] = {}
+    for change in changes:
+        file = path / change.file if change.file else path
+        is_there = texts[change.file] is not None if change.file in texts else file.is_file()
+        if not is_there and (change.old is not None or change.new is None):
+            raise ExerciseError(
+                "mutants: {name}: there is no file {file!r} in {path}",
+                name=name,
+                file=change.file,
+                path=str(path),
+            )
+        if change.old is None:
+            texts[change.file] = change.new
+            continue
+        text = texts.get(change.file) or file.read_text(encoding="utf-8")
+        if text.count(change.old) != 1:
+            raise ExerciseError(
+                "mutants: {name}: {old!r} stands {count} times in {in_file}; expected once",
+                name=name,
+                old=change.old,
+                count=text.count(change.old),
+                in_file=file.name,
+            )
+        texts[change.file] = text.replace(change.old, change.new or "")
+    return texts
+
+
+def lay_out(name: str, path: Path, changes: Sequence[Change], folder: Path) -> Path:
+    """A changed copy in a new folder."""
+    copy = folder / name / path.name
+    texts = changed(name, path, changes)
+    if path.is_dir():
+        shutil.copytree(path, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    else:
+        copy.parent.mkdir(parents=True)
+    for file, text in texts.items():
+        target = copy / file if file else copy
+        if text is None:
+            target.unlink()
+        else:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, encoding="utf-8")
+    return copy
+
 
 FILE_NAME = "mutants.yaml"
 
@@ -104,41 +199,39 @@ def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solutio
             changed(solution.name, solution.path, solution.changes)
     except OSError as error:
         raise ExerciseError(
-            say(
-                "cannot read the solutions of {name!r}, {path}: {why}. Expected a "
-                "{file} in the exercise's folder, or --mutants FILE.",
-                name=exercise.name,
-                path=str(path),
-                why=str(error.strerror),
-                file=FILE_NAME,
-            )
+            "cannot read the solutions of {name!r}, {path}: {why}. Expected a "
+            "{file} in the exercise's folder, or --mutants FILE.",
+            name=exercise.name,
+            path=str(path),
+            why=str(error.strerror),
+            file=FILE_NAME,
         ) from None
     except (ExerciseError, ValueError) as error:
         raise ExerciseError(
-            say("{path} cannot be used: {why}", path=str(path), why=reason(error))
+            "{path} cannot be used: {why}", path=str(path), why=reason(error)
         ) from None
     return found
 
 
 def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]:
     if not isinstance(data, dict) or not isinstance(data.get("right"), dict) or not data["right"]:
-        raise Mistake(("right",), say("expected names with paths of right solutions"))
+        raise Mistake(("right",), "expected names with paths of right solutions")
     unknown = [key for key in data if key not in ("right", "mutants", "program")]
     if unknown:
-        raise Mistake((str(unknown[0]),), say("unknown; there are right, mutants, program"))
+        raise Mistake((str(unknown[0]),), "unknown; there are right, mutants, program")
     (name, where), *others = data["right"].items()
     if isinstance(where, dict):
-        raise Mistake(("right", str(name)), say("expected the path of the first right solution"))
+        raise Mistake(("right", str(name)), "expected the path of the first right solution")
     first = Solution(str(name), places.locate(folder, str(where)), is_right=True)
     program = str(data.get("program", ""))
     made = _Made(first.path, program, folder)
     right = [first, *(_right(str(n), words, made) for n, words in others)]
     mutants = data.get("mutants") or {}
     if not isinstance(mutants, dict):
-        raise Mistake(("mutants",), say("expected names with what is changed"))
+        raise Mistake(("mutants",), "expected names with what is changed")
     both = {solution.name for solution in right} & set(mutants)
     if both:
-        raise ExerciseError(say("{name!r} is both a right solution and a mutant", name=min(both)))
+        raise ExerciseError("{name!r} is both a right solution and a mutant", name=min(both))
     return [
         *right,
         *(_mutant(str(n), words, made, exercise) for n, words in mutants.items()),
@@ -157,10 +250,10 @@ class _Made:
         try:
             changes = read(words, self.program, self.folder)
         except (TypeError, KeyError, AttributeError):
-            raise Mistake((*keys, "replace"), say("expected a list of old and new")) from None
+            raise Mistake((*keys, "replace"), "expected a list of old and new") from None
         is_folder = self.of.is_dir()
         if not changes or any(bool(each.file) != is_folder for each in changes):
-            raise Mistake(keys, say("there is nothing to replace in {path}", path=str(self.of)))
+            raise Mistake(keys, "there is nothing to replace in {path}", path=str(self.of))
         return changes
 
 
@@ -170,21 +263,21 @@ def _right(name: str, words: Any, made: _Made) -> Solution:
     keys: Keys = ("right", name)
     unknown = words.keys() - MADE
     if unknown:
-        raise Mistake(keys, say("unknown {key!r}", key=min(map(str, unknown))))
+        raise Mistake(keys, "unknown {key!r}", key=min(map(str, unknown)))
     return Solution(name, made.of, is_right=True, changes=made.changes(words, keys))
 
 
 def _mutant(name: str, words: Any, made: _Made, exercise: Exercise) -> Solution:
     keys: Keys = ("mutants", name)
     if not isinstance(words, dict) or ("file" in words) != MADE.isdisjoint(words):
-        raise Mistake(keys, say("expected either `replace` or `file`"))
+        raise Mistake(keys, "expected either `replace` or `file`")
     unknown = words.keys() - {"file", "leaves", "says", *MADE}
     if unknown:
-        raise Mistake(keys, say("unknown {key!r}", key=min(map(str, unknown))))
+        raise Mistake(keys, "unknown {key!r}", key=min(map(str, unknown)))
     leaves, says = _leaves(name, words.get("leaves"), exercise), words.get("says", "")
     if not isinstance(says, str):
         raise Mistake(
-            (*keys, "says"), say("expected words of a first line, found {says!r}", says=says)
+            (*keys, "says"), "expected words of a first line, found {says}", says=repr(says)
         )
     if "file" in words:
         path = places.locate(made.folder, str(words["file"]))
@@ -200,13 +293,13 @@ def _leaves(name: str, words: object, exercise: Exercise) -> Mapping[str, Left] 
     if words == "nothing":
         return dict.fromkeys(exercise.points, 0.0)
     if not isinstance(words, dict) or not words:
-        raise Mistake(keys, say("expected 'nothing', or checks with shares"))
+        raise Mistake(keys, "expected 'nothing', or checks with shares")
     for check, left in words.items():
         if check not in {known.name for known in exercise.checks}:
-            raise Mistake(keys, say("no check is named {check!r}", check=check))
+            raise Mistake(keys, "no check is named {check!r}", check=check)
         is_share = isinstance(left, int | float) and not isinstance(left, bool) and 0 <= left < 1
         if left != "some" and not is_share:
             raise Mistake(
-                (*keys, check), say("expected a share below 1, or some; found {left!r}", left=left)
+                (*keys, check), "expected a share below 1, or some; found {left!r}", left=left
             )
     return words

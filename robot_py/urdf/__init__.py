@@ -1,5 +1,6 @@
-"""Reads a URDF as urdfdom 4.0.2 reads it, and says what urdfdom says: `parse`."""
+"""Reads a URDF as urdfdom 4.0.2 reads it, and finds what urdfdom prints: `parse`."""
 
-from robot_py.urdf.document import LONGEST, Reading, parse
+from robot_py.urdf.document import ParsedUrdf, parse
+from robot_py.urdf.tinyxml import Consequence
 
-__all__ = ["LONGEST", "Reading", "parse"]
+__all__ = ["Consequence", "ParsedUrdf", "parse"]

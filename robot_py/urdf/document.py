@@ -5,72 +5,59 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
-from robot_py.findings import Consequence, Finding, Malformed
 from robot_py.model import Collision, Inertial, Joint, Link, Material, Model, Visual
 from robot_py.urdf import tinyxml
-from robot_py.urdf.joints import joint
-from robot_py.urdf.shapes import Tell, collision, inertial, material, visual
-from robot_py.urdf.tinyxml import Element
+from robot_py.urdf.parts import Report, collision, inertial, joint, material, visual
+from robot_py.urdf.tinyxml import Consequence, Element, Malformed, UrdfFinding
 
-#: A longer text is refused unread [characters]. The largest robots that people publish take 1 %.
+#: A longer text is refused unread [characters]. The largest published robots have 1 % of it.
 LONGEST = 32_000_000
 #: What C takes for a whole number at the begin of a text.
 VERSION_NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?[0-9]+")
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
-    """What came out of a URDF.
+class ParsedUrdf:
+    """The outcome of reading a URDF.
 
     Attributes:
         model: the robot; None where urdfdom refuses the text.
-        findings: what urdfdom prints, in its order; what it says twice of one part stands once.
+        findings: what urdfdom prints, in its order; what it prints twice of one part stands once.
     """
 
     model: Model | None
-    findings: tuple[Finding, ...]
-
-    @property
-    def dropped_parts(self) -> bool:
-        """Whether the robot goes without something that the file describes, or tried to."""
-        return any(found.consequence is Consequence.DROPPED for found in self.findings)
+    findings: tuple[UrdfFinding, ...]
 
 
-def parse(text: str) -> Reading:
+def parse(text: str) -> ParsedUrdf:
     """Read a URDF; whatever it is, there is an answer.
 
     Time and memory grow with the length of the text and no more, and nothing that it names is
     opened: it may come from a stranger.
     """
-    findings: list[Finding] = []
+    findings: list[UrdfFinding] = []
     try:
         if len(text) > LONGEST:
             raise Malformed(f"{len(text)} characters are too many for a URDF: {LONGEST} at most")
         model = _model(tinyxml.read(text), findings.append)
     except Malformed as error:
-        return Reading(None, (*findings, *error.findings(Consequence.REFUSED)))
-    return Reading(model, tuple(findings))
+        return ParsedUrdf(None, (*findings, *error.findings(Consequence.REFUSED)))
+    return ParsedUrdf(model, tuple(findings))
 
 
-def _model(document: Element, tell: Tell) -> Model:
+def _model(document: Element, report: Report) -> Model:
     robot = document.first("robot")
     if robot is None:
         raise Malformed("Could not find the 'robot' element in the xml file")
-    name = robot.get("name")
-    if name is None:
-        raise Malformed("No name given for the robot.", line=robot.line)
-    _check_version(robot)
-    materials = _materials(robot, tell)
-    links = _links(robot, materials, tell)
+    name = robot.needed("name", "No name given for the robot.")
+    if (version := robot.get("version")) is not None and (why := _problem_with_version(version)):
+        raise robot.malformed(why)
+    materials = _materials(robot, report)
+    links = _links(robot, materials, report)
     joints = _joints(robot)
     return Model(name, _root(links, joints), links, joints, materials)
-
-
-def _check_version(robot: Element) -> None:
-    version = robot.get("version")
-    if version is not None and (why := _problem_with_version(version)):
-        raise Malformed(why, line=robot.line)
 
 
 def _problem_with_version(version: str) -> str:
@@ -94,35 +81,37 @@ def _problem_with_version(version: str) -> str:
     return ""
 
 
-def _materials(robot: Element, tell: Tell) -> dict[str, Material]:
+def _add(parts: dict[str, Any], name: str, part: object, element: Element) -> None:
+    if name in parts:
+        raise element.malformed(f"{element.name} '{name}' is not unique.")
+    parts[name] = part
+
+
+def _materials(robot: Element, report: Report) -> dict[str, Material]:
     materials: dict[str, Material] = {}
     for element in robot.all("material"):
         name = element.attributes.get("name", "")
         try:
-            read = material(element, tell, name_suffices=False)
+            read = material(element, report, name_suffices=False)
         except Malformed as error:
             for found in error.findings(Consequence.DROPPED):
-                tell(found)
+                report(found)
             read = None
-        if name in materials:
-            raise Malformed(f"material '{name}' is not unique.", line=element.line)
-        materials[name] = read or Material(name)
+        _add(materials, name, read or Material(name), element)
     return materials
 
 
-def _links(robot: Element, materials: dict[str, Material], tell: Tell) -> dict[str, Link]:
+def _links(robot: Element, materials: dict[str, Material], report: Report) -> dict[str, Link]:
     links: dict[str, Link] = {}
     for element in robot.all("link"):
-        link = _link(element, materials, tell)
-        if link.name in links:
-            raise Malformed(f"link '{link.name}' is not unique.", line=element.line)
-        links[link.name] = link
+        link = _link(element, materials, report)
+        _add(links, link.name, link, element)
     if not links:
-        raise Malformed("No link elements found in urdf file", line=robot.line)
+        raise robot.malformed("No link elements found in urdf file")
     return links
 
 
-def _link(element: Element, materials: dict[str, Material], tell: Tell) -> Link:
+def _link(element: Element, materials: dict[str, Material], report: Report) -> Link:
     """A link; where one of its parts is malformed, without that part and all that follow it."""
     name = element.get("name")
     inert: Inertial | None = None
@@ -131,25 +120,26 @@ def _link(element: Element, materials: dict[str, Material], tell: Tell) -> Link:
     kind = ""
     try:
         if name is None:
-            raise Malformed("No name given for the link.", line=element.line)
+            raise element.malformed("No name given for the link.")
         kind = "inertial"
         if (weight := element.first(kind)) is not None:
             inert = inertial(weight)
         kind = "visual"
-        visuals.extend(visual(part, tell) for part in element.all(kind))
+        visuals.extend(visual(part, report) for part in element.all(kind))
         kind = "collision"
         collisions.extend(collision(part) for part in element.all(kind))
     except Malformed as error:
-        told = error.within(f"Could not parse {kind} element for Link [{name}]") if kind else error
-        for found in told.findings(Consequence.DROPPED):
-            tell(found)
+        if kind:
+            error = error.within(f"Could not parse {kind} element for Link [{name}]")
+        for found in error.findings(Consequence.DROPPED):
+            report(found)
     link = Link(name or "", (), tuple(collisions), inert)
-    dressed = [_dressed(one, named, materials, link.name, tell) for one, named in visuals]
+    dressed = [_dressed(one, named, materials, link.name, report) for one, named in visuals]
     return replace(link, visuals=tuple(dressed))
 
 
 def _dressed(
-    visual: Visual, named: str, materials: dict[str, Material], link: str, tell: Tell
+    visual: Visual, named: str, materials: dict[str, Material], link: str, report: Report
 ) -> Visual:
     """The visual in the robot's material of that name, or in its own, which others then may use."""
     if not named:
@@ -159,7 +149,7 @@ def _dressed(
     if visual.material is not None:
         materials[named] = visual.material
     else:
-        tell(Finding(Consequence.WARNED, f"link '{link}' material '{named}' undefined."))
+        report(UrdfFinding(Consequence.WARNED, f"link '{link}' material '{named}' undefined."))
     return visual
 
 
@@ -170,9 +160,7 @@ def _joints(robot: Element) -> dict[str, Joint]:
             read = joint(element)
         except Malformed as error:
             raise error.within("joint xml is not initialized correctly") from None
-        if read.name in joints:
-            raise Malformed(f"joint '{read.name}' is not unique.", line=element.line)
-        joints[read.name] = read
+        _add(joints, read.name, read, element)
     return joints
 
 

@@ -5,18 +5,22 @@ blanks, and a vector over two lines would be right), `--` in a comment is fine, 
 nothing, text after the end is refused only sometimes. What it does not know makes it safe for files
 of strangers: a document type is skipped, nothing is ever expanded but the five named characters and
 numbered ones, nothing is loaded, and depth is bounded. Time and memory grow with the length only.
+
+An `Element` reads its attributes as urdfdom does: a comma, a line break or a unit is no number.
+What is wrong is a `Malformed` in tinyxml2's or urdfdom's own words.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from enum import Enum
+from enum import Enum, StrEnum
 from typing import NoReturn
 
-from robot_py.findings import Malformed
+from robot_py.model import Origin, Vector
 
 #: So many elements may not lie within each other; tinyxml2's, which counts the document.
 TOO_DEEP = 500
@@ -30,6 +34,11 @@ NAME_START = re.compile("[A-Za-z_:\x80-\U0010ffff]")
 LINE_END = re.compile("\r\n|\n\r|\r")
 REFERENCE = re.compile("&(?:(quot|amp|apos|lt|gt)|#x([0-9a-fA-F]+)|#([0-9]+));")
 NAMED = {"quot": '"', "amp": "&", "apos": "'", "lt": "<", "gt": ">"}
+#: A C++ stream skips blanks before a number; nothing may stand behind it. Nothing is tried twice
+#: (`++`): a million digits and a letter would else take hours.
+NUMBER = re.compile(
+    r"[ \t\n\v\f\r]*+([+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?)"
+)
 
 
 class Trouble(Enum):
@@ -57,6 +66,53 @@ PASSED_OVER = (
 )
 
 
+class Consequence(StrEnum):
+    """What becomes of the robot."""
+
+    #: There is no robot: robot_state_publisher ends, or refuses the change.
+    REFUSED = "refused"
+    #: An `Error:` line, yet a robot: it goes without the rest of that link, or that colour.
+    DROPPED = "dropped"
+    #: Nothing is left out.
+    WARNED = "warned"
+
+
+@dataclass(frozen=True, slots=True)
+class UrdfFinding:
+    """One line of what urdfdom prints.
+
+    Attributes:
+        text: without the `Error:` or `Warning:` that stands before it.
+        line: of the element that it is about, in the file, from 1; 0 where it is about the whole.
+    """
+
+    consequence: Consequence
+    text: str
+    line: int = 0
+
+    def __str__(self) -> str:
+        """As console_bridge prints it, but for the second line, which names a place in urdfdom."""
+        prefix = "Warning: " if self.consequence is Consequence.WARNED else "Error:   "
+        return prefix + self.text
+
+
+class Malformed(ValueError):
+    """A part of a URDF that urdfdom gives up: the lines that it prints, innermost first."""
+
+    def __init__(self, *texts: str, line: int = 0) -> None:
+        super().__init__(*texts)
+        self.texts = texts
+        self.line = line
+
+    def within(self, text: str) -> Malformed:
+        """Return the same with what the part around it adds."""
+        return Malformed(*self.texts, text, line=self.line)
+
+    def findings(self, consequence: Consequence) -> list[UrdfFinding]:
+        """Return a finding for each line."""
+        return [UrdfFinding(consequence, text, self.line) for text in self.texts]
+
+
 @dataclass(slots=True)
 class Element:
     """An element, without its text, which URDF has no use for.
@@ -82,6 +138,44 @@ class Element:
         """An attribute's value; None where it is not given."""
         return self.attributes.get(attribute)
 
+    def malformed(self, *texts: str) -> Malformed:
+        """Return what is wrong here."""
+        return Malformed(*texts, line=self.line)
+
+    def needed(self, attribute: str, missing: str) -> str:
+        """Return an attribute's value; `Malformed` with the text `missing` where it is absent."""
+        if attribute not in self.attributes:
+            raise self.malformed(missing)
+        return self.attributes[attribute]
+
+    def number(self, text: str, wrong: str) -> float:
+        """Return a number; `Malformed` with the text `wrong` where it is none."""
+        match = NUMBER.fullmatch(text)
+        if match is None or math.isinf(value := float(match[1])):
+            raise self.malformed(wrong)
+        return value
+
+    def vector(self, text: str) -> Vector:
+        """Return three numbers with blanks between them; `Malformed` where they are not."""
+        of = "to a double (while parsing a vector value)"
+        pieces = list(filter(None, text.split(" ")))
+        values = [
+            self.number(piece, f"Unable to parse component [{piece}] {of}") for piece in pieces
+        ]
+        if len(values) != 3:
+            found = f"{len(values)} elements but 3 expected while parsing vector [{text}]"
+            raise self.malformed(f"Parser found {found}")
+        x, y, z = values
+        return x, y, z
+
+    def origin(self) -> Origin:
+        """Return what the child <origin> describes; no turn and no move where there is none."""
+        origin = self.first("origin")
+        if origin is None:
+            return Origin()
+        xyz, rpy = (origin.vector(origin.attributes.get(name, "0 0 0")) for name in ("xyz", "rpy"))
+        return Origin(xyz, rpy)
+
 
 def read(text: str) -> Element:
     """Return the document: an element without a name, whose children are its outermost elements.
@@ -90,10 +184,10 @@ def read(text: str) -> Element:
         Malformed: with tinyxml2's complaint.
     """
     # to urdfdom the text is a C string
-    return _Reader(text.partition("\0")[0]).document()
+    return _XmlReader(text.partition("\0")[0]).document()
 
 
-class _Reader:
+class _XmlReader:
     """Goes once through the text; `_at` is how far it has come."""
 
     def __init__(self, text: str) -> None:

@@ -11,8 +11,8 @@ import json
 import os
 import pwd
 import secrets
+import select
 import shutil
-import signal
 import socket
 import stat
 import subprocess
@@ -22,11 +22,14 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
+from grader import linux
 from tests.attacks import bystander, handed_in, levels, runners
 from tests.attacks.attacks import ATTACKS, LEFTOVERS, MOVES
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("grader", "turtlesim_py", "turtlesim_challenge")
+#: How often a process that does not answer is looked at [s].
+LOOK_S = 0.05
 #: The memory that a process of a grading may have at most, what its results may take [bytes],
 #: and how many processes there may be.
 MOST_MEMORY, MOST_RESULTS, MOST_PROCESSES = 1400 << 20, 32 << 20, 400
@@ -374,20 +377,20 @@ class _Trial:
             yield f"a service was told by UDP: {self._udp.recv(100)!r}"
 
     def _asked_bystander(self) -> Iterator[str]:
+        """Whether it still answers: what was sent to it may reach it after the grading's end."""
         process = self._bystander
         assert process.stdin is not None and process.stdout is not None
-        state = "gone"
-        with suppress(OSError):
-            state = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[0]
-        if process.poll() is not None or state in "TtZ":
-            yield f"another process was ended or stopped: {process.poll()}, {state}"
-            with suppress(ProcessLookupError):
-                os.kill(process.pid, signal.SIGKILL)
-            return
-        process.stdin.write("?\n")
-        process.stdin.flush()
+        with suppress(BrokenPipeError):
+            os.write(process.stdin.fileno(), b"?\n")
+        while not select.select((process.stdout,), (), (), LOOK_S)[0]:
+            if (found := linux.process_stat(process.pid)).is_stopped:
+                yield f"another process was ended or stopped: {found.state}"
+                process.kill()
+                return
         answer = process.stdout.readline().strip()
-        if answer != "True []":
+        if not answer:  # it has closed its end, and so has come to its own
+            yield f"another process was ended or stopped: {process.wait()}"
+        elif answer != "True []":
             yield f"another process was changed or signalled: {answer}"
 
     def _files(self) -> dict[str, Any]:

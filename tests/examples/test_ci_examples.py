@@ -22,8 +22,8 @@ import jsonschema
 import pytest
 import yaml
 
-from grader.reports import FORMATS
 from grader.result import json_file
+from tests.grader.reports.samples import FORMATS
 from tests.needs import needs
 from tests.tiers import others_are_more
 

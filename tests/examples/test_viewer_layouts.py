@@ -10,6 +10,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 from grader.recording import saving
+from grader.recording.recording import Recordings
 from tests.grader.driving import Spiral, drive
 from tests.programs import ROOT
 
@@ -21,7 +22,7 @@ FOXGLOVE = json.loads((LAYOUTS / "foxglove.json").read_text())
 def messages(tmp_path_factory):
     """Topic -> a decoded message and the name of its schema."""
     made = tmp_path_factory.mktemp("recorded") / "recording"
-    saving.save(drive(Spiral()), made)
+    saving.save_all(Recordings(drive(Spiral())), made)
     with (made / "recording.mcap").open("rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         return {
@@ -70,7 +71,7 @@ def test_types_are_well_known_and_times_are_ticks(messages, tmp_path):
         *("turtlesim/msg/Pose", "turtlesim/msg/Color", "geometry_msgs/msg/Twist"),
         *("std_msgs/msg/String", "rcl_interfaces/msg/Log", "sensor_msgs/msg/Image"),
     }
-    saving.save(drive(Spiral()), tmp_path / "recording")
+    saving.save_all(Recordings(drive(Spiral())), tmp_path / "recording")
     with (tmp_path / "recording" / "recording.mcap").open("rb") as file:
         times = [message.log_time for _, _, message in make_reader(file).iter_messages()]
     assert times == sorted(times)

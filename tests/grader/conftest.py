@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from grader.run.processes import watched
+from grader.run.processes import started_process
 
 PR_GET_CHILD_SUBREAPER, PR_SET_CHILD_SUBREAPER = 37, 36
 
@@ -16,7 +16,7 @@ PR_GET_CHILD_SUBREAPER, PR_SET_CHILD_SUBREAPER = 37, 36
 @pytest.fixture(autouse=True)
 def as_it_was_before() -> Iterator[None]:
     """Restore the handlers of signals, and whether this process adopts orphans."""
-    handlers = {number: signal.getsignal(number) for number in watched.ENDING}
+    handlers = {number: signal.getsignal(number) for number in started_process.ENDING}
     libc, adopts = ctypes.CDLL(None), ctypes.c_int()
     libc.prctl(PR_GET_CHILD_SUBREAPER, ctypes.byref(adopts))
     yield

@@ -14,6 +14,7 @@ from grader.errors import (
     SubmissionError,
     Whose,
 )
+from grader.message import msg, plain_text
 
 
 def kinds():
@@ -24,8 +25,10 @@ def kinds():
 def test_every_error_says_whose_turn_it_is_in_one_text():
     for kind in kinds():
         error = kind("what was found")
-        assert (error.message, str(error)) == ("what was found", "what was found")
+        assert (str(error.message), str(error)) == ("what was found", "what was found")
         assert error.whose in get_args(Whose)
+        assert kind("found {n}", n=2).message == msg("found {n}", n=2)
+        assert kind("found {n}").message == plain_text("found {n}")
 
 
 def test_only_our_own_failure_and_that_of_a_check_exit_with_3():
@@ -44,4 +47,5 @@ def test_only_our_own_failure_and_that_of_a_check_exit_with_3():
     ("name", "shown"), [("\x1b[31mred", "?[31mred"), ("a\nb", "a\nb"), ("x\udcff", "x?")]
 )
 def test_names_of_a_students_files_are_harmless_in_a_terminal(name, shown):
-    assert SubmissionError(name).message == shown
+    assert str(SubmissionError(name).message) == shown
+    assert str(SubmissionError("there is no {name}", name=name)) == f"there is no {shown}"

@@ -112,20 +112,3 @@ def test_a_folder_has_one_writer_at_a_time(tmp_path):
     with files.sole_writer(tmp_path):
         pass
     assert list(tmp_path.iterdir()) == []
-
-
-def test_what_is_written_bit_by_bit_is_there_whole_or_not_at_all(tmp_path):
-    path = tmp_path / "new" / "a.zip"
-    with files.putting(path) as file:
-        file.write(b"half")
-        assert not path.exists()
-        file.write(b" and half")
-    assert path.read_bytes() == b"half and half"
-    with (
-        pytest.raises(UsageError, match=r"cannot write .*a\.zip: full"),
-        files.putting(path) as file,
-    ):
-        file.write(b"new")
-        raise OSError(28, "full")
-    assert path.read_bytes() == b"half and half"
-    assert [p.name for p in path.parent.iterdir()] == ["a.zip"]

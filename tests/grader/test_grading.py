@@ -18,8 +18,7 @@ import yaml
 import grader
 from grader import content
 from grader.errors import ExerciseError, GraderFailure, UsageError
-from grader.run import zygotes
-from grader.submission import reader
+from grader.run import fork_servers
 
 ROOT = Path(__file__).parents[2]
 DRIVES = """
@@ -37,9 +36,8 @@ rclpy.spin(node)
 WATCHES = """
 import ctypes, json, os, signal, sys, threading
 import grader
-from grader.run import zygotes
-from grader.run.processes import watched
-from grader.submission import reader
+from grader.run import fork_servers
+from grader.run.processes import started_process
 
 def state():
     adopts = ctypes.c_int()
@@ -57,8 +55,7 @@ thread = threading.Thread(target=grade)
 thread.start()
 grade()
 thread.join()
-zygotes.close()  # which wait for the next grading, as a reader of hand-ins does
-reader.close()
+fork_servers.close()  # which wait for the next grading
 assert state() == before, (before, state())
 print(len(result))
 """
@@ -144,7 +141,7 @@ def test_a_path_in_an_error_is_that_of_what_was_handed_in(short, tmp_path, time)
     path.write_text("from pathlib import Path\nopen(Path(__file__).with_name('gains.yaml'))\n")
     diagnosis = grader.grade(path, short, time=time).diagnosis
     assert diagnosis is not None
-    assert f"No such file or directory: '{tmp_path}/" in diagnosis.cause
+    assert f"No such file or directory: '{tmp_path}/" in str(diagnosis.cause)
 
 
 @pytest.mark.parametrize("time", ["virtual", "real"])
@@ -175,8 +172,7 @@ def test_nothing_outlives_a_grading_whose_simulator_dies(short, tmp_path, time):
         with pytest.raises(GraderFailure, match="the simulator"):
             task.result()
     assert not [p for p in psutil.process_iter() if words(p) == ["sleep", seconds]]
-    zygotes.close()  # which wait for the next grading, as a reader of hand-ins does
-    reader.close()
+    fork_servers.close()  # which wait for the next grading
     assert set(psutil.Process().children(recursive=True)) <= before
 
 
@@ -217,7 +213,7 @@ def test_a_seed_that_is_no_whole_number_is_refused(drives, seed):
 LOADED = """
 import sys
 from grader import grading
-from grader.run.plan import Plan
+from grader.run.handover import Plan
 
 def run(submission, plan, progress=None):
     print("grader.scenes.package.scene" in sys.modules)

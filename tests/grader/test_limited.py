@@ -6,7 +6,6 @@ import os
 import re
 import signal
 import sys
-import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -15,9 +14,9 @@ import psutil
 import pytest
 
 from grader import limited, system
-from grader.limited import LimitHit, Limits
+from grader.limited import LimitHit, WorkLimits
 
-BRIEF = Limits(cpu_s=0.3, wall_s=60.0, memory_bytes=2**26, answer_bytes=1000)
+BRIEF = WorkLimits(cpu_s=0.3, wall_s=60.0, memory_bytes=2**26, answer_bytes=1000)
 ASLEEP = replace(BRIEF, wall_s=0.5)
 BUSY = replace(BRIEF, cpu_s=60.0)
 
@@ -30,7 +29,9 @@ def test_answers_come_as_they_are_made_from_one_other_process():
             seen.append(number)
             yield f"{os.getpid()} {seen}".encode()
 
-    pids, told = zip(*(each.split(b" ", 1) for each in limited.stream(work, Limits())), strict=True)
+    pids, told = zip(
+        *(each.split(b" ", 1) for each in limited.stream(work, WorkLimits())), strict=True
+    )
     assert told == (b"[0]", b"[0, 1]", b"[0, 1, 2]")
     assert len(set(pids)) == 1 and pids[0] != str(os.getpid()).encode()
     assert seen == []
@@ -98,38 +99,6 @@ def test_what_hits_a_limit_is_told_and_what_came_before_is_there(answer, limits,
     assert psutil.Process().children() == family
 
 
-def test_a_copy_that_got_a_lock_without_its_owner_is_made_again_and_nothing_comes_twice():
-    lock, is_held, is_over = threading.Lock(), threading.Event(), threading.Event()
-
-    def hold():
-        with lock:
-            is_held.set()
-            is_over.wait()
-
-    def work():
-        yield b"one"
-        if lock.locked():
-            is_over.set()  # in the copy, which nobody hears
-            lock.acquire()
-        yield b"two"
-
-    thread = threading.Thread(target=hold)
-    thread.start()
-    is_held.wait()
-    answers = limited.stream(work, ASLEEP)
-    assert next(answers) == b"one"
-    is_over.set()
-    while lock.locked():
-        os.sched_yield()
-    other = threading.Event()
-    keeps = threading.Thread(target=other.wait)
-    keeps.start()
-    assert list(answers) == [b"two"]
-    other.set()
-    for each in (thread, keeps):
-        each.join()
-
-
 def descriptors():
     return {path.name for path in Path("/proc/self/fd").iterdir()}
 
@@ -137,7 +106,7 @@ def descriptors():
 def test_nothing_is_left_of_a_copy():
     before, family = descriptors(), psutil.Process().children()
     for _ in range(20):
-        assert limited.call(lambda: b"x", Limits()) == b"x"
+        assert limited.call(lambda: b"x", WorkLimits()) == b"x"
     assert descriptors() == before
     assert psutil.Process().children() == family
 
@@ -145,7 +114,7 @@ def test_nothing_is_left_of_a_copy():
 def test_a_copy_holds_no_file_of_ours_open():
     kept, given = os.pipe()
     try:
-        answers = limited.stream(lambda: iter([b"x", b"y"]), Limits())
+        answers = limited.stream(lambda: iter([b"x", b"y"]), WorkLimits())
         next(answers)
         os.close(given)
         assert os.read(kept, 1) == b""
@@ -161,7 +130,7 @@ def test_what_it_prints_goes_to_standard_error(capfd):
         os.write(1, b"past Python\n")
         return b""
 
-    limited.call(prints, Limits())
+    limited.call(prints, WorkLimits())
     out, error = capfd.readouterr()
     assert out == ""
     assert sorted(error.split("\n")) == ["", "error", "out", "past Python"]
@@ -174,5 +143,7 @@ def test_where_there_is_no_fork_what_python_notices_is_a_limit_all_the_same(monk
         return deep()
 
     with pytest.raises(LimitHit, match="too deeply"):
-        limited.call(deep, Limits())
-    assert limited.call(lambda: str(os.getpid()).encode(), Limits()) == str(os.getpid()).encode()
+        limited.call(deep, WorkLimits())
+    assert (
+        limited.call(lambda: str(os.getpid()).encode(), WorkLimits()) == str(os.getpid()).encode()
+    )

@@ -109,7 +109,9 @@ def test_the_simulator_and_what_judges_and_shows_recordings_can_be_imported(else
 
 
 def test_the_teleop_says_what_is_missing(tmp_path: Path) -> None:
-    done = Elsewhere("windows", tmp_path).run("-m", "turtlesim_py.programs.teleop_key")
+    # as the installed command does: what is run with -m is __main__, whose imports are Python's
+    command = "import sys; from turtlesim_py.programs.teleop_key import main; sys.exit(main())"
+    done = Elsewhere("windows", tmp_path).run("-c", command)
     assert done.returncode == 2
     assert done.stderr.endswith(
         "turtle_teleop_key: this system has no termios, which gives single keys\n"

@@ -161,15 +161,6 @@ def test_a_folder_that_is_still_being_filled_is_given_up_in_the_end(
     assert remove(folder)
 
 
-def test_where_folders_cannot_be_held_open_it_is_removed_by_its_name(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(removal, "_BY_DESCRIPTOR", False)
-    links_out(folder)
-    specials(folder)
-    assert remove(folder)
-
-
 def test_a_folder_far_deeper_than_open_files_are_allowed_is_removed(folder: Path) -> None:
     deep(folder)
     code = f"""

@@ -12,7 +12,7 @@ import pytest
 
 from grader import scratch
 from grader.errors import GraderFailure
-from grader.run.processes import cores, domain
+from grader.run.processes import cores, isolation
 
 OTHER = 65534
 
@@ -72,11 +72,11 @@ def test_what_lies_where_locks_are_looked_for_stops_nobody(
     place: Path, lay: Callable[[Path], None]
 ) -> None:
     home = scratch.home()
-    names = [f"domain-{number}" for number in domain.DOMAINS]
+    names = [f"domain-{number}" for number in isolation.DOMAINS]
     names += [f"core-{number}" for number in cores.available()]
     for name in (*names, "run-123456789012", "run-"):
         lay(home / f"{name}.lock")
-    with domain.reserve_domain() as first, domain.reserve_domain() as second:
+    with isolation.reserve_domain() as first, isolation.reserve_domain() as second:
         assert first != second
     with cores.reserve_core(0) as core:
         assert core in cores.available()
@@ -90,7 +90,7 @@ def test_what_lies_where_locks_are_looked_for_stops_nobody(
 
 
 def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
-    with domain.reserve_domain() as number:
+    with isolation.reserve_domain() as number:
         found = (scratch.home() / f"domain-{number}.lock").lstat()
     assert stat.S_ISREG(found.st_mode)
     assert stat.S_IMODE(found.st_mode) == 0o600
@@ -99,13 +99,13 @@ def test_a_lock_is_an_ordinary_file_that_nobody_else_reads(place: Path) -> None:
 def test_a_lock_that_was_moved_away_is_not_held(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    take = scratch.locks.take
+    take = scratch.take
 
     def take_late(file):  # type: ignore[no-untyped-def]
         Path(file.name).unlink()
         return take(file)
 
-    monkeypatch.setattr(scratch.locks, "take", take_late)
+    monkeypatch.setattr(scratch, "take", take_late)
     assert scratch.take_lock("core-0") is None
     with pytest.raises(GraderFailure, match="removes the locks"), scratch.make_folder():
         pass
@@ -125,7 +125,7 @@ def test_what_lies_where_the_folder_would_be_is_gone_round_and_left_alone(
     before = place.lstat()
     assert scratch.home() == Path(os.environ["XDG_RUNTIME_DIR"]) / "turtlesim-grader"
     assert scratch.home().stat().st_mode & 0o777 == 0o700
-    with scratch.make_folder(), domain.reserve_domain(), cores.reserve_core(0):
+    with scratch.make_folder(), isolation.reserve_domain(), cores.reserve_core(0):
         pass
     assert place.lstat().st_mode == before.st_mode
     assert not (place.parent.parent / "made by the grader").exists()
@@ -153,9 +153,9 @@ def test_where_no_place_is_left_it_says_which_whose_and_what_to_do(
     (tmp_path / "user").touch()
     with pytest.raises(GraderFailure) as error, scratch.make_folder():
         pass
-    assert f"{place}: it is no folder, and belongs to " in error.value.message
-    assert f"{tmp_path}/user/.cache/turtlesim-grader: Not a directory" in error.value.message
-    assert "set TMPDIR" in error.value.message
+    assert f"{place}: it is no folder, and belongs to " in str(error.value)
+    assert f"{tmp_path}/user/.cache/turtlesim-grader: Not a directory" in str(error.value)
+    assert "set TMPDIR" in str(error.value)
 
 
 def test_what_a_run_that_was_killed_leaves_goes_with_the_next_whatever_it_is(place: Path) -> None:
@@ -181,3 +181,47 @@ def test_the_folder_goes_even_if_what_is_in_it_is_forbidden(place: Path) -> None
         (made / "a").chmod(0)
     assert not made.exists()
     shutil.rmtree(place)
+
+
+def test_a_lock_has_one_holder_until_he_closes_it(tmp_path: Path) -> None:
+    path = tmp_path / "lock"
+    with path.open("w") as first:
+        assert scratch.take(first)
+        with path.open("w") as second:
+            assert not scratch.take(second)
+    with path.open("w") as third:
+        assert scratch.take(third)
+
+
+def test_a_folder_leaves_nothing(place: Path) -> None:
+    with scratch.make_folder() as folder:
+        (folder / "file").write_text("text")
+    assert list(scratch.home().iterdir()) == []
+
+
+def test_what_a_killed_grader_left_is_cleared_and_what_is_in_use_is_not(place: Path) -> None:
+    (scratch.home() / "run-dead" / "tmp").mkdir(parents=True)
+    (scratch.home() / "run-dead.lock").touch()
+    with scratch.make_folder() as first, scratch.make_folder() as second:
+        names = {path.name for path in scratch.home().iterdir() if path.is_dir()}
+        assert names == {first.name, second.name}
+    assert list(scratch.home().iterdir()) == []
+
+
+def test_a_lock_that_another_has_taken_for_a_leftover_is_not_used(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """He looked round between two steps of ours, and has removed it."""
+    taken: list[str] = []
+    take = scratch.take
+
+    def take_late(file):  # type: ignore[no-untyped-def]
+        taken.append(file.name)
+        if len(taken) == 1:
+            Path(file.name).unlink()
+        return take(file)
+
+    monkeypatch.setattr(scratch, "take", take_late)
+    with scratch.make_folder() as folder:
+        assert folder.is_dir()
+        assert Path(taken[1]).stem == folder.name

@@ -72,8 +72,8 @@ def test_json_numbers_are_whole_where_they_can_be():
 
 
 def test_a_turtle_that_is_nowhere_is_at_an_unknown_place():
-    assert text.place(1, 2.346) == "(1.00, 2.35)"
-    assert text.place(float("nan"), 2) == "an unknown place"
+    assert str(text.place(1, 2.346)) == "(1.00, 2.35)"
+    assert str(text.place(float("nan"), 2)) == "an unknown place"
 
 
 @pytest.mark.parametrize(

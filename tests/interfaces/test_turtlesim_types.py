@@ -156,7 +156,7 @@ def test_both_packages_say_the_same_of_a_type(name: str) -> None:
 
 @pytest.mark.parametrize("name", MESSAGES)
 def test_message_arrives_as_it_was_sent(peer: Peer, interfaces: Interfaces, name: str) -> None:
-    kind = getattr(interfaces, name)
+    kind = getattr(interfaces.msg, name)
     message = kind(**MESSAGES[name])
     received: Future = Future()
     topic = f"sent/{interfaces.package}/{name.lower()}"
@@ -171,7 +171,7 @@ def test_message_arrives_as_it_was_sent(peer: Peer, interfaces: Interfaces, name
 
 @pytest.mark.parametrize("name", CALLS)
 def test_service_is_called_and_answers(peer: Peer, interfaces: Interfaces, name: str) -> None:
-    kind = getattr(interfaces, name)
+    kind = getattr(interfaces.srv, name)
     asked, answered = CALLS[name]
     request_, response = kind.Request(**asked), kind.Response(**answered)
     requests = []
@@ -188,7 +188,7 @@ def test_service_is_called_and_answers(peer: Peer, interfaces: Interfaces, name:
 
 
 def test_action_gives_feedback_and_a_result(peer: Peer, interfaces: Interfaces) -> None:
-    kind = interfaces.RotateAbsolute
+    kind = interfaces.action.RotateAbsolute
 
     def execute(goal: Any) -> Any:
         goal.publish_feedback(kind.Feedback(remaining=goal.request.theta))
@@ -211,7 +211,7 @@ def test_action_gives_feedback_and_a_result(peer: Peer, interfaces: Interfaces) 
 
 def test_a_node_describes_the_type_to_others(peer: Peer, interfaces: Interfaces) -> None:
     package = interfaces.package
-    peer.node.create_publisher(interfaces.Pose, "described", 7)
+    peer.node.create_publisher(interfaces.msg.Pose, "described", 7)
     client = peer.node.create_client(GetTypeDescription, "/peer/get_type_description")
     assert client.wait_for_service(DEADLINE_S)
     answer = peer.wait_for(

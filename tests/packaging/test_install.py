@@ -82,7 +82,9 @@ def test_programs_get_their_arguments(ros2_run: FindProgram, shell: Environment)
     assert "submission" in help_.stdout
 
 
-@pytest.mark.parametrize("package", ["turtlesim_py", "turtlesim_challenge", "grader", "robot_py"])
+@pytest.mark.parametrize(
+    "package", ["turtlesim_py", "turtlesim_challenge", "grader", "grader_robots", "robot_py"]
+)
 def test_each_package_has_a_manifest_with_its_name_and_version(package: str) -> None:
     manifest = Path(sys.prefix, "share", package, "package.xml").read_text()
     assert f"<name>{package}</name>" in manifest

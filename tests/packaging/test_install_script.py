@@ -85,7 +85,7 @@ def test_the_project_goes_in_after_what_it_needs_and_then_byte_code_is_made(
     calls = install.calls()
     assert packages(calls) == ["pip needs", "pip ."]
     assert all("--no-compile" in call for call in calls[:2])
-    assert calls[2:] == ["scripts/compile.py"]
+    assert [call.partition(" -qq")[0] for call in calls[2:]] == ["-m compileall"]
 
 
 @pytest.mark.parametrize("target", ["install", "tools"])
@@ -181,19 +181,3 @@ def test_where_uv_has_no_network_pip_may_know_a_way(install: Install) -> None:
     )
     assert first.startswith("Cannot install: uv does not reach the package index")
     assert "`make UV= ...`" in second
-
-
-def test_byte_code_is_made_for_all_packages_and_not_again(tmp_path: Path) -> None:
-    def make() -> list[tuple[Path, int]]:
-        python, script = tmp_path / "env" / "bin" / "python", ROOT / "scripts" / "compile.py"
-        subprocess.run([python, "-E", script], check=True)
-        return [(path, path.stat().st_mtime_ns) for path in tmp_path.rglob("spiral/**/*.pyc")]
-
-    subprocess.run([PYTHON, "-m", "venv", "--without-pip", tmp_path / "env"], check=True)
-    (purelib,) = tmp_path.glob("env/lib/*/site-packages")
-    (purelib / "spiral" / "inner").mkdir(parents=True)
-    for name in ("__init__.py", "arms.py", "inner/turns.py"):
-        (purelib / "spiral" / name).write_text("TURNS = 3\n")
-    made = make()
-    assert len(made) == 3
-    assert make() == made

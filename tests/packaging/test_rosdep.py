@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.reports import FORMATS
+from grader.reports import names
 from grader.requirements import OPTIONAL
 
 from .conftest import ROOT
@@ -160,7 +160,7 @@ def test_run_and_check_judge_the_reference_alike(shell, graded):
 
 
 def test_a_format_that_shows_no_recording_needs_nothing_of_pip(shell_of_apt, graded):
-    forms = sorted(FORMATS.keys() - {"html"})
+    forms = sorted(set(names()) - {"html"})
     result = str(graded / "result.json")
     said = shell_of_apt.graders(*(("report", result, "--format", form) for form in forms))
     assert [form for form, text in zip(forms, said, strict=True) if text] == forms

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -89,7 +90,7 @@ def test_with_ros_sourced_nothing_of_it_comes_from_pypi(
 def test_every_file_of_the_packages_is_in_the_wheel(
     checkout: Path, ros_sourced: Environment
 ) -> None:
-    packages = ("turtlesim_py", "turtlesim_challenge", "robot_py", "grader")
+    packages = ("turtlesim_py", "turtlesim_challenge", "robot_py", "grader", "grader_robots")
     files = {
         path.relative_to(checkout).as_posix()
         for package in packages
@@ -135,11 +136,19 @@ def test_a_deleted_module_is_not_in_the_next_wheel(
     assert "grader/deleted_later.py" not in wheel_names(checkout, ros_sourced)
 
 
-def test_every_program_can_be_found_by_ros2_run(checkout: Path) -> None:
+def test_every_program_is_where_ros2_run_looks(checkout: Path, ros_sourced: Environment) -> None:
     scripts = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
-    assert {path.name for path in (checkout / "ros2run").glob("*") if path.is_symlink()} == set(
-        scripts
-    )
+    expected = {f"lib/{re.split('[.:]', function)[0]}/{name}" for name, function in scripts.items()}
+    name = call_hook(checkout, ros_sourced, "build_wheel", checkout.parent)
+    with zipfile.ZipFile(checkout.parent / name) as wheel:
+        found = {
+            entry.filename.partition("/data/")[2]: entry
+            for entry in wheel.infolist()
+            if "/data/lib/" in entry.filename
+        }
+        assert found.keys() == expected
+        assert {wheel.read(entry).splitlines()[0] for entry in found.values()} == {b"#!/bin/sh"}
+    assert {entry.external_attr >> 16 & 0o777 for entry in found.values()} == {0o755}
 
 
 def test_all_packages_have_one_version() -> None:
@@ -150,11 +159,12 @@ def test_all_packages_have_one_version() -> None:
             "grader/package.xml",
             "turtlesim_challenge/package.xml",
             "robot_py/package.xml",
+            "grader_robots/package.xml",
         )
     }
     ours = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert versions == dict.fromkeys(versions, ours)
-    assert f"turtlesim_py-{ours}+jazzy-" in (ROOT / "README.md").read_text()
+    assert f"turtlesim_py-{ours}+jazzy-" in (ROOT / "docs" / "your-machine.md").read_text()
 
 
 @pytest.fixture

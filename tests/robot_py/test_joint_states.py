@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from robot_py.joint_states import (
-    Ended,
+    JointStateOptions,
     JointStates,
-    Options,
+    NodeEnded,
     UnusableDescription,
     Values,
     dependences,
@@ -29,7 +29,7 @@ def robot(*joints: str) -> str:
 
 
 def states(description: str, **options) -> JointStates:
-    made = JointStates(Options(**options))
+    made = JointStates(JointStateOptions(**options))
     made.configure(description)
     return made
 
@@ -159,7 +159,7 @@ def test_who_follows_moves_with_what_a_source_says():
 
 
 def test_a_source_whose_arrays_are_too_short_ends_it():
-    with pytest.raises(Ended):
+    with pytest.raises(NodeEnded):
         states(WALKER).hear(Values(["tilt", "swivel"], [0.1]))
 
 
@@ -183,13 +183,13 @@ def test_a_circle_of_mimics_ends_it_with_the_original_s_words():
         joint("b", more='<mimic joint="c"/>'),
         joint("c", more='<mimic joint="b"/>'),
     )
-    with pytest.raises(Ended) as caught:
+    with pytest.raises(NodeEnded) as caught:
         states(text).tick()
     assert str(caught.value) == "Found an infinite recursive mimic chain: ['a', 'b', 'c', 'b']"
 
 
 def test_who_follows_a_joint_that_is_not_there_ends_it():
-    with pytest.raises(Ended) as caught:
+    with pytest.raises(NodeEnded) as caught:
         states(robot(joint("a", more='<mimic joint="gone"/>'))).tick()
     assert str(caught.value) == 'joint "a" follows "gone", and no such joint moves'
 
@@ -202,7 +202,7 @@ def test_delta_goes_to_and_fro_between_the_limits_and_round_where_there_are_none
 
 
 def test_delta_without_positions_ends_it():
-    with pytest.raises(Ended):
+    with pytest.raises(NodeEnded):
         states(robot(joint("a")), delta=0.1, publish_default_positions=False).tick()
 
 
@@ -230,7 +230,7 @@ def test_dependences_that_are_none_are_refused_in_the_original_s_words(parameter
 
 
 def test_a_description_puts_an_end_to_the_dependences_of_parameters():
-    made = JointStates(Options(dependent_joints={"b": {"parent": "a"}}))
+    made = JointStates(JointStateOptions(dependent_joints={"b": {"parent": "a"}}))
     assert made.tick() == Values([], [0.0], [], [])
     made.configure(robot(joint("a", 2, 4), joint("b")))
     assert made.tick().positions == [3, 0]

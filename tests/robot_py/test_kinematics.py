@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_py import kinematics
-from robot_py.model import Joint, JointType, Link, Mimic, Model, Pose
+from robot_py.model import Joint, JointType, Link, Mimic, Model, Origin
 from robot_py.urdf import parse
 
 ROBOTS = Path(__file__).parent / "robots"
@@ -63,7 +63,7 @@ def trees(draw) -> Model:
                 f"joint{draw(st.integers(0, 99))}_{number}",
                 f"link{parent}" if parent else "root",
                 f"link{number + 1}",
-                origin=Pose(draw(VECTORS), draw(TURNS)),
+                origin=Origin(draw(VECTORS), draw(TURNS)),
                 axis=draw(AXES),
             )
         )
@@ -102,7 +102,7 @@ def rodrigues(axis: np.ndarray, angle: float) -> np.ndarray:
 
 @given(TURNS)
 def test_a_quaternion_has_length_1_and_says_what_the_matrix_says(rpy):
-    matrix = kinematics.matrix(Pose((1.0, 2.0, 3.0), rpy))
+    matrix = kinematics.matrix(Origin((1.0, 2.0, 3.0), rpy))
     x, y, z, w = kinematics.quaternion(matrix)
     assert math.isclose(x * x + y * y + z * z + w * w, 1, abs_tol=1e-12)
     again = np.array(
@@ -127,7 +127,7 @@ def test_a_quaternion_has_length_1_and_says_what_the_matrix_says(rpy):
     ],
 )
 def test_quaternions_have_their_known_values(rpy, expected):
-    found = kinematics.quaternion(kinematics.matrix(Pose(rpy=rpy)))
+    found = kinematics.quaternion(kinematics.matrix(Origin(rpy=rpy)))
     assert found == pytest.approx(expected, abs=1e-12)
 
 

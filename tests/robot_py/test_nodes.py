@@ -41,11 +41,11 @@ def described(folder: Path, description: str) -> list[str]:
 
 
 def state_publisher(*arguments: str) -> Program:
-    return Program("robot_py.ros.robot_state_publisher", *arguments)
+    return Program("robot_py.robot_state_publisher", *arguments)
 
 
 def joint_publisher(*arguments: str) -> Program:
-    return Program("robot_py.ros.joint_state_publisher", *arguments)
+    return Program("robot_py.joint_state_publisher", *arguments)
 
 
 def joint_state(stamp_ns: int, *names: str) -> JointState:

@@ -6,13 +6,14 @@ from pathlib import Path
 import pytest
 
 from robot_py import robot_state
-from robot_py.logs import Log, Severity
 from robot_py.robot_state import (
     JointState,
+    NodeLog,
     Parameters,
     RefusedDescription,
     Robot,
     RobotState,
+    Severity,
     StaticFrames,
 )
 from tests.robot_py import urdf_cases as cases
@@ -113,7 +114,7 @@ def test_only_joints_that_are_named_are_sent_and_names_of_no_joint_are_nothing()
 
 
 def test_names_of_another_robot_make_an_empty_message():
-    assert RobotState(WALKER).hear(at(START, "left", "right"), START) == robot_state.Heard(())
+    assert RobotState(WALKER).hear(at(START, "left", "right"), START) == robot_state.Published(())
 
 
 def test_of_a_joint_that_is_named_twice_the_first_counts():
@@ -147,7 +148,7 @@ def test_a_finger_that_follows_is_published_with_the_one_that_leads():
         (
             ("tilt", "swivel"),
             (),
-            Log(
+            NodeLog(
                 Severity.WARN,
                 "Robot state publisher ignored a JointState message about joint(s) "
                 '"tilt"(,...) whose position member was empty.',
@@ -156,24 +157,24 @@ def test_a_finger_that_follows_is_published_with_the_one_that_leads():
         (
             ("tilt", "swivel"),
             (1.0,),
-            Log(Severity.ERROR, "Robot state publisher ignored an invalid JointState message"),
+            NodeLog(Severity.ERROR, "Robot state publisher ignored an invalid JointState message"),
         ),
         (
             (),
             (1.0,),
-            Log(Severity.ERROR, "Robot state publisher ignored an invalid JointState message"),
+            NodeLog(Severity.ERROR, "Robot state publisher ignored an invalid JointState message"),
         ),
     ],
 )
 def test_names_and_positions_that_do_not_match_are_ignored_aloud(names, positions, log):
     heard = RobotState(WALKER).hear(JointState(START, names, positions), START)
-    assert heard == robot_state.Heard(None, (log,))
+    assert heard == robot_state.Published(None, (log,))
 
 
 def test_a_negative_stamp_is_ignored_aloud():
     heard = RobotState(WALKER).hear(at(-1), START)
     text = "cannot store a negative time point in rclcpp::Time"
-    assert heard == robot_state.Heard(None, (Log(Severity.ERROR, text),))
+    assert heard == robot_state.Published(None, (NodeLog(Severity.ERROR, text),))
 
 
 def test_a_clock_that_goes_back_is_warned_of_and_all_is_published_anew():
@@ -181,7 +182,7 @@ def test_a_clock_that_goes_back_is_warned_of_and_all_is_published_anew():
     assert state.hear(at(START), START).transforms is not None
     earlier = START - 10 * SECOND
     heard = state.hear(at(earlier), earlier)
-    warning = Log(Severity.WARN, "Moved backwards in time, re-publishing joint transforms!")
+    warning = NodeLog(Severity.WARN, "Moved backwards in time, re-publishing joint transforms!")
     assert heard.logs == (warning,)
     assert heard.transforms is not None
 
@@ -227,7 +228,7 @@ def test_links_in_a_circle_are_refused():
 
 def test_a_root_that_weighs_something_is_warned_of():
     assert WALKER.logs == (
-        Log(
+        NodeLog(
             Severity.WARN,
             "The root link axis has an inertia specified in the URDF, but KDL does not support a "
             "root link with an inertia.  As a workaround, you can add an extra dummy link to your "
@@ -242,7 +243,7 @@ def test_a_root_that_weighs_something_is_warned_of():
 def test_planar_joints_are_sent_as_fixed_and_floating_ones_not_at_all(kind, frames):
     robot = Robot.of(cases.moving("", kind))
     text = "Converting unknown joint type of joint 'j' into a fixed joint"
-    assert robot.logs == (Log(Severity.WARN, text, "kdl_parser"),)
+    assert robot.logs == (NodeLog(Severity.WARN, text, "kdl_parser"),)
     assert [one.child_frame for one in robot.fixed("", 0)] == frames
     assert RobotState(robot).hear(at(START, "j"), START).transforms == ()
 

@@ -16,7 +16,7 @@ from unittest.mock import patch
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings, Run
 from grader.scenes.package.examining import steps
-from grader.scenes.package.examining.main import look
+from grader.scenes.package.examining.main import inspect
 from grader.scenes.package.trace import PackageTrace, decode, encode
 from grader.testing.solutions import read_solutions
 from tests import apart, once
@@ -71,8 +71,9 @@ def look_without_end() -> None:
         path, package, cpu_s, wall_s = json.loads(line)
         limits = replace(steps.LIMITS, cpu_s=cpu_s, wall_s=wall_s)
         with patch.object(steps, "LIMITS", limits), tempfile.TemporaryDirectory() as scratch:
-            found = encode(look(Path(path), package, Path(scratch).resolve()))
-        sys.stdout.buffer.write(len(found).to_bytes(8, "big") + found)
+            found = inspect(Path(path), Path(scratch).resolve(), package=package).trace
+        told = encode(found)
+        sys.stdout.buffer.write(len(told).to_bytes(8, "big") + told)
         sys.stdout.buffer.flush()
 
 

@@ -6,10 +6,12 @@ import json
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from tests import golden_runs
-from turtlesim_py.replay import Replay, ScenarioError, replay
+from turtlesim_py.scenario import Replay, ScenarioError, replay
 
 STRAIGHT = {
     "ticks": 3,
@@ -97,6 +99,11 @@ def test_the_command_writes_trace_path_window_and_snapshots(tmp_path):
     }
     written = json.loads((tmp_path / "new" / "background.json").read_text())
     assert written["published"] == golden_runs.load("background")["published"]
+    canvas = replay(golden_runs.load("background")["scenario"]).arena.canvas
+    with Image.open(tmp_path / "new" / "background.path.png") as path:
+        assert (path.mode, np.array_equal(path, canvas.rgba())) == ("RGBA", True)
+    with Image.open(tmp_path / "new" / "background.png") as window:
+        assert (window.mode, window.size) == ("RGB", (500, 500))
 
 
 def test_a_bare_scenario_is_named_after_its_file(tmp_path):

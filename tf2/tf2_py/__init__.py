@@ -4,7 +4,7 @@ ROS's own is made of C++. Installed only where no ROS is sourced.
 """
 
 from .buffer_core import BufferCore
-from .exceptions import (
+from .frames import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,

@@ -5,19 +5,27 @@ What tf2's C++ library does, with its rules, in its words.
 
 from __future__ import annotations
 
+import math
+import sys
 import threading
+from collections.abc import Iterator
 from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 from rclpy.time import Time
 
-from .caches import Sample, seconds
-from .exceptions import InvalidArgumentException, LookupException, TransformException
-from .frames import Frames
-from .geometry import IDENTITY, Pose, compose, unit
-from .texts import entry, refusals, say
+from .frames import (
+    Frames,
+    FrameSample,
+    InvalidArgumentException,
+    LookupException,
+    TimeCache,
+    TransformException,
+    seconds,
+)
+from .geometry import IDENTITY, FramePose, compose, unit
 
-#: For how long transforms are kept, unless something else is said [ns].
+#: For how long transforms are kept by default [ns].
 CACHE_TIME_NS = 10 * 10**9
 
 
@@ -48,13 +56,15 @@ class BufferCore:
         child = transform.child_frame_id.removeprefix("/")
         stamp_ns = _nanoseconds(transform.header.stamp, "time")
         pose = _pose(transform)
-        if refused := list(refusals(parent, child, pose, authority)):
-            say("Error:   ", *refused)
+        if refused := list(_refusals(parent, child, pose, authority)):
+            _print_lines("Error:   ", *refused)
             return
         with self._lock:
-            kept = self._frames.insert(child, Sample(stamp_ns, parent, pose), authority, is_static)
+            kept = self._frames.insert(
+                child, FrameSample(stamp_ns, parent, pose), authority, is_static
+            )
         if not kept:
-            say(
+            _print_lines(
                 "Warning: ",
                 f"TF_OLD_DATA ignoring data from the past for frame {child} at time "
                 f"{seconds(stamp_ns)} according to authority {authority}\n"
@@ -154,7 +164,7 @@ class BufferCore:
             if not frames.caches:
                 return "[]"
             return "".join(
-                entry(name, cache, frames.authorities[name])
+                _entry(name, cache, frames.authorities[name])
                 for name, cache in frames.caches.items()
                 if cache is not None and cache.latest()[1]
             )
@@ -167,7 +177,7 @@ class BufferCore:
         with self._lock:
             return list(self._frames.caches)
 
-    def _lookup(self, target: str, source: str, time_ns: int) -> tuple[Pose, int]:
+    def _lookup(self, target: str, source: str, time_ns: int) -> tuple[FramePose, int]:
         if target == source:  # even of a frame that nobody knows
             return IDENTITY, time_ns or self._latest_ns(source)
         self._check_frame("lookupTransform argument target_frame", target)
@@ -227,13 +237,13 @@ def _nanoseconds(time: Any, what: str) -> int:
     raise TypeError(f"{what} must have sec and nanosec, or nanoseconds.")
 
 
-def _pose(transform: TransformStamped) -> Pose:
+def _pose(transform: TransformStamped) -> FramePose:
     t, q = transform.transform.translation, transform.transform.rotation
     rotation = unit((float(q.x), float(q.y), float(q.z), float(q.w)))
-    return Pose(rotation, (float(t.x), float(t.y), float(t.z)))
+    return FramePose(rotation, (float(t.x), float(t.y), float(t.z)))
 
 
-def _message(target: str, source: str, pose: Pose, time_ns: int) -> TransformStamped:
+def _message(target: str, source: str, pose: FramePose, time_ns: int) -> TransformStamped:
     message = TransformStamped()
     message.header.frame_id, message.child_frame_id = target, source
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(time_ns, 10**9)
@@ -241,3 +251,67 @@ def _message(target: str, source: str, pose: Pose, time_ns: int) -> TransformSta
     t.x, t.y, t.z = pose.translation
     q.x, q.y, q.z, q.w = unit(pose.rotation)
     return message
+
+
+# What a buffer prints, in tf2's words -------------------------------------------------------------
+
+
+def _refusals(parent: str, child: str, pose: FramePose, authority: str) -> Iterator[str]:
+    """Yield everything for which a transform is refused."""
+    ignoring = "Ignoring transform for child_frame_id"
+    no_rotation = any(math.isnan(number) for number in pose.rotation)
+    if child == parent:
+        yield (
+            f'TF_SELF_TRANSFORM: Ignoring transform from authority "{authority}" with frame_id and '
+            f' child_frame_id "{child}" because they are the same'
+        )
+    if not child:
+        yield (
+            f'TF_NO_CHILD_FRAME_ID: Ignoring transform from authority "{authority}" because '
+            "child_frame_id not set "
+        )
+    if not parent:
+        yield (
+            f'TF_NO_FRAME_ID: Ignoring transform with child_frame_id "{child}"  from authority '
+            f'"{authority}" because frame_id not set'
+        )
+    if no_rotation or any(math.isnan(number) for number in pose.translation):
+        yield (
+            f'TF_NAN_INPUT: {ignoring} "{child}" from authority "{authority}" because of a nan '
+            f"value in the transform ({_printed(pose.translation)}) ({_printed(pose.rotation)})"
+        )
+    if no_rotation:
+        yield (
+            f'TF_DENORMALIZED_QUATERNION: {ignoring} "{child}" from authority "{authority}" '
+            f"because of an invalid quaternion in the transform ({_printed(pose.rotation)})"
+        )
+
+
+def _printed(numbers: tuple[float, ...]) -> str:
+    """Return numbers as C prints them by %f, the sign of NaN included."""
+    texts = (f"{number:f}" for number in numbers)
+    return " ".join(
+        "-nan" if math.isnan(number) and math.copysign(1.0, number) < 0 else text
+        for number, text in zip(numbers, texts, strict=True)
+    )
+
+
+def _print_lines(level: str, *texts: str) -> None:
+    """Print as console_bridge does, but for the line that names a line of C++."""
+    print(*(f"{level}{text}" for text in texts), sep="\n", file=sys.stderr, flush=True)
+
+
+def _entry(name: str, cache: TimeCache, authority: str) -> str:
+    """Return what `all_frames_as_yaml` has of one frame."""
+    newest_ns, parent = cache.latest()
+    oldest_ns = cache.oldest_ns()
+    length_ns = newest_ns - oldest_ns
+    return (
+        f"{name}: \n"
+        f"  parent: '{parent}'\n"
+        f"  broadcaster: '{authority}'\n"
+        f"  rate: {len(cache) * 1e9 / max(length_ns, 100_000):.3f}\n"
+        f"  most_recent_transform: {seconds(newest_ns)}\n"
+        f"  oldest_transform: {seconds(oldest_ns)}\n"
+        f"  buffer_length: {length_ns * 1e-9:.3f}\n"
+    )

@@ -14,14 +14,14 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-class Pose(NamedTuple):
+class FramePose(NamedTuple):
     """Where a frame is in another."""
 
     rotation: Quaternion
     translation: Vector
 
 
-IDENTITY = Pose((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
+IDENTITY = FramePose((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 
 
 def unit(q: Quaternion) -> Quaternion:
@@ -63,28 +63,28 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
     )
 
 
-def compose(outer: Pose, inner: Pose) -> Pose:
+def compose(outer: FramePose, inner: FramePose) -> FramePose:
     """Return the pose of c in a from those of b in a and of c in b."""
     x, y, z = rotate(outer.rotation, inner.translation)
     dx, dy, dz = outer.translation
-    return Pose(multiply(outer.rotation, inner.rotation), (x + dx, y + dy, z + dz))
+    return FramePose(multiply(outer.rotation, inner.rotation), (x + dx, y + dy, z + dz))
 
 
-def inverse(pose: Pose) -> Pose:
+def inverse(pose: FramePose) -> FramePose:
     """Return the pose of a in b from that of b in a."""
     x, y, z, w = pose.rotation
     back = (-x, -y, -z, w)
     dx, dy, dz = pose.translation
-    return Pose(back, rotate(back, (-dx, -dy, -dz)))
+    return FramePose(back, rotate(back, (-dx, -dy, -dz)))
 
 
-def interpolate(a: Pose, b: Pose, ratio: float) -> Pose:
+def interpolate(a: FramePose, b: FramePose, ratio: float) -> FramePose:
     """Return what is between a (ratio 0) and b (1): translations on a line, rotations slerped."""
     ax, ay, az = a.translation
     bx, by, bz = b.translation
     rest = 1.0 - ratio
     between = (rest * ax + ratio * bx, rest * ay + ratio * by, rest * az + ratio * bz)
-    return Pose(slerp(a.rotation, b.rotation, ratio), between)
+    return FramePose(slerp(a.rotation, b.rotation, ratio), between)
 
 
 def slerp(a: Quaternion, b: Quaternion, ratio: float) -> Quaternion:

@@ -20,7 +20,7 @@ from tf2_py import BufferCore
 
 from .buffer_interface import NO_WAIT, BufferInterface
 
-#: How often a waiting lookup looks again [s].
+#: How often a waiting lookup tries again [s].
 POLL_S = 0.02
 #: A clock that has gone back by more than this ends the waiting.
 BACK_AGAIN = Duration(seconds=3.0)
@@ -33,7 +33,7 @@ class Buffer(BufferCore, BufferInterface):
 
     Args:
         cache_time: for how long transforms are kept; 10 s.
-        node: gets the service `tf2_frames`, which tells all frames; its clock is watched.
+        node: gets the service `tf2_frames`, which lists all frames; its clock is watched.
     """
 
     def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
@@ -65,12 +65,12 @@ class Buffer(BufferCore, BufferInterface):
         self.clear()
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Keep a transform that holds at its stamp, and tell those who wait."""
+        """Keep a transform that holds at its stamp, and call the waiting callbacks."""
         super().set_transform(transform, authority)
         self._call_new_data_callbacks()
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
-        """Keep a transform that holds at all times, and tell those who wait."""
+        """Keep a transform that holds at all times, and call the waiting callbacks."""
         super().set_transform_static(transform, authority)
         self._call_new_data_callbacks()
 
@@ -78,7 +78,7 @@ class Buffer(BufferCore, BufferInterface):
         with self._callbacks_lock:
             for callback in self._new_data_callbacks:
                 callback()
-            # only now: who is told may be done
+            # only now: a callback may ask for its removal
             for callback in self._callbacks_to_remove:
                 self._new_data_callbacks.remove(callback)
             self._callbacks_to_remove.clear()
@@ -98,7 +98,7 @@ class Buffer(BufferCore, BufferInterface):
                 with one thread nothing can come meanwhile.
 
         Raises:
-            TransformException: one of those below it says what is not known.
+            TransformException: a class below it, for what is not known.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
@@ -173,15 +173,15 @@ class Buffer(BufferCore, BufferInterface):
             future.set_result(lookup())
             return future
 
-        def look_again() -> None:
+        def try_again() -> None:
             try:
                 if possible()[0]:
                     future.set_result(lookup())
             except BaseException as error:
                 future.set_exception(error)
 
-        self._new_data_callbacks.append(look_again)
-        future.add_done_callback(lambda _: self._remove_callback(look_again))
+        self._new_data_callbacks.append(try_again)
+        future.add_done_callback(lambda _: self._remove_callback(try_again))
         return future
 
 

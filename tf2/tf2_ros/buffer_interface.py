@@ -1,6 +1,6 @@
-"""`BufferInterface`: how a message is taken from one frame to another, whatever knows the frames.
+"""`BufferInterface`: transforms messages from one frame to another, whatever knows the frames.
 
-Which function does it for which type is said by other packages, tf2_geometry_msgs first of all.
+Other packages register the function for each type, tf2_geometry_msgs first of all.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ NO_WAIT = Duration()
 
 
 class TypeException(Exception):
-    """A type for which nobody has said how it is transformed or converted."""
+    """No function is registered that transforms or converts a type."""
 
     def __init__(self, errstr: str) -> None:
         self.errstr = errstr
@@ -32,7 +32,7 @@ class NotImplementedException(Exception):
 
 
 class BufferInterface:
-    """What can transform messages because it can look up transforms."""
+    """Transforms messages by looking up transforms."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -113,7 +113,7 @@ class TransformRegistration:
         self._functions[key] = callback
 
     def get(self, key: Any) -> Callable[..., Any]:
-        """Return how; `TypeException` if nobody has said."""
+        """Return how; `TypeException` if that is not registered."""
         return _registered(self._functions, key)
 
 

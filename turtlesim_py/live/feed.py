@@ -1,62 +1,52 @@
-"""What viewers are told of an arena: the whole picture once, then what is drawn and who moves.
+"""What viewers are sent of an arena: the whole picture once, then strokes and moves.
 
-Runs in the simulator's thread, after each tick, and hands on plain data; it never waits. While
-nobody looks, nothing is collected.
+Runs in the simulator's thread, after each tick, and delivers plain data; it never waits. While
+nobody watches, nothing is collected.
 """
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Protocol
 
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.canvas import Canvas, Pen
-from turtlesim_py.world.events import Clear, Event, Reset, to_json
+from turtlesim_py.world.events import Clear, Event, LogLine, Notice, Reset, to_json
 from turtlesim_py.world.floats import json_number
-from turtlesim_py.world.notices import LogLine, Notice
 from turtlesim_py.world.stroke import Span
 from turtlesim_py.world.turtle import METER_PX, Reading, Turtle
 
 #: Changes of so many ticks travel together: 31 times a second.
 TICKS_TOGETHER = 2
-#: Of the calls in one change so many are told; a flood of them is no news.
+#: The most calls that one change names; a flood of them is no news.
 MOST_CALLS = 20
+#: A number as in events: JSON has none for infinities and what is no number.
+_json = partial(json_number, digits=17)
 
 
 @dataclass(frozen=True)
-class Change:
-    """What became of the arena in some ticks.
+class News:
+    """Changes of an arena for all viewers, or all of it for one that has come or missed something.
 
     Attributes:
-        content: as the page gets it; `docs/live.md` says what is in it.
+        content: as the page gets it; `docs/live.md` describes it.
+        canvas: with all of an arena, a copy of its paint.
+        viewer: that has asked for it.
     """
 
     content: Mapping[str, Any]
+    canvas: Canvas | None = None
+    viewer: object = None
 
 
-@dataclass(frozen=True)
-class Whole:
-    """All of the arena, for one who has just come or has missed something.
-
-    Attributes:
-        viewer: whoever has asked.
-        canvas: a copy.
-        content: the rest, as the page gets it.
-    """
-
-    viewer: object
-    canvas: Canvas
-    content: Mapping[str, Any]
-
-
-#: Gets each change, and what was asked for.
-Deliver = Callable[[Change | Whole], None]
+Deliver = Callable[[News], None]
 
 
 class Source(Protocol):
-    """Whatever knows of an arena what viewers are to be told.
+    """Delivers the news of an arena.
 
     Attributes:
         is_watched: whether anybody wants changes; set from any thread.
@@ -69,14 +59,11 @@ class Source(Protocol):
 
 
 class Feed:
-    """Collects what happens in an arena.
+    """A `Source` that collects what happens in an arena.
 
     Args:
         deliver: called in the simulator's thread.
         together: changes of so many ticks travel together.
-
-    Attributes:
-        is_watched: whether anybody wants changes; set from any thread.
     """
 
     def __init__(self, arena: Arena, deliver: Deliver, together: int = TICKS_TOGETHER) -> None:
@@ -84,58 +71,45 @@ class Feed:
         self._deliver = deliver
         self._together = together
         self.is_watched = False
-        self._asked: deque[object] = deque()
+        self._asking: deque[object] = deque()
         self._drawn: list[Any] = []
         self._calls: list[Any] = []
-        self._told: tuple[Any, ...] = ()
+        #: background and turtles as delivered last
+        self._delivered: Mapping[str, Any] = {}
         self._readings: Mapping[str, Reading] = {}
         arena.listeners.append(self._on_notice)
 
     def ask(self, viewer: object) -> None:
         """Have all of the arena delivered for a viewer after the next tick; from any thread."""
-        self._asked.append(viewer)
+        self._asking.append(viewer)
 
     def after_tick(self, readings: Mapping[str, Reading]) -> None:
         """Deliver what there is; `readings` is what the tick has published."""
-        if not (self.is_watched or self._asked):
-            if self._arena.canvas.watcher is not None:
-                self._forget()
+        canvas = self._arena.canvas
+        if not (self.is_watched or self._asking):
+            if canvas.watcher is not None:
+                canvas.watcher = None
+                self._drawn, self._calls, self._delivered = [], [], {}
             return
-        self._arena.canvas.watcher = self._on_stroke
+        canvas.watcher = self._on_stroke
         self._readings = readings or self._readings
-        if self._asked:
+        if self._asking or self._arena.ticks % self._together == 0:
             self._deliver_change()
-            self._deliver_wholes()
-        elif self._arena.ticks % self._together == 0:
-            self._deliver_change()
-
-    def _forget(self) -> None:
-        self._arena.canvas.watcher = None
-        self._drawn, self._calls, self._told = [], [], ()
+        if self._asking:
+            whole = News({"tick": self._arena.ticks, **self._delivered}, canvas.copy())
+            while self._asking:
+                self._deliver(replace(whole, viewer=self._asking.popleft()))
 
     def _deliver_change(self) -> None:
-        state = self._state()
-        if state == self._told and not self._drawn and not self._calls:
-            return
-        content = {"tick": self._arena.ticks, "drawn": self._drawn, "calls": self._calls}
-        if state != self._told:
-            content |= dict(zip(("background", "turtles"), state, strict=True))
-        self._told, self._drawn, self._calls = state, [], []
-        self._deliver(Change(content))
-
-    def _deliver_wholes(self) -> None:
-        background, turtles = self._told = self._state()
-        content = {"tick": self._arena.ticks, "background": background, "turtles": turtles}
-        canvas = self._arena.canvas.copy()
-        while self._asked:
-            self._deliver(Whole(self._asked.popleft(), canvas, content))
-
-    def _state(self) -> tuple[Sequence[int], Sequence[Mapping[str, Any]]]:
         arena = self._arena
         ordered = (arena.turtles[name] for name in sorted(arena.turtles))
-        return arena.background, [
-            _row(turtle, self._readings.get(turtle.name)) for turtle in ordered
-        ]
+        turtles = [_row(turtle, self._readings.get(turtle.name)) for turtle in ordered]
+        state = {"background": arena.background, "turtles": turtles}
+        changed = {} if state == self._delivered else state
+        if changed or self._drawn or self._calls:
+            content = {"tick": arena.ticks, "drawn": self._drawn, "calls": self._calls}
+            self._delivered, self._drawn, self._calls = state, [], []
+            self._deliver(News(content | changed))
 
     def _on_stroke(self, pen: Pen, runs: Sequence[Span]) -> None:
         color = [pen.r, pen.g, pen.b]
@@ -153,13 +127,13 @@ class Feed:
         if isinstance(notice, Event):
             self._calls.append(to_json(notice))
         elif isinstance(notice, LogLine):
-            said = {"op": "log", "severity": notice.severity, "text": notice.text}
-            self._calls.append({**said, "tick": self._arena.ticks})
+            line = {"op": "log", "severity": notice.severity, "text": notice.text}
+            self._calls.append({**line, "tick": self._arena.ticks})
         del self._calls[:-MOST_CALLS]
 
 
 def _row(turtle: Turtle, reading: Reading | None) -> Mapping[str, Any]:
-    """A turtle as the page gets it: where to draw it [px, rad], and what it has published."""
+    """Return a turtle as the page gets it: where to draw it [px, rad], and what it publishes."""
     pen = turtle.pen
     row: dict[str, Any] = {
         "name": turtle.name,
@@ -172,8 +146,3 @@ def _row(turtle: Turtle, reading: Reading | None) -> Mapping[str, Any]:
         row["pose"] = [_json(value) for value in reading.pose]
         row["color"] = list(reading.color)
     return row
-
-
-def _json(value: float) -> float | int | str:
-    """As in events: JSON has no word for what is no number, nor for infinities."""
-    return json_number(value, 17)

@@ -10,6 +10,7 @@ import binascii
 import math
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from importlib import import_module
 from importlib.machinery import PathFinder
 from pathlib import Path
@@ -17,25 +18,32 @@ from typing import Any, NamedTuple
 
 #: 'geometry_msgs/msg/Twist', or as ROS 1 and rosbridge write it, 'geometry_msgs/Twist'.
 _TYPE = re.compile(r"([a-z][a-z0-9_]*)/(?:(msg|srv|action)/)?([A-Za-z][A-Za-z0-9_]*)")
-_ARRAY = re.compile(r"(?P<of>.+)\[(?P<length>\d*)\]|sequence<(?P<items>.+?)(?:, (?P<most>\d+))?>")
+_ARRAY = re.compile(r"(?P<of>.+)\[(?P<length>\d*)\]|sequence<(?P<items>.+?)(?:, \d+)?>")
 _TEXT = re.compile(r"w?string(<(?P<most>\d+)>)?")
 _BYTES = frozenset(("uint8", "octet", "byte", "char"))
 _FLOATS = frozenset(("float", "double", "float32", "float64", "long double"))
 _INTS = {f"{sign}int{bits}": (sign, bits) for sign in ("", "u") for bits in (8, 16, 32, 64)}
-#: A number that a stranger sends may have so many items in a list.
+#: A list that a stranger sends may have so many items.
 MOST_ITEMS = 100_000
 
 
-class NoSuchType(ValueError):
-    """A type that is not installed here."""
+class Rejected(ValueError):
+    """A viewer asks for what cannot be done; the text, which is the answer, explains why.
+
+    Args:
+        key: the text in English, with names in braces for its values; the page's catalogues have
+            it in other languages.
+    """
+
+    def __init__(self, key: str, /, **values: object) -> None:
+        self.key = key
+        self.values = {name: str(value) for name, value in values.items()}
+        super().__init__(key.format(**self.values))
 
 
-class NotThere(ValueError):
-    """What a viewer has named is not in the graph, or cannot be in any."""
-
-
-class Unfit(ValueError):
-    """A value does not fit a field; the text says which, what was found and what was expected."""
+def _misfit(key: str, path: str, value: object, **more: object) -> Rejected:
+    """Return why a value does not fit a field, with the value as {found}."""
+    return Rejected(key, field=path, found=f"{value!r:.60}", **more)
 
 
 class Field(NamedTuple):
@@ -47,23 +55,22 @@ class Field(NamedTuple):
 
 
 def find(name: str, kind: str) -> Any:
-    """The class of a type.
-
-    Args:
-        kind: 'msg', 'srv' or 'action'.
+    """Return the class of a type; `kind` is 'msg', 'srv' or 'action'.
 
     Raises:
-        NoSuchType: there is none of this name.
+        Rejected: there is none of this name.
     """
     match = _TYPE.fullmatch(name)
     if match is None or match[2] not in (None, kind):
-        raise NoSuchType(f"{name!r:.80} is no type; expected one like 'geometry_msgs/{kind}/Name'")
-    if not _is_of_interfaces(match[1], kind):
-        raise NoSuchType(f"the type {name!r:.80} is not installed here")
-    try:
-        return getattr(import_module(f"{match[1]}.{kind}"), match[3])
-    except (ImportError, AttributeError):
-        raise NoSuchType(f"the type {name!r:.80} is not installed here") from None
+        raise Rejected(
+            "{name} is no type; expected one like 'geometry_msgs/{kind}/Name'",
+            name=f"{name!r:.80}",
+            kind=kind,
+        )
+    if _is_of_interfaces(match[1], kind):
+        with suppress(ImportError, AttributeError):
+            return getattr(import_module(f"{match[1]}.{kind}"), match[3])
+    raise Rejected("the type {name} is not installed here", name=f"{name!r:.80}")
 
 
 def _is_of_interfaces(package: str, kind: str) -> bool:
@@ -75,35 +82,33 @@ def _is_of_interfaces(package: str, kind: str) -> bool:
 
 def fields_of(message_type: Any) -> list[Field]:
     """The fields of a message type, in order."""
-    return [_field(*each) for each in message_type.get_fields_and_field_types().items()]
-
-
-def _field(name: str, text: str) -> Field:
-    match = _ARRAY.fullmatch(text)
-    if match is None:
-        return Field(name, text, -1)
-    length = int(match["length"]) if match["length"] else 0
-    return Field(name, match["of"] or match["items"], length)
+    fields = []
+    for name, text in message_type.get_fields_and_field_types().items():
+        if match := _ARRAY.fullmatch(text):
+            fields.append(Field(name, match["of"] or match["items"], int(match["length"] or 0)))
+        else:
+            fields.append(Field(name, text, -1))
+    return fields
 
 
 # ROS to JSON --------------------------------------------------------------------------------------
 
 
 def to_json(message: Any) -> dict[str, Any]:
-    """What a message says."""
-    return {f.name: _told(getattr(message, f.name), f) for f in fields_of(message)}
+    """Return a message as JSON."""
+    return {f.name: _field_to_json(getattr(message, f.name), f) for f in fields_of(message)}
 
 
-def _told(value: Any, field: Field) -> Any:
+def _field_to_json(value: Any, field: Field) -> Any:
     if field.length < 0:
-        return _one_told(value)
+        return _item_to_json(value)
     if field.kind in _BYTES:
         data = b"".join(value) if isinstance(value, list) else bytes(value)
         return base64.b64encode(data).decode("ascii")
-    return [_one_told(item) for item in value]
+    return [_item_to_json(item) for item in value]
 
 
-def _one_told(value: Any) -> Any:
+def _item_to_json(value: Any) -> Any:
     if hasattr(value, "get_fields_and_field_types"):
         return to_json(value)
     if isinstance(value, bytes):
@@ -117,65 +122,71 @@ def _one_told(value: Any) -> Any:
 # JSON to ROS --------------------------------------------------------------------------------------
 
 
-def from_json(message_type: Any, said: object, where: str = "") -> Any:
-    """The message that JSON says; fields that are left out keep their defaults.
+def from_json(message_type: Any, content: object, where: str = "") -> Any:
+    """Return the message that JSON describes; fields that are left out keep their defaults.
 
     Raises:
-        Unfit: it says none.
+        Rejected: a value does not fit a field: which, what was found and what was expected.
     """
-    if not isinstance(said, Mapping):
-        raise Unfit(f"{where or 'the message'}: expected fields, found {_found(said)}")
+    if not isinstance(content, Mapping):
+        if not where:
+            raise Rejected("the message: expected fields, found {found}", found=f"{content!r:.60}")
+        raise _misfit("{field}: expected fields, found {found}", where, content)
     message = message_type()
     fields = {field.name: field for field in fields_of(message_type)}
-    for name, value in said.items():
+    for name, value in content.items():
         if name not in fields:
-            there = ", ".join(fields) or "none"
-            raise Unfit(f"{where or 'the message'}: no field {name!s:.60}; there are {there}")
+            there = {"name": f"{name!s:.60}", "fields": ", ".join(fields) or "none"}
+            if not where:
+                raise Rejected("the message: no field {name}; there are {fields}", **there)
+            raise Rejected("{field}: no field {name}; there are {fields}", field=where, **there)
         if value is not None:
             path = f"{where}.{name}" if where else name
             try:
-                setattr(message, name, _read(value, fields[name], path))
+                setattr(message, name, _read_field(value, fields[name], path))
             except AssertionError:  # ROS's own check: a bound of the type
-                raise Unfit(
-                    f"{path}: {_found(value)} is not what {fields[name].kind} holds"
+                raise _misfit(
+                    "{field}: {found} is not what {kind} holds", path, value, kind=fields[name].kind
                 ) from None
     return message
 
 
-def _read(value: object, field: Field, path: str) -> Any:
+def _read_field(value: object, field: Field, path: str) -> Any:
     if field.length < 0:
-        return _one_read(value, field.kind, path)
+        return _read_item(value, field.kind, path)
     if isinstance(value, str) and field.kind in _BYTES:
         value = _from_base64(value, path)
     if not isinstance(value, Sequence) or isinstance(value, str):
-        raise Unfit(f"{path}: expected a list, found {_found(value)}")
-    if len(value) > MOST_ITEMS or (field.length and len(value) != field.length):
-        most = field.length or f"{MOST_ITEMS:,} at most"
-        raise Unfit(f"{path}: expected {most} items, found {len(value):,}")
-    return [_one_read(item, field.kind, f"{path}[{n}]") for n, item in enumerate(value)]
+        raise _misfit("{field}: expected a list, found {found}", path, value)
+    found = {"field": path, "found": f"{len(value):,}"}
+    if field.length and len(value) != field.length:
+        raise Rejected("{field}: expected {n} items, found {found}", n=field.length, **found)
+    if len(value) > MOST_ITEMS:
+        most = f"{MOST_ITEMS:,}"
+        raise Rejected("{field}: expected {n} items at most, found {found}", n=most, **found)
+    return [_read_item(item, field.kind, f"{path}[{n}]") for n, item in enumerate(value)]
 
 
 def _from_base64(text: str, path: str) -> bytes:
     try:
         return base64.b64decode(text, validate=True)
     except binascii.Error:
-        raise Unfit(f"{path}: expected base64, found {_found(text)}") from None
+        raise _misfit("{field}: expected base64, found {found}", path, text) from None
 
 
-def _one_read(value: object, kind: str, path: str) -> Any:
+def _read_item(value: object, kind: str, path: str) -> Any:
     if "/" in kind:
         return from_json(find(kind, "msg"), value, path)
     if kind == "boolean" or kind == "bool":
         if isinstance(value, bool):
             return value
-        raise Unfit(f"{path}: expected true or false, found {_found(value)}")
-    text = _TEXT.fullmatch(kind)
-    if text:
+        raise _misfit("{field}: expected true or false, found {found}", path, value)
+    if text := _TEXT.fullmatch(kind):
         if isinstance(value, str) and len(value) <= int(text["most"] or len(value)):
             return value
-        raise Unfit(f"{path}: expected a text, found {_found(value)}")
+        raise _misfit("{field}: expected a text, found {found}", path, value)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise Unfit(f"{path}: expected a number, found {_found(value)}")
+        raise _misfit("{field}: expected a number, found {found}", path, value)
     return _number(value, kind, path)
 
 
@@ -184,23 +195,25 @@ def _number(value: float, kind: str, path: str) -> Any:
         try:
             return float(value)
         except OverflowError:
-            raise Unfit(f"{path}: expected a number, found one too large") from None
+            raise Rejected("{field}: expected a number, found one too large", field=path) from None
     sign, bits = _INTS.get(kind, ("u", 8))
     low, high = (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
     if value != value or not low <= value <= high or value != int(value):
-        raise Unfit(f"{path}: expected a whole number from {low} to {high}, found {value!r:.40}")
+        raise _misfit(
+            "{field}: expected a whole number from {low} to {high}, found {found}",
+            path,
+            value,
+            low=low,
+            high=high,
+        )
     return bytes([int(value)]) if kind in ("octet", "byte") else int(value)
-
-
-def _found(value: object) -> str:
-    return f"{value!r:.60}"
 
 
 # Types --------------------------------------------------------------------------------------------
 
 
 def typedefs(message_type: Any, name: str) -> list[dict[str, Any]]:
-    """What a type is made of, and what those are made of, as rosapi's message_details tells it."""
+    """Return a type's fields, and those of their types, as rosapi's message_details does."""
     found: dict[str, dict[str, Any]] = {}
     pending = [(name, message_type)]
     while pending:

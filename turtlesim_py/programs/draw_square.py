@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 from geometry_msgs.msg import Twist
 from std_srvs.srv import Empty
 
 from turtlesim_py.ros import program
 from turtlesim_py.ros.rclcpp_node import RclcppNode
+from turtlesim_py.world.turtle import Pose
 
-#: For who asks what the program does.
+#: Printed by --help.
 ABOUT = """\
 Reset the simulator, then let turtle1 draw a square of 2 m again and again. A turtlesim_node has to
 be running.
@@ -37,16 +38,6 @@ PERIOD_S = 0.016
 ANSWERED_WITHIN = 125
 
 
-class PoseLike(Protocol):
-    """What a square asks of a pose."""
-
-    x: float
-    y: float
-    theta: float
-    linear_velocity: float
-    angular_velocity: float
-
-
 class Square:
     """Decides what to do next: ahead, stop, turn, stop, and so on.
 
@@ -62,7 +53,7 @@ class Square:
         self._turning = False
         self._stopping = False
 
-    def command(self, pose: PoseLike) -> tuple[float, float]:
+    def command(self, pose: Pose) -> tuple[float, float]:
         """Speed ahead [m/s] and rate of turn [rad/s] for a turtle that is here."""
         if self._goal is None:
             self._go_ahead(pose)
@@ -77,13 +68,13 @@ class Square:
             return 0.0, 0.0
         return (0.0, TURN_RATE) if self._turning else (SPEED, 0.0)
 
-    def _go_ahead(self, pose: PoseLike) -> None:
+    def _go_ahead(self, pose: Pose) -> None:
         self._turning = False
         x = pose.x + math.cos(pose.theta) * SIDE_M
         y = pose.y + math.sin(pose.theta) * SIDE_M
         self._set_goal(x, y, pose.theta)
 
-    def _turn(self, pose: PoseLike) -> None:
+    def _turn(self, pose: Pose) -> None:
         self._turning = True
         self.corners += 1
         quarter = pose.theta + math.pi / 2
@@ -93,7 +84,7 @@ class Square:
         self._goal = x, y, theta
         self.on_goal(x, y, theta)
 
-    def _has_arrived(self, pose: PoseLike) -> bool:
+    def _has_arrived(self, pose: Pose) -> bool:
         assert self._goal is not None
         x, y, theta = self._goal
         off_rad = math.remainder(pose.theta - theta, 2 * math.pi)
@@ -106,17 +97,17 @@ class DrawSquare(RclcppNode):
 
     def __init__(self) -> None:
         super().__init__("draw_square")
-        self._pose: PoseLike | None = None
+        self._pose: Pose | None = None
         self._waited = 0
         self._ready = False
         self._square = Square(self._log_goal)
         self._velocity = self.create_publisher(Twist, "turtle1/cmd_vel", 1)
         self._reset = self.create_client(Empty, "reset")
-        pose = self.declare_interfaces().Pose
+        pose = self.declare_interfaces().msg.Pose
         self.create_subscription(pose, "turtle1/pose", self._on_pose, 1)
         self.create_timer(PERIOD_S, self._on_timer)
 
-    def _on_pose(self, pose: PoseLike) -> None:
+    def _on_pose(self, pose: Pose) -> None:
         self._pose = pose
 
     def _on_timer(self) -> None:

@@ -13,7 +13,7 @@ from geometry_msgs.msg import Twist
 from turtlesim_py.ros import program
 from turtlesim_py.ros.rclcpp_node import RclcppNode
 
-#: For who asks what the program does.
+#: Printed by --help.
 ABOUT = """\
 Let one turtle do what another does: the speeds of input/pose become commands on output/cmd_vel.
     mimic --ros-args -r input/pose:=turtle1/pose -r output/cmd_vel:=turtle2/cmd_vel
@@ -22,13 +22,13 @@ parameters:
     interfaces       package of the messages: turtlesim or turtlesim_msgs"""
 
 
-class Mimic(RclcppNode):
+class MimicNode(RclcppNode):
     """The node `/turtle_mimic`: the speeds of `input/pose` become commands on `output/cmd_vel`."""
 
     def __init__(self) -> None:
         super().__init__("turtle_mimic")
         self._velocity = self.create_publisher(Twist, "output/cmd_vel", 1)
-        pose = self.declare_interfaces().Pose
+        pose = self.declare_interfaces().msg.Pose
         self.create_subscription(pose, "input/pose", self._on_pose, 1)
 
     def _on_pose(self, pose: Any) -> None:
@@ -40,7 +40,7 @@ class Mimic(RclcppNode):
 
 def main(argv: list[str] | None = None) -> int:
     """Run until SIGINT or SIGTERM."""
-    return program.run("mimic", Mimic, program.spin, argv, ABOUT)
+    return program.run("mimic", MimicNode, program.spin, argv, ABOUT)
 
 
 if __name__ == "__main__":

@@ -5,18 +5,26 @@ The letter keys lie around F as the headings lie around the turtle: G is right, 
 
 from __future__ import annotations
 
+import os
+import re
+import select
+import signal
 import sys
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, Self
 
 from geometry_msgs.msg import Twist
 from rclpy.action import ActionClient
 
-from turtlesim_py.programs.keyboard import Keyboard, NotATerminal
 from turtlesim_py.ros import program
 from turtlesim_py.ros.executor import TickExecutor
-from turtlesim_py.ros.rclcpp_node import RclcppNode
+from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableStart
 from turtlesim_py.ros.turtle_endpoints import TOPIC_QOS
+
+try:
+    import termios
+except ImportError:  # Windows
+    termios = None  # type: ignore[assignment]
 
 #: The original's words, since 1.8.3 with the keys as a keyboard of Linux gives them.
 HELP = """\
@@ -26,7 +34,7 @@ Use arrow keys to move the turtle.
 Use g|b|v|c|d|e|r|t keys to rotate to absolute orientations. 'f' to cancel a rotation.
 'q' to quit.
 """
-#: For who asks what the program does.
+#: Printed by --help.
 ABOUT = """\
 Drive turtle1 with the keyboard of this terminal: arrow keys drive, the letters round F turn to a
 heading, F cancels a turn, Q ends. A turtlesim_node has to be running.
@@ -48,8 +56,118 @@ HEADINGS = {
     "v": -1.5708,
     "b": -0.7854,
 }
-#: Between two looks at what the graph has sent [s].
+#: Between two polls of what the graph has sent [s].
 PAUSE_S = 0.02
+#: The last letter of what an arrow key sends, in a terminal's normal or application mode.
+ARROWS = {b"A": "up", b"B": "down", b"C": "right", b"D": "left"}
+#: What a key sends: a letter behind ESC O or ESC [, perhaps with digits for a held key; with Alt,
+#: ESC and a character; else one character.
+KEY = re.compile(rb"\x1bO(.)|\x1b\[([0-9;]*[A-Za-z~])|\x1b[^O\[]|(?s:.)")
+#: A beginning of these, of which more is to come.
+UNFINISHED = re.compile(rb"\x1b(O|\[[0-9;]*)?\Z")
+
+
+class NotATerminal(UnusableStart):
+    """Keys cannot be read one by one from this file."""
+
+
+class Keyboard:
+    """A context in which a terminal gives every key at once and shows none of them.
+
+    Ctrl-Z gives the terminal back for the pause. SIGHUP and SIGQUIT, which would end the program
+    on the spot, only close the keyboard; SIGINT and SIGTERM are the program's own affair.
+
+    Attributes:
+        closed: nothing more will come.
+
+    Raises:
+        NotATerminal: `file` is none.
+    """
+
+    def __init__(self, file: int) -> None:
+        if termios is None:
+            raise NotATerminal("this system has no termios, which gives single keys")
+        if not os.isatty(file):
+            raise NotATerminal("standard input is not a terminal: start it in one of its own")
+        self.closed = False
+        self._file = file
+        self._is_ours = False
+        self._rest = b""
+
+    def __enter__(self) -> Self:
+        self._found = termios.tcgetattr(self._file)
+        handlers: dict[signal.Signals, Any] = {
+            signal.SIGHUP: self._close,
+            signal.SIGQUIT: self._close,
+            signal.SIGTSTP: self._pause,
+            signal.SIGCONT: self._take_over,
+        }
+        self._handlers = {number: signal.signal(number, do) for number, do in handlers.items()}
+        self._take_over()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._give_back()
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
+
+    def keys(self, patience_s: float) -> Iterator[str]:
+        """Yield the keys that come within the time [s]: "up", "down", "left", "right" or a letter.
+
+        Letters are small. Keys that have no meaning here are left out.
+        """
+        if not select.select([self._file], [], [], patience_s)[0]:
+            self._rest = b""  # the rest would have come at once: it was the escape key alone
+            return
+        text = self._rest + self._read()
+        unfinished = UNFINISHED.search(text)
+        end = unfinished.start() if unfinished else len(text)
+        self._rest = text[end:]
+        for match in KEY.finditer(text, 0, end):
+            if arrow := ARROWS.get(match[1] or match[2]):
+                yield arrow
+            elif match[0].isalpha():
+                yield match[0].decode().lower()
+
+    def _read(self) -> bytes:
+        try:
+            read = os.read(self._file, 1024)
+        except OSError:
+            read = b""
+        if not read:
+            self.closed = True  # the terminal is gone
+        return read
+
+    def _take_over(self, *_: object) -> None:
+        if self._is_in_front():
+            ours = termios.tcgetattr(self._file)
+            ours[3] &= ~(termios.ICANON | termios.ECHO)  # Ctrl-C and Ctrl-Z stay signals
+            termios.tcsetattr(self._file, termios.TCSANOW, ours)
+            self._is_ours = True
+
+    def _give_back(self) -> None:
+        if self._is_ours and self._is_in_front():
+            termios.tcsetattr(self._file, termios.TCSANOW, self._found)
+        self._is_ours = False
+
+    def _is_in_front(self) -> bool:
+        """Whether the terminal is ours: in the background it is a shell's or another program's."""
+        if not os.isatty(self._file):
+            return False  # it is gone
+        try:
+            return os.tcgetpgrp(self._file) == os.getpgrp()
+        except OSError:
+            return True  # no shell has it
+
+    def _close(self, *_: object) -> None:
+        self.closed = True
+
+    def _pause(self, number: int, _: object) -> None:
+        self._give_back()
+        handler = signal.signal(number, signal.SIG_DFL)
+        signal.raise_signal(number)  # here the program stands still
+        signal.signal(number, handler)
+        self._take_over()
 
 
 class TeleopTurtle(RclcppNode):
@@ -60,7 +178,7 @@ class TeleopTurtle(RclcppNode):
         self.declare("scale_angular", 2.0, "Speed of a turn [rad/s]")
         self.declare("scale_linear", 2.0, "Speed ahead and back [m/s]")
         self._velocity = self.create_publisher(Twist, "turtle1/cmd_vel", TOPIC_QOS)
-        self._type = self.declare_interfaces().RotateAbsolute
+        self._type = self.declare_interfaces().action.RotateAbsolute
         self._rotation = ActionClient(self, self._type, "turtle1/rotate_absolute")
         self._goal: Any = None  # the future of its handle
 
@@ -109,11 +227,7 @@ def drive(node: TeleopTurtle, stopped: Callable[[], bool]) -> None:
 
 def main(argv: list[str] | None = None) -> int:
     """Run until Q, SIGINT or SIGTERM; 2 where there is no terminal."""
-    try:
-        return program.run("turtle_teleop_key", TeleopTurtle, drive, argv, ABOUT)
-    except NotATerminal as error:
-        print(f"turtle_teleop_key: {error}", file=sys.stderr)
-        return program.UNUSABLE
+    return program.run("turtle_teleop_key", TeleopTurtle, drive, argv, ABOUT)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from turtlesim_py.ros import node, program
 
 #: Where the page is, unless somebody has that port.
 USUAL_PORT = 8080
-#: For who asks what the program does.
+#: Printed by --help.
 ABOUT = """\
 The simulator, with a page that shows the turtles and drives them. Prints the page's address, and
 opens it where there is a browser; Ctrl-C ends both. On another port:

@@ -1,1 +1,1 @@
-"""The ROS face of the world: node, topics, services, action, and who says "tick"."""
+"""The ROS face of the world: node, topics, services, action, and what makes it tick."""

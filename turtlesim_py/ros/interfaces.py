@@ -2,7 +2,7 @@
 
 Up to ROS 2 Jazzy they are in `turtlesim`, from Kilted on in `turtlesim_msgs`; the definitions are
 the same. Both ends of a topic must name the same, so a node serves one of the two. Nothing of ROS
-is imported before `Interfaces.of`: who only has to choose needs none.
+is imported before `Interfaces.of`: to choose needs none.
 """
 
 from __future__ import annotations
@@ -16,27 +16,19 @@ from typing import Any, Final, Self
 OLDER: Final = "turtlesim"
 NEWER: Final = "turtlesim_msgs"
 NAMES: Final = (OLDER, NEWER)
+KINDS: Final = ("msg", "srv", "action")
 #: The first ROS 2 release of the newer name; releases are named in the order of the alphabet.
 FIRST_OF_NEWER: Final = "kilted"
 
 
 @dataclass(frozen=True)
 class Interfaces:
-    """The classes of one of the packages.
-
-    Attributes:
-        package: its name.
-    """
+    """One of the packages: its name, and its modules with the classes."""
 
     package: str
-    Color: Any
-    Pose: Any
-    Kill: Any
-    SetPen: Any
-    Spawn: Any
-    TeleportAbsolute: Any
-    TeleportRelative: Any
-    RotateAbsolute: Any
+    msg: Any
+    srv: Any
+    action: Any
 
     @classmethod
     def of(cls, package: str) -> Self:
@@ -45,18 +37,7 @@ class Interfaces:
         Raises:
             ModuleNotFoundError: the package is not installed.
         """
-        msg, srv, action = (import_module(f"{package}.{kind}") for kind in ("msg", "srv", "action"))
-        return cls(
-            package,
-            Color=msg.Color,
-            Pose=msg.Pose,
-            Kill=srv.Kill,
-            SetPen=srv.SetPen,
-            Spawn=srv.Spawn,
-            TeleportAbsolute=srv.TeleportAbsolute,
-            TeleportRelative=srv.TeleportRelative,
-            RotateAbsolute=action.RotateAbsolute,
-        )
+        return cls(package, *(import_module(f"{package}.{kind}") for kind in KINDS))
 
 
 def installed() -> tuple[str, ...]:

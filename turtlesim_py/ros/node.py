@@ -18,22 +18,21 @@ from rclpy.time_source import CLOCK_TOPIC, USE_SIM_TIME_NAME
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import Empty
 
-from turtlesim_py.ros import live, pacer, program, window
+from turtlesim_py.ros import program, window
 from turtlesim_py.ros.executor import TickExecutor
 from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableParameter
 from turtlesim_py.ros.turtle_endpoints import TurtleEndpoints
-from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.arena import BY_NAME, PARAMETERS, Arena
+from turtlesim_py.world.events import GoalFeedback, GoalResult, LogLine, Notice
 from turtlesim_py.world.floats import printf_f
-from turtlesim_py.world.notices import GoalFeedback, GoalResult, LogLine, Notice
-from turtlesim_py.world.parameters import BY_NAME, PARAMETERS
-from turtlesim_py.world.sprites import NAMES
+from turtlesim_py.world.picture import NAMES
 from turtlesim_py.world.turtle import Reading
 
 if TYPE_CHECKING:
     from turtlesim_py.live.feed import Feed
     from turtlesim_py.live.server import LiveServer
 
-#: For who asks what the program does.
+#: Printed by --help.
 ABOUT = """\
 The simulator: turtles in a window that is not shown. To see it:
     turtlesim                               (the simulator with a page for a browser)
@@ -54,7 +53,7 @@ parameters:
     use_sim_time     follow /clock (false)"""
 #: The longest name that rotate_absolute's hidden services add to a turtle's.
 LONGEST_SUFFIX = "/rotate_absolute/_action/cancel_goal"
-#: So much is logged of what an exception says [characters]: it may quote a whole request.
+#: So much of an exception's text is logged [characters]: it may quote a whole request.
 LONGEST_COMPLAINT = 500
 #: How the original listens to changes of parameters.
 PARAMETER_EVENTS_QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -85,17 +84,16 @@ class TurtlesimNode(RclcppNode):
     def __init__(self, arguments: list[str] | None = None) -> None:
         # first, since a node that comes no further is destroyed as well
         self._endpoints: dict[str, TurtleEndpoints] = {}
-        self.live: LiveServer[Feed] | None = None
+        self.live: LiveServer | None = None
+        self._feed: Feed | None = None
         super().__init__("turtlesim", cli_args=arguments)
         for parameter in PARAMETERS:
-            low, high = parameter.low, parameter.high
-            limits = None if low is None or high is None else (low, high)
-            self.declare(parameter.name, parameter.default, parameter.description, limits)
+            self.declare(parameter.name, parameter.default, parameter.description, parameter.limits)
         sprite = self._declare_sprite()
         self.interfaces = self.declare_interfaces()
         window.declare_parameters(self)
         if self.MAY_BE_SEEN:
-            live.declare_parameters(self)
+            window.declare_page_parameters(self)
         self.get_logger().info(
             f"Starting turtlesim with node name {self.get_fully_qualified_name()}"
         )
@@ -116,11 +114,13 @@ class TurtlesimNode(RclcppNode):
         )
         self.create_service(Empty, "clear", self._on_clear)
         self.create_service(Empty, "reset", self._on_reset)
-        self.create_service(self.interfaces.Spawn, "spawn", self._on_spawn)
-        self.create_service(self.interfaces.Kill, "kill", self._on_kill)
+        self.create_service(self.interfaces.srv.Spawn, "spawn", self._on_spawn)
+        self.create_service(self.interfaces.srv.Kill, "kill", self._on_kill)
         self.tick_executor = TickExecutor(self, self.on_failure)
-        if self.MAY_BE_SEEN:
-            self.live = live.serve(self, self.arena, self.interfaces.package)
+        if self.MAY_BE_SEEN and (
+            served := window.serve_page(self, self.arena, self.interfaces.package)
+        ):
+            self.live, self._feed = served
 
     def destroy_node(self) -> None:
         """Leave the graph."""
@@ -146,8 +146,8 @@ class TurtlesimNode(RclcppNode):
         if self._logs_positions:
             self._log_positions()
         self._window.publish_if_due()
-        if self.live is not None:
-            self.live.feed.after_tick(readings)
+        if self._feed is not None:
+            self._feed.after_tick(readings)
         return readings
 
     def serve(self, now_ns: int | None = None) -> int:
@@ -168,9 +168,9 @@ class TurtlesimNode(RclcppNode):
         return now_ns
 
     def _set_time(self, now_ns: int) -> None:
-        """Tell the arena the time.
+        """Set the arena's time.
 
-        There it never goes back: commands would else keep turtles moving until a clock that was
+        It never goes back: commands would else keep turtles moving until a clock that was
         set back is again where it was.
         """
         self._set_back_ns += max(0, self._last_ns - now_ns)
@@ -232,7 +232,7 @@ class TurtlesimNode(RclcppNode):
         return response
 
     def accepts_goal(self) -> bool:
-        """Whether a turtle may be told to turn; like the original, always."""
+        """Whether a rotation goal is accepted; like the original, always."""
         return True
 
     # Helpers ----------------------------------------------------------------------------------
@@ -249,7 +249,7 @@ class TurtlesimNode(RclcppNode):
         return ""
 
     def _sync_endpoints(self) -> None:
-        """Give every turtle of the arena its endpoints and take away those of the others."""
+        """Give every turtle of the arena its endpoints and destroy those of the others."""
         self._drop_endpoints(self._endpoints.keys() - self.arena.turtles.keys())
         for name in self.arena.turtles:
             if name not in self._endpoints:
@@ -274,9 +274,9 @@ class TurtlesimNode(RclcppNode):
                     logger.error(text)
             case GoalFeedback(turtle) | GoalResult(turtle):
                 action = self._endpoints[turtle].action
-                tell: Any = action.feedback if isinstance(notice, GoalFeedback) else action.finish
+                send: Any = action.feedback if isinstance(notice, GoalFeedback) else action.finish
                 try:
-                    tell(notice)
+                    send(notice)
                 except Exception as error:  # in the middle of a tick, which goes on
                     self.on_failure(f"{turtle}/rotate_absolute", error)
 
@@ -305,27 +305,19 @@ def simulate(node: TurtlesimNode, stopped: Callable[[], bool]) -> None:
     gc.freeze()
     node.tick_executor.watch_arrivals()
 
-    def goes_on(follows_ros_clock: bool) -> bool:
-        return not stopped() and node.follows_ros_clock == follows_ros_clock
-
-    def tick() -> bool:
-        # the time of the node's clock, which takes ten times as long to tell it
-        node.tick(time.time_ns())
-        return goes_on(follows_ros_clock=False)
-
-    def ros_tick(now_ns: int) -> bool:
-        node.tick(now_ns)
-        return goes_on(follows_ros_clock=True)
-
-    def serve() -> bool:
-        node.serve()
-        return goes_on(follows_ros_clock=True)
+    def goes_on(with_ros_clock: bool, _: object) -> bool:
+        return not stopped() and node.follows_ros_clock == with_ros_clock
 
     while not stopped():
         if node.follows_ros_clock:
-            pacer.follow_ros_clock(node.hear_clock, serve, ros_tick)
+            program.follow_ros_clock(
+                node.hear_clock,
+                lambda: goes_on(True, node.serve()),
+                lambda now_ns: goes_on(True, node.tick(now_ns)),
+            )
         else:
-            pacer.follow_wall_clock(tick)
+            # the time of the node's clock, which takes ten times as long to ask
+            program.follow_wall_clock(lambda: goes_on(False, node.tick(time.time_ns())))
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -1,4 +1,4 @@
-"""A node that says what rclcpp's nodes say, where rclpy has other words for the same thing."""
+"""A node with the messages of rclcpp's nodes, where rclpy words the same thing differently."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rclpy.qos import qos_policy_name_from_kind
 
 from turtlesim_py.ros import interfaces
 from turtlesim_py.ros.interfaces import Interfaces
-from turtlesim_py.world.parameters import wrong_type
+from turtlesim_py.world.arena import wrong_type
 
 Value = TypeVar("Value", bound=bool | int | float | str)
 
@@ -29,8 +29,8 @@ OFFERED = "New publisher discovered on topic '{}', offering incompatible QoS. "
 REQUESTED = "New subscription discovered on topic '{}', requesting incompatible QoS. "
 NO_MESSAGES = "No messages will be sent to it. Last incompatible policy: {}_QOS_POLICY"
 
-#: The types that a parameter can have, as numbers of rcl_interfaces/msg/ParameterType; what rclcpp
-#: says of others, before it aborts.
+#: The types that a parameter can have, as numbers of rcl_interfaces/msg/ParameterType; rclcpp's
+#: words for others, before it aborts.
 TYPES = frozenset(kind.value for kind in Parameter.Type)
 UNKNOWN_TYPE = "Unknown type: {}"
 
@@ -43,7 +43,11 @@ IN_WORDS: dict[type, str] = {
 }
 
 
-class UnusableParameter(ValueError):
+class UnusableStart(Exception):
+    """A program cannot start with what it was given; the text explains why."""
+
+
+class UnusableParameter(UnusableStart):
     """A parameter cannot have the value with which the node was started."""
 
     def __init__(self, name: str, value: object, expected: str) -> None:

@@ -7,12 +7,16 @@ from struct import Struct
 from typing import Any
 
 from geometry_msgs.msg import Twist
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import GoalEvent, ServerGoalHandle
+from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rclpy.task import Future
 
 from turtlesim_py.ros.interfaces import Interfaces
 from turtlesim_py.ros.rclcpp_node import RclcppNode
-from turtlesim_py.ros.rotate_action import RotateAction
 from turtlesim_py.world.arena import Arena
+from turtlesim_py.world.events import GoalFeedback, GoalResult
 from turtlesim_py.world.turtle import Pose, Reading
 
 #: Reliable and volatile, the last 7 messages: the original's choice for every topic.
@@ -22,11 +26,94 @@ TOPIC_QOS = QoSProfile(depth=7)
 CDR = b"\0\1\0\0"  # little-endian
 POSE_BYTES = Struct("<4s5f")
 COLOR_BYTES = Struct("<4s3Bx")
+#: How long a result can still be asked for [s]: rclcpp's default, which the original leaves alone.
+RESULT_TIMEOUT_S = 10
 
 
 def pose_bytes(pose: Pose) -> bytes:
     """A pose in CDR."""
     return POSE_BYTES.pack(CDR, *pose)
+
+
+class RotateAction:
+    """Passes goals and cancel requests on to the arena, and what comes of them to the clients.
+
+    Every request is accepted, and every goal where nobody says otherwise. In rclpy an execute
+    callback turns a goal into a result; here the world does, in the middle of its ticks, so there
+    is no such callback, and `finish` sets the state and the waiting result itself.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        interfaces: Interfaces,
+        arena: Arena,
+        turtle: str,
+        accepts: Callable[[], bool],
+    ) -> None:
+        """`accepts` is asked before each goal."""
+        self._type = interfaces.action.RotateAbsolute
+        self._arena = arena
+        self._turtle = turtle
+        #: with the result that is waited for: rclpy forgets a goal whose number is that of one that
+        #: expires in the same moment
+        self._running: dict[bytes, tuple[ServerGoalHandle, Future]] = {}
+        self._server = ActionServer(
+            node,
+            self._type,
+            f"{turtle}/rotate_absolute",
+            execute_callback=lambda _: None,  # never called, but required
+            goal_callback=lambda _: GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT,
+            handle_accepted_callback=self._on_goal,
+            cancel_callback=self._on_cancel,
+            result_timeout=RESULT_TIMEOUT_S,
+        )
+
+    @property
+    def known(self) -> int:
+        """How many goals are known: what runs, and what has ended and can still be asked for."""
+        return len(self._server._goal_handles)
+
+    def feedback(self, event: GoalFeedback) -> None:
+        """Tell a goal's client how far it still is."""
+        message = self._type.Feedback(remaining=event.remaining_rad)
+        handle, _ = self._running[_key(event)]
+        handle.publish_feedback(message)
+
+    def finish(self, event: GoalResult) -> None:
+        """End a goal and send its result to those who wait for it."""
+        handle, awaited = self._running.pop(_key(event))
+        if event.status == "SUCCEEDED":
+            handle.succeed()
+        elif event.status == "ABORTED":
+            handle.abort()
+        else:
+            if not handle.is_cancel_requested:  # the turtle is gone, nobody has asked
+                handle._update_state(GoalEvent.CANCEL_GOAL)
+            handle.canceled()
+        response = self._type.Impl.GetResultService.Response(
+            status=handle.status, result=self._type.Result(delta=event.delta_rad)
+        )
+        awaited.set_result(response)
+
+    def destroy(self) -> None:
+        """Take the action off the graph."""
+        self._server.destroy()
+
+    def _on_goal(self, handle: ServerGoalHandle) -> None:
+        handle._update_state(GoalEvent.EXECUTE)
+        key = bytes(handle.goal_id.uuid)
+        self._running[key] = handle, self._server._result_futures[key]
+        self._arena.rotate_absolute(self._turtle, handle.request.theta, key)
+
+    def _on_cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        self._arena.cancel(bytes(handle.goal_id.uuid))
+        return CancelResponse.ACCEPT
+
+
+def _key(event: GoalFeedback | GoalResult) -> bytes:
+    assert isinstance(event.goal_id, bytes)  # as given to the arena in _on_goal
+    return event.goal_id
 
 
 class TurtleEndpoints:
@@ -48,8 +135,8 @@ class TurtleEndpoints:
         self._node = node
         self._arena = arena
         self._name = name
-        self.pose_publisher = self._publisher(interfaces.Pose, f"{name}/pose")
-        self._color_publisher = self._publisher(interfaces.Color, f"{name}/color_sensor")
+        self.pose_publisher = self._publisher(interfaces.msg.Pose, f"{name}/pose")
+        self._color_publisher = self._publisher(interfaces.msg.Color, f"{name}/color_sensor")
         cmd_vel = f"{name}/cmd_vel"
         self._subscription = node.create_subscription(
             Twist,
@@ -61,9 +148,9 @@ class TurtleEndpoints:
         self._services = [
             node.create_service(service, f"{name}/{called}", callback)
             for service, called, callback in (
-                (interfaces.SetPen, "set_pen", self._on_set_pen),
-                (interfaces.TeleportAbsolute, "teleport_absolute", self._on_teleport_absolute),
-                (interfaces.TeleportRelative, "teleport_relative", self._on_teleport_relative),
+                (interfaces.srv.SetPen, "set_pen", self._on_set_pen),
+                (interfaces.srv.TeleportAbsolute, "teleport_absolute", self._on_teleport_absolute),
+                (interfaces.srv.TeleportRelative, "teleport_relative", self._on_teleport_relative),
             )
         ]
         self.action = RotateAction(node, interfaces, arena, name, accepts_goal)

@@ -1,11 +1,12 @@
-"""The window that the original opens, as data: a picture on a topic, and in a file on request."""
+"""The window that the original opens, as data: on a topic, in a file on request, on a page."""
 
 from __future__ import annotations
 
+import sys
 from array import array
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import PIL.Image
@@ -16,16 +17,23 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import CompressedImage, Image
 from std_srvs.srv import Trigger
 
-from turtlesim_py.png import save_png
-from turtlesim_py.ros.rclcpp_node import RclcppNode
+from turtlesim_py.ros.rclcpp_node import RclcppNode, UnusableParameter
 from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
 from turtlesim_py.world.turtle import TICK_S
 
-#: Pictures a second, unless the parameter says otherwise.
+if TYPE_CHECKING:
+    from turtlesim_py.live.feed import Feed
+    from turtlesim_py.live.server import LiveServer
+
+#: Pictures a second, unless the parameter is set.
 DEFAULT_RATE_HZ = 10.0
 #: The least rate means: one picture, and then none as long as the node lives.
 LONGEST_PERIOD_NS = 1e18
+#: Serve the page to this machine alone.
+DEFAULT_HOST = "127.0.0.1"
+#: The page's thread may keep a tick waiting for so long [s]; Python's 5 ms are a third of a tick.
+SWITCH_S = 0.0005
 
 
 def declare_parameters(node: RclcppNode) -> None:
@@ -39,13 +47,27 @@ def declare_parameters(node: RclcppNode) -> None:
     node.declare("canvas_folder", ".", "Where save_canvas writes its pictures")
 
 
+def declare_page_parameters(node: RclcppNode) -> None:
+    """Declare what `serve_page` reads."""
+    node.declare(
+        "view_port",
+        -1,
+        "Where a page shows the turtles: a port of this machine; 0: any free one; -1: no page",
+        limits=(-1, 65535),
+        read_only=True,
+    )
+    node.declare("view_host", DEFAULT_HOST, "The address to serve the page at", read_only=True)
+    node.declare("view_token", "", "What opens the page elsewhere; empty: made", read_only=True)
+    node.declare("view_read_only", False, "Whether the page is for looking only", read_only=True)
+
+
 class Window:
     """The topics `~/image` and `~/image/compressed` and the service `~/save_canvas`.
 
-    Whoever can, takes the raw picture reliably: it is larger than what the middleware carries in
-    one piece (0.75 MB), and without repetition most of them arrive incomplete, which is not at
-    all. The compressed one (PNG, the same pixels, about 10 kB) also suits best-effort subscribers
-    and slow networks; where it stands and how it is called is the custom of image_transport.
+    Subscribe to the raw picture reliably where possible: it is larger than what the middleware
+    carries in one piece (0.75 MB), and without repetition most pictures are lost. The compressed
+    one (PNG, the same pixels, about 10 kB) also suits best-effort subscribers and slow networks;
+    its place and name are the custom of image_transport.
     """
 
     def __init__(self, node: RclcppNode, arena: Arena) -> None:
@@ -62,7 +84,7 @@ class Window:
         node.create_service(Trigger, "~/save_canvas", self._on_save)
 
     def publish_if_due(self) -> None:
-        """Send the picture if somebody looks and the last one is old enough; after each tick."""
+        """Send the picture if somebody subscribes and the last is old enough; after each tick."""
         late_ns = self._arena.now_ns - self._due_ns
         if late_ns < 0 or self._rate_hz == 0.0:
             return
@@ -96,7 +118,7 @@ class Window:
             folder = folder.expanduser().resolve()
             folder.mkdir(parents=True, exist_ok=True)
             path = _reserve_next(folder)
-            save_png(self._picture(), path)
+            PIL.Image.fromarray(self._picture()).save(path, format="PNG")
         # a home that nobody has, a circle of links, a name that no file can have
         except (OSError, RuntimeError, ValueError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
@@ -137,3 +159,41 @@ def _reserve_next(folder: Path) -> Path:
             number += 1
         else:
             return path
+
+
+def serve_page(node: RclcppNode, arena: Arena, interfaces: str) -> tuple[LiveServer, Feed] | None:
+    """Begin to serve the page; None where none is wanted.
+
+    Args:
+        interfaces: the package of turtlesim's messages.
+
+    Raises:
+        UnusableParameter: it cannot be served so.
+    """
+    port, host, token, is_read_only = (
+        node.get_parameter(f"view_{name}").value for name in ("port", "host", "token", "read_only")
+    )
+    if port < 0:
+        return None
+    try:
+        from turtlesim_py.live.feed import Feed  # here: few want a page
+        from turtlesim_py.live.server import LiveServer, Settings
+    except ImportError as error:
+        needed = f"-1: a page needs the package websockets, 13.1 or newer ({error})"
+        raise UnusableParameter("view_port", port, needed) from None
+    about = {
+        "node": node.get_fully_qualified_name(),
+        "namespace": node.get_namespace(),
+        "interfaces": interfaces,
+    }
+    server = LiveServer(Settings(port, host, is_read_only, token), about)
+    feed = Feed(arena, server.deliver)
+    sys.setswitchinterval(SWITCH_S)
+    try:
+        server.start(feed)
+    except (OSError, UnicodeError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+        found = f"{port}, at {host}"
+        raise UnusableParameter("view_port", found, f"a port that is free ({why})") from None
+    node.get_logger().info(f"The turtles are to be seen at {server.address}")
+    return server, feed

@@ -5,30 +5,68 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from copy import copy
+from dataclasses import dataclass
+from typing import Any
 
+from turtlesim_py.world import events
 from turtlesim_py.world.canvas import Canvas
-from turtlesim_py.world.events import (
-    Cancel,
-    Clear,
-    CmdVel,
-    Kill,
-    Reset,
-    RotateAbsolute,
-    SetParameter,
-    SetPen,
-    Spawn,
-    TeleportAbsolute,
-    TeleportRelative,
-)
+from turtlesim_py.world.events import LogLine, Notice, Severity
 from turtlesim_py.world.floats import float32, printf_f
-from turtlesim_py.world.notices import LogLine, Notice, Severity
-from turtlesim_py.world.picture import Sprite
-from turtlesim_py.world.sprites import NAMES
+from turtlesim_py.world.picture import NAMES, Sprite
 from turtlesim_py.world.turtle import METER_PX, SIZE_M, Reading, Teleport, Turtle
 
 #: A tick's length on a clock of its own [ns].
 TICK_NS = 16_000_000
 DEFAULT_BACKGROUND = (69, 86, 255)
+
+
+@dataclass(frozen=True)
+class ArenaParameter:
+    """A parameter of the simulator; `limits` are the least and the largest whole number."""
+
+    name: str
+    default: bool | int
+    description: str
+    limits: tuple[int, int] | None = None
+
+
+#: Those of the original, in its order of declaration.
+PARAMETERS = (
+    *(
+        ArenaParameter(
+            f"background_{name[0].lower()}",
+            default,
+            f"{name} channel of the background color",
+            (0, 255),
+        )
+        for name, default in zip(("Red", "Green", "Blue"), DEFAULT_BACKGROUND, strict=True)
+    ),
+    ArenaParameter("holonomic", False, "If true, then turtles will be holonomic"),
+)
+BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
+TYPE_NAMES = {bool: "bool", int: "integer", float: "double", str: "string"}
+
+
+def wrong_type(name: str, expected: str, found: str) -> str:
+    """Return the original's refusal to change a parameter's type."""
+    return (
+        f"Wrong parameter type, parameter {{{name}}} is of type {{{expected}}}, "
+        f"setting it to {{{found}}} is not allowed."
+    )
+
+
+def refusal(parameter: ArenaParameter, value: object) -> str:
+    """Return why the original would not set this value; '' where it would."""
+    kinds = type(parameter.default), type(value)
+    expected, found = (TYPE_NAMES.get(kind, kind.__name__) for kind in kinds)
+    if found != expected:
+        return wrong_type(parameter.name, expected, found)
+    if parameter.limits:
+        assert isinstance(value, int)
+        least, most = parameter.limits
+        if not least <= value <= most:
+            return f"Parameter {{{parameter.name}}} doesn't comply with integer range."
+    return ""
 
 
 class UnknownTurtle(KeyError):
@@ -43,13 +81,13 @@ class UnknownTurtle(KeyError):
 
 
 class Arena:
-    """Turtles on a canvas; a plain object that knows no time but the one it is told.
+    """Turtles on a canvas; a plain object that knows no time but `now_ns`.
 
     Attributes:
         turtles: name -> turtle. `tick` visits them in the byte-wise order of their names.
         canvas: what the pens have drawn, 500 x 500 pixels.
         listeners: called with every `Notice`, in the order in which things happen.
-        now_ns: the time [ns] at which inputs arrive and the watchdog looks. The owner sets it
+        now_ns: the time [ns] at which inputs arrive and the watchdog runs. The owner sets it
             before each tick; left alone, it advances by 16 ms a tick.
         ticks: how often the turtles have been updated.
         holonomic: whether linear.y of a command counts.
@@ -71,7 +109,7 @@ class Arena:
         self._id_counter = 0
         self._spawn_first()
 
-    # Inputs: each tells the listeners before it acts -------------------------------------------
+    # Inputs: each is reported to the listeners before it acts -----------------------------------
 
     def command(
         self,
@@ -84,35 +122,33 @@ class Arena:
         Raises:
             UnknownTurtle: nobody has this name.
         """
-        self._emit(CmdVel(tick=self.ticks + 1, turtle=turtle, linear=linear, angular=angular))
+        self._report(events.CmdVel, turtle=turtle, linear=linear, angular=angular)
         linear_y = linear[1] if self.holonomic else None
         self._get(turtle).command(linear[0], linear_y, angular[2], self.now_ns)
 
     def set_pen(self, turtle: str, r: int, g: int, b: int, width: int, off: int) -> None:
         """Change a turtle's pen: colour and width [px], each 0-255; `off` other than 0 lifts it."""
-        self._emit(SetPen(tick=self.ticks + 1, turtle=turtle, r=r, g=g, b=b, width=width, off=off))
+        self._report(events.SetPen, turtle=turtle, r=r, g=g, b=b, width=width, off=off)
         self._get(turtle).set_pen(r, g, b, width, off)
 
     def teleport_absolute(self, turtle: str, x: float, y: float, theta: float) -> None:
         """Put a turtle at (x, y) [m] with heading theta [rad] at the next tick."""
-        self._emit(TeleportAbsolute(tick=self.ticks + 1, turtle=turtle, x=x, y=y, theta=theta))
+        self._report(events.TeleportAbsolute, turtle=turtle, x=x, y=y, theta=theta)
         self._get(turtle).teleport(Teleport(x, y, theta, relative=False))
 
     def teleport_relative(self, turtle: str, linear: float, angular: float) -> None:
         """Turn by `angular` [rad], then go ahead by `linear` [m], at the next tick."""
-        self._emit(
-            TeleportRelative(tick=self.ticks + 1, turtle=turtle, linear=linear, angular=angular)
-        )
+        self._report(events.TeleportRelative, turtle=turtle, linear=linear, angular=angular)
         self._get(turtle).teleport(Teleport(linear, 0.0, angular, relative=True))
 
     def rotate_absolute(self, turtle: str, theta: float, goal_id: object) -> None:
         """Start a rotation goal towards heading theta [rad]."""
-        self._emit(RotateAbsolute(tick=self.ticks + 1, turtle=turtle, theta=theta, id=goal_id))
+        self._report(events.RotateAbsolute, turtle=turtle, theta=theta, id=goal_id)
         self._get(turtle).rotate_to(goal_id, theta)
 
     def cancel(self, goal_id: object) -> bool:
         """Ask for the end of a goal; False where it is not running (any more)."""
-        self._emit(Cancel(tick=self.ticks + 1, id=goal_id))
+        self._report(events.Cancel, id=goal_id)
         for turtle in self.turtles.values():
             goal = turtle.goal
             if goal is not None and goal.goal_id == goal_id:
@@ -121,11 +157,11 @@ class Arena:
         return False
 
     def spawn(self, x: float, y: float, theta: float, name: str = "") -> str:
-        """Add a turtle at (x, y) [m], theta [rad], and return its name; '' where the name is taken.
+        """Add a turtle at (x, y) [m], theta [rad], and return its name; '' where it is in use.
 
         An empty name becomes "turtleN" with the next free N.
         """
-        self._emit(Spawn(tick=self.ticks + 1, x=x, y=y, theta=theta, name=name))
+        self._report(events.Spawn, x=x, y=y, theta=theta, name=name)
         if name in self.turtles:
             self._log("ERROR", f"A turtle named [{name}] already exists")
             return ""
@@ -133,7 +169,7 @@ class Arena:
 
     def kill(self, name: str) -> bool:
         """Remove a turtle; False where there is none of that name."""
-        self._emit(Kill(tick=self.ticks + 1, name=name))
+        self._report(events.Kill, name=name)
         turtle = self.turtles.pop(name, None)
         if turtle is None:
             self._log("ERROR", f"Tried to kill turtle [{name}], which does not exist")
@@ -143,13 +179,13 @@ class Arena:
 
     def clear(self) -> None:
         """Wipe the drawing; turtles, pens and parameters stay."""
-        self._emit(Clear(tick=self.ticks + 1))
+        self._report(events.Clear)
         self._log("INFO", "Clearing turtlesim.")
         self.canvas.clear()
 
     def reset(self) -> None:
         """Start again with turtle1 in the centre and an empty canvas; parameters stay."""
-        self._emit(Reset(tick=self.ticks + 1))
+        self._report(events.Reset)
         self._log("INFO", "Resetting turtlesim.")
         for turtle in self.turtles.values():
             turtle.abandon_goal()
@@ -159,8 +195,8 @@ class Arena:
         self.canvas.clear()
 
     def set_parameter(self, name: str, value: bool | int) -> None:
-        """Set a parameter that `turtlesim_py.world.parameters` has found acceptable."""
-        self._emit(SetParameter(tick=self.ticks + 1, name=name, value=value))
+        """Set a parameter to a value that `refusal` accepts."""
+        self._report(events.SetParameter, name=name, value=value)
         if name == "holonomic":
             self.holonomic = bool(value)
         else:
@@ -222,6 +258,9 @@ class Arena:
             name = f"turtle{self._id_counter}"
             if name not in self.turtles:
                 return name
+
+    def _report(self, kind: type[events.Event], **fields: Any) -> None:
+        self._emit(kind(tick=self.ticks + 1, **fields))
 
     def _emit(self, notice: Notice) -> None:
         for listener in self.listeners:

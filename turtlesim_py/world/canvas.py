@@ -29,7 +29,7 @@ class Pen:
         r, g, b: colour; the default is the original's.
         width: [px]. Width 0 draws like 1: the original makes a new QPen for each SetPen and does
             not set the width if it is 0, and a new QPen is 1 px wide. A pen keeps its 0 all the
-            same, so that it tells what was asked for; the stroke takes care.
+            same, so that it shows what was asked for; the stroke handles it.
     """
 
     r: int = 0xB3

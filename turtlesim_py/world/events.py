@@ -1,25 +1,28 @@
-"""Inputs to an arena: what came in at which tick. Their JSON form is the scenario's.
+"""What an arena reports to its listeners: inputs, log lines and the progress of rotation goals.
 
-One frozen dataclass a kind, with the kind's `op` and fields; `to_json` and `from_json` are the only
-place that knows the JSON. There, not-a-number and the infinities are the strings "nan", "inf" and
-"-inf", and whole numbers have no decimal point; in an event they are floats.
+An input is an `Event`, one frozen dataclass a kind, with the kind's `op` and fields. Its JSON form
+is the scenario's, and only `to_json` and `from_json` know it: there, not-a-number and the
+infinities are the strings "nan", "inf" and "-inf", and whole numbers have no decimal point; in an
+event they are floats.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields
-from typing import Any, ClassVar, Final, TypeVar
+from typing import Any, ClassVar, Final, Literal, TypeVar
 
 from turtlesim_py.world.floats import json_number
 
 Vector = tuple[float, float, float]
 #: What a rotation goal is known by: bytes from ROS, anything else from a scenario.
 GoalId = object
+Severity = Literal["INFO", "WARN", "ERROR"]
+GoalStatus = Literal["SUCCEEDED", "CANCELED", "ABORTED"]
 
 
 class EventError(ValueError):
-    """JSON that describes no event; the text says what is missing or wrong."""
+    """JSON that describes no event; the text names what is missing or wrong."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,6 +166,36 @@ class SnapshotNow(Event):
 
     name: str
 
+
+@dataclass(frozen=True, slots=True)
+class LogLine:
+    """A line that the original writes to its log."""
+
+    severity: Severity
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class GoalFeedback:
+    """A rotation goal still has `remaining_rad` to turn."""
+
+    turtle: str
+    goal_id: object
+    remaining_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class GoalResult:
+    """A rotation goal ended; `delta_rad` is start minus end, the original's sign."""
+
+    turtle: str
+    goal_id: object
+    status: GoalStatus
+    delta_rad: float
+
+
+#: An event is reported before it has any effect.
+Notice = Event | LogLine | GoalFeedback | GoalResult
 
 KINDS: Final[Mapping[str, type[Event]]] = {
     kind.op: kind

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final, Self
 
 import numpy as np
@@ -44,7 +44,7 @@ class Trajectory:
 
     @classmethod
     def of_rows(cls, rows: NDArray[np.float64]) -> Self:
-        """The trajectory of an array (n, 9) in the order of `COLUMNS`.
+        """Return the trajectory of an array (n, 9) in the order of `COLUMNS`.
 
         Raises:
             ValueError: it has another shape.
@@ -58,12 +58,12 @@ class Trajectory:
 
     @classmethod
     def of_readings(cls, readings: list[tuple[int, Reading]]) -> Self:
-        """The trajectory of readings with their ticks."""
+        """Return the trajectory of readings with their ticks."""
         rows = [(tick, *pose, *color) for tick, (pose, color) in readings]
         return cls.of_rows(np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS)))
 
     def rows(self) -> Floats:
-        """The same as a float64 array (n, 9) in the order of `COLUMNS`."""
+        """Return a float64 array (n, 9) in the order of `COLUMNS`."""
         columns = (self.ticks, self.x, self.y, self.theta, self.linear, self.angular)
         return np.column_stack((*columns, self.rgb)).astype(np.float64)
 
@@ -71,13 +71,5 @@ class Trajectory:
         return len(self.ticks)
 
     def __getitem__(self, which: slice | NDArray[np.bool_]) -> Self:
-        """A part of it: a slice of the readings, or those where a mask is true."""
-        return type(self)(
-            ticks=self.ticks[which],
-            x=self.x[which],
-            y=self.y[which],
-            theta=self.theta[which],
-            linear=self.linear[which],
-            angular=self.angular[which],
-            rgb=self.rgb[which],
-        )
+        """Return a slice of the readings, or those where a mask is true."""
+        return type(self)(*(getattr(self, column.name)[which] for column in fields(self)))

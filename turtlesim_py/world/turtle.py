@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from turtlesim_py.world.canvas import Canvas, Pen
+from turtlesim_py.world.events import GoalFeedback, GoalResult, GoalStatus, LogLine, Notice
 from turtlesim_py.world.floats import (
     cos,
     float32,
@@ -22,7 +23,6 @@ from turtlesim_py.world.floats import (
     printf_f,
     sin,
 )
-from turtlesim_py.world.notices import GoalFeedback, GoalResult, GoalStatus, LogLine, Notice
 
 #: Pixels in a metre: the height of the original's turtle pictures.
 METER_PX = 45.0

@@ -1,20 +1,35 @@
-"""What the reading of an export comes to, whatever its layout: attempts, each of somebody."""
+"""What reading an export comes to, whatever its layout: attempts, each somebody's at a time."""
 
 from __future__ import annotations
 
 import os
+import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
-from typing import Protocol
+from typing import Final, Protocol
 
-from grader.batch.hand_in import Person
-from grader.submission.folder import is_junk
+from grader.batch.entry import Person
+from grader.message import NOTHING, Message, Text
+from grader.submission.folder import is_junk, listed
 from grader.text import clip, one_line, plain
 
 _MAX_NAME = 200  # characters of a person's name or id
+_MAX_NAME_BYTES: Final = 200  # of a file's name; file systems take 255
+#: ISO 8601, and what is made of it for names of files: 2026-11-01_12-30-05, 20261101T123005Z;
+#: Ruby's YAML has nanoseconds and a space before the zone.
+_TIME: Final = re.compile(
+    r"(?P<year>\d{4})-?(?P<month>\d\d)-?(?P<day>\d\d)"
+    r"(?:(?:T|[ _-]+|, )(?P<hour>\d\d)[:.h-]?(?P<minute>\d\d)"
+    r"(?:[:.-]?(?P<second>\d\d)(?:[.,](?P<fraction>\d{1,9}))?)?)?"
+    r" ?(?:(?P<utc>Z|UTC)|(?P<sign>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d))?"
+)
+#: As Moodle writes it in English, but for the day of the week before it.
+_MOODLE: Final = ("%d %B %Y, %I:%M %p", "%d %B %Y, %H:%M")
+_EPOCH: Final = re.compile(r"\d{10}|\d{13}")  # seconds, milliseconds since 1970
 
 
 @dataclass(frozen=True)
@@ -63,13 +78,13 @@ class Attempt:
     pieces: tuple[Piece, ...] = ()
     number: int = 0
     at: datetime | None = None
-    problem: str = ""
+    problem: Message = NOTHING
     aliases: tuple[str, ...] = ()
     alone: bool = False
 
 
 @dataclass(frozen=True)
-class Reading:
+class Export:
     """What a layout makes of a folder.
 
     Attributes:
@@ -77,9 +92,9 @@ class Reading:
         notes: sentences for the teacher.
     """
 
-    layout: str
+    layout: Message
     attempts: Sequence[Attempt]
-    notes: Sequence[str] = field(default=())
+    notes: Sequence[Message] = field(default=())
 
 
 class Layout(Protocol):
@@ -88,7 +103,7 @@ class Layout(Protocol):
     def looks_like(self, items: Sequence[Item], /) -> bool:
         """Whether what lies in a folder is laid out so."""
 
-    def read(self, items: Sequence[Item], /) -> Reading:
+    def read(self, items: Sequence[Item], /) -> Export:
         """What it comes to."""
 
 
@@ -112,6 +127,21 @@ def composed(name: str) -> str:
     return unicodedata.normalize("NFC", name)
 
 
+def tell(notes: list[Message], what: Message, names: Iterable[Text]) -> None:
+    """Add a note on some `{names}`; nothing where there are none."""
+    if every := list(names):
+        notes.append(what.given(names=listed(every)))
+
+
+def short(part: str) -> str:
+    """A name that is not too long for a file system; the end, which says the kind, stays."""
+    if len(os.fsencode(part)) <= _MAX_NAME_BYTES:
+        return part
+    end = part[-30:]
+    begin = part.encode("utf-8", "surrogateescape")[: _MAX_NAME_BYTES - len(os.fsencode(end)) - 3]
+    return f"{begin.decode('utf-8', 'ignore')}…{end}"
+
+
 def mostly(items: Iterable[Item], fits: Callable[[Item], object]) -> bool:
     """Whether at least half of what lies in a folder fits; and there is something."""
     found = [bool(fits(item)) for item in items]
@@ -127,3 +157,53 @@ def person(id: str, name: str = "", columns: Mapping[str, str] | None = None) ->
 def _clean(text: str) -> str:
     # one line first: `plain` looks for what stands at the start of a line
     return clip(composed(plain(one_line(text))).strip(), _MAX_NAME)
+
+
+def read_time(text: str) -> datetime | None:
+    """The moment that a text means; None if it means none.
+
+    Without a zone it is this machine's local time, and without an hour the day's first moment.
+    """
+    text = text.strip()
+    if _EPOCH.fullmatch(text):
+        return datetime.fromtimestamp(int(text[:10]), UTC)
+    match = _TIME.fullmatch(text)
+    if match is None:
+        return _of_moodle(text)
+    year, month, day, hour, minute, second = (int(part or 0) for part in match.groups()[:6])
+    microsecond = int((match["fraction"] or "").ljust(6, "0")[:6])
+    try:
+        at = datetime(year, month, day, hour, minute, second, microsecond)
+        if match["utc"]:
+            return at.replace(tzinfo=UTC)
+        if match["sign"]:
+            return at.replace(tzinfo=zone(match["sign"], match["hours"], match["minutes"]))
+        return at.astimezone()
+    except (ValueError, OverflowError, OSError):  # there is no such day, or zone
+        return None
+
+
+def moment(at: datetime | None) -> float:
+    """A time for comparison [s]; before all others, where it is not known."""
+    return at.timestamp() if at else float("-inf")
+
+
+def _of_moodle(text: str) -> datetime | None:
+    """Such as: Tuesday, 1 December 2026, 6:00 PM."""
+    text = re.sub("^[A-Za-z]+, ", "", text)
+    for form in _MOODLE:
+        with suppress(ValueError, OverflowError, OSError):
+            return datetime.strptime(text, form).astimezone()
+    return None
+
+
+def zone(sign: str, hours: str, minutes: str) -> timezone:
+    """A time zone from its numbers.
+
+    Raises:
+        ValueError: no zone is so far away.
+    """
+    ahead = timedelta(hours=int(hours), minutes=int(minutes))
+    if ahead > timedelta(hours=14):
+        raise ValueError(f"no time zone is {hours}:{minutes} from Greenwich")
+    return timezone(-ahead if sign == "-" else ahead)

@@ -15,13 +15,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
-from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
-from grader.batch.hand_in import Person
-from grader.language.phrase import say
-from grader.submission.folder import is_junk, listed
+from grader.batch.entry import Person
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, tell
+from grader.message import NOTHING, msg
+from grader.submission.folder import is_junk
 from grader.submission.unpacking import is_archive
 
-LAYOUT: Final = say("what Canvas's “Download Submissions” makes")
+LAYOUT: Final = msg("what Canvas's “Download Submissions” makes")
 _NAME: Final = re.compile(
     r"(?:(?P<late>LATE)_)?(?:anon_(?P<code>[A-Za-z0-9]+)|"
     r"(?P<name>.+?)(?:_(?P<late_too>LATE))?_(?P<user>\d+))"
@@ -30,7 +30,7 @@ _NAME: Final = re.compile(
 )
 #: `node-2.tar.gz`: the same file handed in again, for the second time.
 _AGAIN: Final = re.compile(r"(?P<stem>.+)-(?P<times>[1-9]\d?)(?P<ending>(?:\.[A-Za-z0-9]+)+)")
-_ONLY_TEXT: Final = say("Only a text or a link was handed in, and no file.")
+_ONLY_TEXT: Final = msg("Only a text or a link was handed in, and no file.")
 
 
 class _File(NamedTuple):
@@ -54,7 +54,7 @@ def looks_like(items: Sequence[Item]) -> bool:
     return mostly(items, _parsed)
 
 
-def read(items: Sequence[Item]) -> Reading:
+def read(items: Sequence[Item]) -> Export:
     """The hand-ins in one."""
     files: dict[tuple[str, str], list[_File]] = defaultdict(list)
     people: dict[tuple[str, str], Person] = {}
@@ -81,20 +81,11 @@ def read(items: Sequence[Item]) -> Reading:
         attempts.append(_attempt("_".join(whose), people[whose], kept))
     if len({id for id, _ in files}) < len(files):  # names can be chosen so: ann_12
         notes.append(
-            say("Some ids stand there with several names; look at these hand-ins yourself.")
+            msg("Some ids stand there with several names; look at these hand-ins yourself.")
         )
-    if outdated:
-        notes.append(
-            say(
-                "Left out, since there is a newer one of this name: {names}.",
-                names=listed(outdated),
-            )
-        )
-    if others:
-        notes.append(
-            say("Left out, since Canvas does not name them so: {names}.", names=listed(others))
-        )
-    return Reading(LAYOUT, attempts, notes)
+    tell(notes, msg("Left out, since there is a newer one of this name: {names}."), outdated)
+    tell(notes, msg("Left out, since Canvas does not name them so: {names}."), others)
+    return Export(LAYOUT, attempts, notes)
 
 
 def _parsed(item: Item) -> re.Match[str] | None:
@@ -138,5 +129,5 @@ def _attempt(whose: str, student: Person, files: list[_File]) -> Attempt:
         columns = {**student.columns, "Exported as": files[0].item.name}
         student = replace(student, columns=columns)
     number = 1 + max((file.again for file in files), default=0)
-    problem = "" if pieces else _ONLY_TEXT
+    problem = NOTHING if pieces else _ONLY_TEXT
     return Attempt(whose, (student,), pieces, number, problem=problem)

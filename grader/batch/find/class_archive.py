@@ -9,19 +9,18 @@ others from being graded. What is inside of the students' own archives is not lo
 from __future__ import annotations
 
 import errno
-import json
-import os
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
 from grader import limited, strict_json
+from grader.batch.find.attempt import short
 from grader.errors import UsageError
-from grader.language import stored
-from grader.language.phrase import say
+from grader.message import NOTHING, Message, as_message, msg
 from grader.submission import tar_archive, zip_archive
 from grader.submission.archive import DAMAGED
 from grader.submission.archive_members import Budget, ListTooLong, Member
@@ -32,27 +31,26 @@ MAX_ALL_BYTES: Final = 50_000_000_000
 MAX_LIST_BYTES: Final = 100_000_000  # of the list of a zip's members
 #: A file that is too large for a submission is cut here, and so refused when it is graded.
 MAX_FILE_BYTES: Final = MAX_BYTES + 1
-LIMITS: Final = limited.Limits(cpu_s=3600, wall_s=4 * 3600, memory_bytes=3 * 2**30)
-_MAX_PART_BYTES: Final = 200  # of a name; file systems take 255
+LIMITS: Final = limited.WorkLimits(cpu_s=3600, wall_s=4 * 3600, memory_bytes=3 * 2**30)
 _CHUNK_BYTES: Final = 1 << 16
-#: What of a repository says when it was committed to (`git_time.py`); no configuration, no hooks.
+#: What of a repository says when it was committed to (`clones.py`); no configuration, no hooks.
 _OF_GIT: Final = ("HEAD", "objects", "packed-refs", "refs")
 _UNWRITABLE: Final = (
     *(errno.EINVAL, errno.EILSEQ, errno.ENAMETOOLONG),
     *(errno.ENOTDIR, errno.EISDIR, errno.EEXIST),
 )
 #: What may be odd about some of the members.
-_CANNOT_BE_WRITTEN: Final = say("cannot be written here")
-_NO_FILE: Final = say("is encrypted, a link or no ordinary file, and left out")
-_OUTSIDE: Final = say("would be written outside of its folder, and is left out")
-_DAMAGED: Final = say("is damaged, and kept as far as it goes")
-_TOO_LARGE: Final = say(
+_CANNOT_BE_WRITTEN: Final = msg("cannot be written here")
+_NO_FILE: Final = msg("is encrypted, a link or no ordinary file, and left out")
+_OUTSIDE: Final = msg("would be written outside of its folder, and is left out")
+_DAMAGED: Final = msg("is damaged, and kept as far as it goes")
+_TOO_LARGE: Final = msg(
     "has more than {size:g} MB, too much for a submission, and is cut", size=MAX_BYTES / 1e6
 )
-_INSTEAD: Final = say("Unpack it yourself, and give the folder.")
+_INSTEAD: Final = msg("Unpack it yourself, and give the folder.")
 
 
-def unpack(archive: Path, into: Path) -> list[str]:
+def unpack(archive: Path, into: Path) -> list[Message]:
     """Write what is in the archive of a class below `into`, a folder to be made.
 
     Returns:
@@ -64,67 +62,55 @@ def unpack(archive: Path, into: Path) -> list[str]:
     into.mkdir()
     name = shown(archive.name)
     try:
-        notes, refused = _from_answer(limited.call(lambda: _answer(archive, into), LIMITS))
+        answer = limited.call(lambda: _answer(archive, into), LIMITS)
     except limited.LimitHit as hit:
         raise UsageError(
-            say(
-                "{name} cannot be unpacked: that {hit}. {instead}",
-                name=name,
-                hit=hit.args[0],
-                instead=_INSTEAD,
-            )
+            "{name} cannot be unpacked: that {hit}. {instead}",
+            name=name,
+            hit=hit.why,
+            instead=_INSTEAD,
         ) from None
-    if refused:
-        raise UsageError(refused)
-    return notes
+    told = strict_json.of_line(_Answer, answer)
+    if told.refused:
+        raise UsageError(told.refused)
+    return list(told.notes)
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """What the process that unpacks has to say: notes, or why there is nothing."""
+
+    notes: tuple[Message, ...] = ()
+    refused: Message = NOTHING
 
 
 def _answer(archive: Path, into: Path) -> bytes:
     name = shown(archive.name)
     try:
-        return _to_answer(_Unpacking(name, into).unpack(archive))
+        return strict_json.line(_Answer(tuple(_Unpacking(name, into).unpack(archive))))
     except UsageError as error:
         why = error.message
     except ListTooLong as error:
-        why = say(
+        why = msg(
             "{name} lists more than any class hands in: {error}. {instead}",
             name=name,
             error=error.args[0],
             instead=_INSTEAD,
         )
     except (*DAMAGED, NotImplementedError, OSError) as error:
-        why = say(
+        why = msg(
             "{name} cannot be unpacked: {why}. Download it again, or unpack it yourself.",
             name=name,
-            why=shown(str(error)) or say("it ends too early"),
+            why=as_message(shown(str(error))) or msg("it ends too early"),
         )
         if isinstance(error, OSError) and error.errno == errno.ENOSPC:
-            why = say(
+            why = msg(
                 "{name} cannot be unpacked: {folder} has no space left. {instead}",
                 name=name,
                 folder=into,
                 instead=_INSTEAD,
             )
-    return _to_answer(refused=why)
-
-
-def _to_answer(notes: Sequence[str] = (), refused: str = "") -> bytes:
-    said = {"notes": notes, "refused": refused}
-    return json.dumps({**said, "phrases": stored.phrases_in(said)}).encode()
-
-
-def _from_answer(answer: bytes) -> tuple[list[str], str]:
-    """The notes, and why nothing was unpacked.
-
-    Raises:
-        ValueError: it is no answer.
-    """
-    said = strict_json.loads(answer.decode())
-    texts = [said["refused"], *said["notes"]]
-    if not all(isinstance(text, str) for text in texts):
-        raise ValueError(f"expected sentences, found {texts!r:.80}")
-    refused, *notes = stored.restored(texts, said["phrases"])
-    return notes, refused
+    return strict_json.line(_Answer(refused=why))
 
 
 class _Room(Budget):
@@ -137,24 +123,20 @@ class _Room(Budget):
         self._bytes_left -= count
         if self._bytes_left < 0:
             raise UsageError(
-                say(
-                    "{name} unpacks to more than {size:g} GB, the limit for a class. {instead}",
-                    name=name,
-                    size=MAX_ALL_BYTES / 1e9,
-                    instead=_INSTEAD,
-                )
+                "{name} unpacks to more than {size:g} GB, the limit for a class. {instead}",
+                name=name,
+                size=MAX_ALL_BYTES / 1e9,
+                instead=_INSTEAD,
             )
 
     def take_files(self, name: str, count: int) -> None:
         self._files_left -= count
         if self._files_left < 0:
             raise UsageError(
-                say(
-                    "{name} holds more than {most:,} files, the limit for a class. {instead}",
-                    name=name,
-                    most=MAX_FILES,
-                    instead=_INSTEAD,
-                )
+                "{name} holds more than {most:,} files, the limit for a class. {instead}",
+                name=name,
+                most=MAX_FILES,
+                instead=_INSTEAD,
             )
 
 
@@ -167,11 +149,11 @@ class _Unpacking:
 
     def __init__(self, name: str, into: Path) -> None:
         self.name, self.into = name, into
-        self.odd: dict[str, list[str]] = defaultdict(list)
+        self.odd: dict[Message, list[str]] = defaultdict(list)
         self._room = _Room()
         self._made: set[Path] = {into}
 
-    def unpack(self, archive: Path) -> list[str]:
+    def unpack(self, archive: Path) -> list[Message]:
         with _members(archive, self.into.with_suffix(".tar")) as members:
             for path, member in self._chosen(members):
                 self._room.take_files(self.name, 1)
@@ -182,7 +164,7 @@ class _Unpacking:
                         raise
                     self.odd[_CANNOT_BE_WRITTEN].append(member.name)
         return [
-            say(
+            msg(
                 "Of what {name} holds, some {what}: {names}.",
                 name=self.name,
                 what=what,
@@ -210,7 +192,7 @@ class _Unpacking:
         if path.is_absolute() or ".." in path.parts or re.match("[A-Za-z]:/", text):
             self.odd[_OUTSIDE].append(member.name)
             return None
-        return PurePosixPath(*map(_short, path.parts)) if path.parts else None
+        return PurePosixPath(*map(short, path.parts)) if path.parts else None
 
     def _write(self, path: PurePosixPath, member: Member) -> None:
         target = self.into / path
@@ -255,12 +237,3 @@ def _belongs(path: PurePosixPath) -> bool:
         if is_junk(part) and part != ".classroom50.yml":
             return False
     return True
-
-
-def _short(part: str) -> str:
-    """A name that is not too long for a file system; the end, which says the kind, stays."""
-    if len(os.fsencode(part)) <= _MAX_PART_BYTES:
-        return part
-    end = part[-30:]
-    begin = part.encode("utf-8", "surrogateescape")[: _MAX_PART_BYTES - len(os.fsencode(end)) - 3]
-    return f"{begin.decode('utf-8', 'ignore')}…{end}"

@@ -4,22 +4,44 @@ Classroom 50 calls them `CLASSROOM-ASSIGNMENT-USER`, GitHub Classroom `ASSIGNMEN
 begin with, up to a hyphen, is left out; a roster settles where that ends, the same for all. Beside
 them `gh teacher download` lays `scores.csv`, which says who was to hand in something, and when
 (`roster.py`).
+
+When the last commit was made is found without trusting the repository. `git log` would do what the
+repository's own configuration says: `log.showSignature` with `gpg.program`, `core.fsmonitor`, hooks
+and more are commands. `.git/logs/HEAD` would be safe to parse, but in a clone it says when that was
+made. So the name of the commit is read from HEAD, and `git cat-file` shows it from a git folder of
+our own, which only borrows the objects: no line of the repository's configuration is read, nothing
+is fetched, and no working tree is looked at.
 """
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
+import stat
+import subprocess
 from collections.abc import Sequence
+from datetime import datetime, timedelta
 from itertools import takewhile
+from pathlib import Path
 from typing import Final
 
-from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
-from grader.batch.find.git_time import LastCommits
-from grader.language.phrase import say
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, tell, zone
+from grader.message import msg
 from grader.scratch import make_folder
-from grader.submission.folder import listed, shown
+from grader.submission.folder import shown
 
-LAYOUT: Final = say("a folder of git repositories")
+LAYOUT: Final = msg("a folder of git repositories")
 _MARKS: Final = (".git", ".classroom50.yml")
+MAX_COMMIT_BYTES: Final = 1_000_000  # a commit is a message and a few names
+_MAX_FILE_BYTES: Final = 5_000_000  # packed-refs of a repository with 50,000 branches
+_MOST_OBJECTS: Final = 100_000
+_WAIT_S: Final = 20.0
+_NAME: Final = re.compile(r"[0-9a-f]{40}")
+_REF: Final = re.compile(r"ref: (?P<ref>refs/heads/[\w./+@-]+)")
+_COMMITTER: Final = re.compile(
+    rb"committer [^\n]*> (?P<seconds>\d{1,11}) (?P<sign>[+-])(?P<hours>\d\d)(?P<minutes>\d\d)"
+)
 
 
 def looks_like(items: Sequence[Item]) -> bool:
@@ -27,7 +49,7 @@ def looks_like(items: Sequence[Item]) -> bool:
     return mostly(items, _is_repository)
 
 
-def read(items: Sequence[Item]) -> Reading:
+def read(items: Sequence[Item]) -> Export:
     """The hand-ins in one."""
     repositories = [item for item in items if _is_repository(item)]
     others = [item.name for item in items if not _is_repository(item)]
@@ -39,22 +61,18 @@ def read(items: Sequence[Item]) -> Reading:
     notes = []
     if prefix:
         notes.append(
-            say(
+            msg(
                 "All begin with {prefix}, which is left out of their ids.",
                 prefix=shown(prefix),
             )
         )
     if not commits.can_be_asked:
-        notes.append(say("There is no git on this machine to say when the last commits were made."))
-    elif unknown := [item.name for item, each in pairs if each.at is None]:
-        notes.append(
-            say("Nothing says when these were last committed to: {names}.", names=listed(unknown))
-        )
-    if others:
-        notes.append(
-            say("Left out, since they are no repositories: {names}.", names=listed(others))
-        )
-    return Reading(LAYOUT, attempts, notes)
+        notes.append(msg("There is no git on this machine to say when the last commits were made."))
+    else:
+        unknown = [item.name for item, each in pairs if each.at is None]
+        tell(notes, msg("Nothing says when these were last committed to: {names}."), unknown)
+    tell(notes, msg("Left out, since they are no repositories: {names}."), others)
+    return Export(LAYOUT, attempts, notes)
 
 
 def _is_repository(item: Item) -> bool:
@@ -82,3 +100,128 @@ def _attempt(item: Item, prefix: str, commits: LastCommits) -> Attempt:
         at=commits.of(item.path),
         aliases=tuple(item.name[start:] for start in starts),
     )
+
+
+class LastCommits:
+    """Asks for the last commit of one repository after another.
+
+    Args:
+        scratch: an empty folder of ours.
+    """
+
+    def __init__(self, scratch: Path) -> None:
+        self._git = shutil.which("git")
+        self._folder = scratch / "git"
+        for folder in ("objects", "refs"):
+            (self._folder / folder).mkdir(parents=True)
+        (self._folder / "HEAD").write_text("ref: refs/heads/none\n", encoding="ascii")
+        (self._folder / "config").write_text("[core]\n\tbare = true\n", encoding="ascii")
+
+    @property
+    def can_be_asked(self) -> bool:
+        """Whether there is a git on this machine."""
+        return self._git is not None
+
+    def of(self, clone: Path) -> datetime | None:
+        """When the commit that a clone stands at was made, by its author's clock; None: unknown."""
+        theirs = clone / ".git"
+        objects = theirs / "objects"
+        try:
+            if not (_is_folder(theirs) and _is_folder(objects) and _are_plain(objects)):
+                return None  # a link, or a file that says where else it lies
+            name = _commit(theirs)
+        except OSError:
+            return None
+        if name is None or (size := self._ask(objects, "-s", name)) is None:
+            return None
+        if not size.strip().isdigit() or int(size) > MAX_COMMIT_BYTES:
+            return None
+        commit = self._ask(objects, "commit", name)
+        return None if commit is None else _time(commit)
+
+    def _ask(self, objects: Path, what: str, name: str) -> bytes | None:
+        if self._git is None:
+            return None
+        try:
+            asked = subprocess.run(
+                [self._git, "--no-replace-objects", "cat-file", what, name],
+                cwd=self._folder,
+                env=self._environment(objects),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                timeout=_WAIT_S,
+                check=False,
+            )
+        except (OSError, subprocess.TimeoutExpired):
+            return None
+        return asked.stdout if asked.returncode == 0 else None
+
+    def _environment(self, objects: Path) -> dict[str, str]:
+        kept = {"PATH": os.environ["PATH"]} if "PATH" in os.environ else {}
+        return {
+            **kept,
+            "GIT_DIR": str(self._folder),
+            "GIT_OBJECT_DIRECTORY": str(objects.absolute()),
+            "GIT_CONFIG_NOSYSTEM": "1",
+            "GIT_CONFIG_GLOBAL": os.devnull,
+            "GIT_NO_LAZY_FETCH": "1",
+            "GIT_TERMINAL_PROMPT": "0",
+        }
+
+
+def _commit(theirs: Path) -> str | None:
+    """The name of the commit that HEAD leads to."""
+    head = _read(theirs / "HEAD").strip()
+    match = _REF.fullmatch(head)
+    if match is None:
+        return head if _NAME.fullmatch(head) else None
+    if ".." in match["ref"]:
+        return None
+    loose = _read(theirs / match["ref"]).strip()
+    if _NAME.fullmatch(loose):
+        return loose
+    for line in _read(theirs / "packed-refs").splitlines():
+        name, _, ref = line.partition(" ")
+        if ref == match["ref"] and _NAME.fullmatch(name):
+            return name
+    return None
+
+
+def _time(commit: bytes) -> datetime | None:
+    for line in commit.partition(b"\n\n")[0].split(b"\n"):
+        if match := _COMMITTER.fullmatch(line):
+            try:
+                ahead = zone(*(match[each].decode() for each in ("sign", "hours", "minutes")))
+                epoch = datetime.fromtimestamp(0, ahead)
+                return epoch + timedelta(seconds=int(match["seconds"]))
+            except (ValueError, OverflowError):
+                return None
+    return None
+
+
+def _read(path: Path) -> str:
+    """A small file itself, and not what a link leads to; '' where there is none."""
+    try:
+        mode = path.lstat()
+    except FileNotFoundError:
+        return ""
+    if not stat.S_ISREG(mode.st_mode) or mode.st_size > _MAX_FILE_BYTES:
+        return ""
+    return path.read_bytes().decode("ascii", "replace")
+
+
+def _is_folder(path: Path) -> bool:
+    return stat.S_ISDIR(path.lstat().st_mode)
+
+
+def _are_plain(objects: Path) -> bool:
+    """Whether git finds nothing that it would wait for, or that leads it elsewhere."""
+    looked_at = 0
+    for at, folders, files in os.walk(objects):
+        looked_at += len(folders) + len(files)
+        if looked_at > _MOST_OBJECTS or {"alternates", "http-alternates"} & {*files, *folders}:
+            return False
+        if not all(stat.S_ISREG(Path(at, name).lstat().st_mode) for name in files):
+            return False
+    return True

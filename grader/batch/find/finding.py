@@ -9,14 +9,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from grader import message
+from grader.batch.entry import HandIn
 from grader.batch.find import canvas, class_archive, clones, gradescope, moodle, newest, plain
-from grader.batch.find.attempt import Item, Layout, Reading, items_of
-from grader.batch.find.joining import NOTHING, UNCLEAR, joined
-from grader.batch.find.pattern import Pattern
+from grader.batch.find.attempt import Export, Item, Layout, items_of
+from grader.batch.find.joining import NOT_HANDED_IN, UNCLEAR, joined
+from grader.batch.find.plain import Pattern
 from grader.batch.find.roster import Roster, is_of_classroom50, read_roster
-from grader.batch.hand_in import HandIn
 from grader.errors import UsageError
-from grader.language.phrase import say, say_many
+from grader.message import Message, msg, msg_many
 from grader.scratch import make_folder
 from grader.submission.folder import shown
 from grader.submission.unpacking import is_archive
@@ -39,7 +40,7 @@ class Found:
     """
 
     hand_ins: list[HandIn]
-    notes: list[str] = field(default_factory=list)
+    notes: list[Message] = field(default_factory=list)
 
 
 @contextmanager
@@ -50,7 +51,7 @@ def find(
 
     Args:
         submissions: the export of a course system, a folder or an archive, or any folder.
-        pattern: how names are made, where that is not recognised: see `pattern.py`.
+        pattern: how names are made, where that is not recognised: see `plain.py`.
         roster: who is in the class, a CSV file; else `roster.csv` in the folder, if there is one.
 
     Raises:
@@ -64,15 +65,13 @@ def find(
         except OSError as error:
             if error.errno == errno.ENOSPC:
                 raise UsageError(
-                    say(
-                        "there is no space left in {folder} for what was handed in. "
-                        "Set TMPDIR to a folder with more.",
-                        folder=scratch.parent,
-                    )
+                    "there is no space left in {folder} for what was handed in. "
+                    "Set TMPDIR to a folder with more.",
+                    folder=scratch.parent,
                 ) from None
             where = shown(str(error.filename or submissions))
             raise UsageError(
-                say("cannot read {where}: {error}", where=where, error=str(error.strerror))
+                "cannot read {where}: {error}", where=where, error=str(error.strerror)
             ) from None
         yield found
 
@@ -87,19 +86,17 @@ def _found(submissions: Path, names: Pattern | None, roster: Path | None, scratc
         about += unknown
     hand_ins, older = newest.hand_ins(attempts, scratch / "hand_ins")
     if not hand_ins:
-        raise UsageError(
-            say("{path} holds no submissions. Check the path.", path=shown(submissions))
-        )
+        raise UsageError("{path} holds no submissions. Check the path.", path=shown(submissions))
     first = _first_note(reading.layout, hand_ins)
     return Found(hand_ins, [first, *notes, *about, *older])
 
 
-def _first_note(layout: str, hand_ins: Sequence[HandIn]) -> str:
+def _first_note(layout: Message, hand_ins: Sequence[HandIn]) -> Message:
     """What the folder was taken for, and how many are there."""
-    missing = sum(hand_in.problem in (NOTHING, UNCLEAR) for hand_in in hand_ins)
+    missing = sum(hand_in.problem in (NOT_HANDED_IN, UNCLEAR) for hand_in in hand_ins)
     there = len(hand_ins) - missing
     if missing:
-        note = say_many(
+        note = msg_many(
             "Read as {layout}: {n:,} hand-in, {missing} missing.",
             "Read as {layout}: {n:,} hand-ins, {missing} missing.",
             there,
@@ -107,7 +104,7 @@ def _first_note(layout: str, hand_ins: Sequence[HandIn]) -> str:
             missing=missing,
         )
     else:
-        note = say_many(
+        note = msg_many(
             "Read as {layout}: {n:,} hand-in.",
             "Read as {layout}: {n:,} hand-ins.",
             there,
@@ -115,30 +112,29 @@ def _first_note(layout: str, hand_ins: Sequence[HandIn]) -> str:
         )
     if layout != plain.LAYOUT:
         return note
-    return note + " " + say("If that is wrong, say with --pattern how the names are made.")
+    advice = msg("If that is wrong, say with --pattern how the names are made.")
+    return message.joined([note, advice], " ")
 
 
 # Where to look -----------------------------------------------------------------------------------
 
 
-def _folder(submissions: Path, scratch: Path) -> tuple[Path, list[str]]:
+def _folder(submissions: Path, scratch: Path) -> tuple[Path, list[Message]]:
     """The folder that was named, or what was in the archive."""
     if submissions.is_dir():
         return submissions, []
     if not submissions.exists():
         raise UsageError(
-            say("{path} does not exist. Check the name and the folder.", path=shown(submissions))
+            "{path} does not exist. Check the name and the folder.", path=shown(submissions)
         )
     if is_archive(submissions) and submissions.is_file():
         folder = scratch / "class"
         return folder, class_archive.unpack(submissions, folder)
     if submissions.suffix == ".py":
-        raise _is_one(submissions, say("it is a Python file"))
+        raise _is_one(submissions, msg("it is a Python file"))
     raise UsageError(
-        say(
-            "{path} is neither a folder of submissions nor a .zip or .tar.gz of one.",
-            path=shown(submissions),
-        )
+        "{path} is neither a folder of submissions nor a .zip or .tar.gz of one.",
+        path=shown(submissions),
     )
 
 
@@ -166,7 +162,7 @@ def _top(
             if not is_packed:
                 break
             if what := plain.one_submission(below):
-                raise _is_one(submissions, say("it holds {what}", what=shown(what)))
+                raise _is_one(submissions, msg("it holds {what}", what=shown(what)))
         folder = items[0].path
     return folder, items, lying
 
@@ -180,24 +176,22 @@ def _layout(items: Sequence[Item]) -> Layout | None:
     return next((layout for layout in LAYOUTS if layout.looks_like(items)), None)
 
 
-def _read(submissions: Path, items: Sequence[Item], names: Pattern | None) -> Reading:
+def _read(submissions: Path, items: Sequence[Item], names: Pattern | None) -> Export:
     """What is there, by the first layout that it looks like."""
     if names is not None:
         return names.read(items)
     if layout := _layout(items):
         return layout.read(items)
     if what := plain.one_submission(items):
-        raise _is_one(submissions, say("it holds {what}", what=shown(what)))
+        raise _is_one(submissions, msg("it holds {what}", what=shown(what)))
     return plain.read(items)
 
 
-def _is_one(submissions: Path, what: str) -> UsageError:
+def _is_one(submissions: Path, what: Message) -> UsageError:
     return UsageError(
-        say(
-            "{path} is one submission, and not a folder of them: {what}. Use: grader run {path}",
-            path=shown(submissions),
-            what=what,
-        )
+        "{path} is one submission, and not a folder of them: {what}. Use: grader run {path}",
+        path=shown(submissions),
+        what=what,
     )
 
 

@@ -14,17 +14,17 @@ from typing import Any, Final
 
 import yaml
 
-from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
-from grader.batch.find.times import read_time
-from grader.batch.hand_in import Person
-from grader.language.phrase import say
-from grader.submission.folder import listed, shown
+from grader.batch.entry import Person
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, read_time, tell
+from grader.message import NOTHING, Message, msg, reason
+from grader.submission.folder import shown
+from grader.text import in_one_line
 
-LAYOUT: Final = say("Gradescope's export of submissions")
+LAYOUT: Final = msg("Gradescope's export of submissions")
 METADATA: Final = "submission_metadata.yml"
 MAX_METADATA_BYTES: Final = 200_000_000
 _FOLDER: Final = re.compile(r"submission_(?P<number>\d+)")
-_NO_FILES: Final = say("Gradescope's export holds no file of this submission.")
+_NO_FILES: Final = msg("Gradescope's export holds no file of this submission.")
 #: Of a submission; nothing else is looked at.
 _WANTED: Final = ("submitters", "created_at")
 _MAX_DEPTH: Final = 4  # of submissions, submitters, and what is said of one
@@ -38,9 +38,9 @@ def looks_like(items: Sequence[Item]) -> bool:
     return mostly(items, lambda item: item.is_folder and _FOLDER.fullmatch(item.name))
 
 
-def read(items: Sequence[Item]) -> Reading:
+def read(items: Sequence[Item]) -> Export:
     """The hand-ins in one."""
-    notes: list[str] = []
+    notes: list[Message] = []
     lying = {item.name: item for item in items}
     told = _metadata(lying.pop(METADATA, None), notes)
     attempts = [_attempt(name, lying.pop(name, None), said) for name, said in told.items()]
@@ -50,11 +50,8 @@ def read(items: Sequence[Item]) -> Reading:
             attempts.append(_attempt(name, item, {}))
         else:
             others.append(name)
-    if others:
-        notes.append(
-            say("Left out, since Gradescope does not name them so: {names}.", names=listed(others))
-        )
-    return Reading(LAYOUT, attempts, notes)
+    tell(notes, msg("Left out, since Gradescope does not name them so: {names}."), others)
+    return Export(LAYOUT, attempts, notes)
 
 
 def _attempt(name: str, item: Item | None, said: dict[str, Any]) -> Attempt:
@@ -66,7 +63,7 @@ def _attempt(name: str, item: Item | None, said: dict[str, Any]) -> Attempt:
         people,
         () if item is None else (Piece(item.path, "" if item.is_folder else item.name),),
         at=_time(said.get("created_at")),
-        problem=_NO_FILES if item is None else "",
+        problem=_NO_FILES if item is None else NOTHING,
         alone=True,
     )
 
@@ -88,31 +85,27 @@ def _text(said: object) -> str:
     return said if isinstance(said, str) and said not in ("~", "null") else ""
 
 
-def _metadata(item: Item | None, notes: list[str]) -> dict[str, dict[str, Any]]:
+def _metadata(item: Item | None, notes: list[Message]) -> dict[str, dict[str, Any]]:
     """What is said of each submission, by the name of its folder."""
-    why = say("there is no {file}", file=METADATA)
+    why = msg("there is no {file}", file=METADATA)
     if item is not None and item.path.is_file():
         try:
             found = _Texts(item.path).read()
             return {name: said for name, said in found.items() if isinstance(said, dict)}
         except yaml.MarkedYAMLError as error:
             line = error.problem_mark.line + 1 if error.problem_mark else 1
-            why = say(
+            why = msg(
                 "{file} is damaged in line {line} ({what})",
                 file=METADATA,
                 line=str(line),
-                what=shown(error.problem or say("no YAML")),
+                what=shown(error.problem) if error.problem else msg("no YAML"),
             )
-        except _NotRead as error:
-            why = say("{file} cannot be read ({why})", file=METADATA, why=error.args[0])
         except (yaml.YAMLError, ValueError) as error:
-            why = say("{file} cannot be read ({why})", file=METADATA, why=shown(str(error)))
-    notes.append(say("Names, ids and times are missing, since {why}.", why=why))
+            why = msg(
+                "{file} cannot be read ({why})", file=METADATA, why=in_one_line(reason(error))
+            )
+    notes.append(msg("Names, ids and times are missing, since {why}.", why=why))
     return {}
-
-
-class _NotRead(Exception):
-    """Why a file is not read, as a phrase."""
 
 
 class _Texts:
@@ -130,17 +123,17 @@ class _Texts:
 
         Raises:
             yaml.YAMLError: it is no YAML.
-            _NotRead: it is too large, or something else than a mapping.
+            ValueError: it is too large, or something else than a mapping.
         """
         if self._path.stat().st_size > MAX_METADATA_BYTES:
-            raise _NotRead(say("it has more than {size:g} MB", size=MAX_METADATA_BYTES / 1e6))
+            raise ValueError(msg("it has more than {size:g} MB", size=MAX_METADATA_BYTES / 1e6))
         loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
         with self._path.open("rb") as file:
             self._events = yaml.parse(file, Loader=loader)
             for event in self._events:
                 if isinstance(event, yaml.MappingStartEvent):
                     return dict(self._mapping(0))
-        raise _NotRead(say("it is empty"))
+        raise ValueError(msg("it is empty"))
 
     def _value(self, event: Any, depth: int) -> Any:
         if isinstance(event, yaml.ScalarEvent):

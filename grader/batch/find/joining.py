@@ -7,21 +7,21 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
+from grader import message
+from grader.batch.entry import Person
 from grader.batch.find.attempt import Attempt
-from grader.batch.find.roster import Member, Roster, folded
-from grader.batch.hand_in import Person
-from grader.language import phrase
-from grader.language.phrase import say
+from grader.batch.find.roster import Roster, RosterMember, folded, letters
+from grader.message import Message, Text, msg
 from grader.submission.folder import listed, shown
 
-NOTHING = say("Nothing was handed in.")
+NOT_HANDED_IN = msg("Nothing was handed in.")
 #: Of somebody who may be one of those whose hand-ins are nobody's: to be without a grade.
-UNCLEAR = say("It is not clear which hand-in, if any, is this person's.")
+UNCLEAR = msg("It is not clear which hand-in, if any, is this person's.")
 
 
 def joined(
     attempts: Sequence[Attempt], roster: Roster, is_one_each: bool = False
-) -> tuple[list[Attempt], list[str]]:
+) -> tuple[list[Attempt], list[Message]]:
     """The attempts with what the roster says of whose they are, and an empty one of all others.
 
     A group is known by its name; somebody by an id, an email address, a user name, the number of a
@@ -56,7 +56,7 @@ def joined(
     notes = [*roster.notes]
     if unknown:
         notes.append(
-            say(
+            msg(
                 "Not in {roster}, and yet there: {names}.",
                 roster=shown(roster.name),
                 names=listed(person.name or person.id for person in unknown),
@@ -67,7 +67,9 @@ def joined(
     return found, notes
 
 
-def _without_several(matched: Sequence[Sequence[Member | None]]) -> list[Sequence[Member | None]]:
+def _without_several(
+    matched: Sequence[Sequence[RosterMember | None]],
+) -> list[Sequence[RosterMember | None]]:
     """The same without those of the class to whom several are matched."""
     times = Counter(member.person.id for members in matched for member in members if member)
     return [
@@ -86,26 +88,26 @@ def is_of_roster(attempt: Attempt) -> bool:
     return attempt.whose.startswith(_OF_ROSTER)
 
 
-def _missing(member: Member, is_unclear: bool) -> Attempt:
-    problem = UNCLEAR if is_unclear else NOTHING
+def _missing(member: RosterMember, is_unclear: bool) -> Attempt:
+    problem = UNCLEAR if is_unclear else NOT_HANDED_IN
     return Attempt(_OF_ROSTER + member.person.id, (member.person,), problem=problem)
 
 
 def _unclear(
-    unknown: Sequence[Person], missing: Sequence[Member], index: _Index, notes: list[str]
+    unknown: Sequence[Person], missing: Sequence[RosterMember], index: _Index, notes: list[Message]
 ) -> set[str]:
     """The ids of those missing who may be one of the unknown; it is told whom they may be."""
-    found, told = set[str](), list[str]()
+    found, told = set[str](), list[Message]()
     for person in unknown:
         might = index.candidates(person)
         if may_be := [member.person for member in missing if member.person.id in might]:
             found.update(each.id for each in may_be)
-            names = phrase.joined([_called(each) for each in may_be[:3]], say(" or "))
+            names = message.joined([_called(each) for each in may_be[:3]], msg(" or "))
             who = shown(person.name or person.id)
-            told.append(say("{who} may be {names}", who=who, names=names))
+            told.append(msg("{who} may be {names}", who=who, names=names))
     if told:
         notes.append(
-            say(
+            msg(
                 "Ambiguous, and so nobody's: {pairs}. They have no grade in any import; "
                 "make clear in the roster, or in the names of the files, who is who.",
                 pairs=listed(told),
@@ -114,23 +116,23 @@ def _unclear(
     return found
 
 
-def _called(person: Person) -> str:
+def _called(person: Person) -> Text:
     id = shown(person.id)
-    return say("{name} ({id})", name=shown(person.name), id=id) if person.name else id
+    return msg("{name} ({id})", name=shown(person.name), id=id) if person.name else id
 
 
 #: Columns of an export that say who somebody is.
 _KEYS = ("ID", "SID", "Email", "email", "Identifier")
 
 
-def _matched(attempts: Sequence[Attempt], index: _Index) -> list[Sequence[Member | None]]:
+def _matched(attempts: Sequence[Attempt], index: _Index) -> list[Sequence[RosterMember | None]]:
     """Who of the class each attempt is of.
 
     A name is one's own to choose in most systems: it counts only if no other has it, and for
     whoever is not known by something better already.
     """
     alias = _best_alias(attempts, index)
-    sure: list[Sequence[Member | None]] = []
+    sure: list[Sequence[RosterMember | None]] = []
     for attempt in attempts:
         group = index.group(attempt)
         if group or not attempt.aliases:
@@ -163,51 +165,50 @@ def _best_alias(attempts: Sequence[Attempt], index: _Index) -> int:
 class _Index:
     """Members by what they may be known by; what two of them have is no key."""
 
-    def __init__(self, members: Sequence[Member]) -> None:
-        keyed = [(folded(key), member) for member in members for key in member.keys]
-        named = [(name, member) for member in members for name in _orders(member.person.name)]
-        self._by_key, self._by_name = _unique(keyed), _unique(named)
-        self._may_be: dict[str, set[str]] = defaultdict(set)
-        for text, member in (*keyed, *named):
-            self._may_be[text].add(member.person.id)
-        self._groups: dict[str, list[Member]] = defaultdict(list)
+    def __init__(self, members: Sequence[RosterMember]) -> None:
+        self._keys: dict[str, list[RosterMember]] = defaultdict(list)
+        self._names: dict[str, list[RosterMember]] = defaultdict(list)
+        self._groups: dict[str, list[RosterMember]] = defaultdict(list)
         for member in members:
+            for key in {*map(folded, member.keys)} - {""}:
+                self._keys[key].append(member)
+            for name in {*_orders(member.person.name)} - {""}:
+                self._names[name].append(member)
             for group in member.groups:
-                self._groups[_letters(group)].append(member)
+                self._groups[letters(group)].append(member)
 
-    def keyed(self, keys: Iterable[str]) -> Member | None:
-        """Who has the first of these keys that anybody has."""
-        return next(filter(None, (self._by_key.get(folded(key)) for key in keys)), None)
+    def keyed(self, keys: Iterable[str]) -> RosterMember | None:
+        """Who has the first of these keys that somebody alone has."""
+        return next(filter(None, (_only(self._keys.get(folded(key))) for key in keys)), None)
 
-    def by_key(self, person: Person) -> Member | None:
+    def by_key(self, person: Person) -> RosterMember | None:
         """Who somebody is, by his id or what else an export says of him but the name."""
         columns = (person.columns[title] for title in _KEYS if title in person.columns)
         member = self.keyed((person.id, *columns))
         return None if member and _contradicts(person, member) else member
 
-    def by_name(self, person: Person) -> Member | None:
+    def by_name(self, person: Person) -> RosterMember | None:
         """Who somebody is, by his name; a folder's name may be one, too."""
-        for name in filter(None, (_letters(person.name), _letters(person.id))):
-            if member := self._by_name.get(name):
-                return member
-        return None
+        names = (letters(person.name), letters(person.id))
+        return next(filter(None, (_only(self._names.get(name)) for name in names)), None)
 
     def candidates(self, person: Person) -> set[str]:
         """The ids of all who have anything in common with somebody that could be a key."""
         columns = (person.columns[title] for title in _KEYS if title in person.columns)
         keys = [] if "Identifier" in person.columns else [person.id, *columns]
-        texts = {*map(folded, keys), _letters(person.name), _letters(person.id)} - {""}
-        return {id for text in texts for id in self._may_be.get(text, ())}
+        texts = {*map(folded, keys), letters(person.name), letters(person.id)} - {""}
+        found = ((*self._keys.get(text, ()), *self._names.get(text, ())) for text in texts)
+        return {member.person.id for members in found for member in members}
 
-    def group(self, attempt: Attempt) -> Sequence[Member]:
+    def group(self, attempt: Attempt) -> Sequence[RosterMember]:
         """Who is in the group that an attempt is of, if it is one's."""
         if len(attempt.people) > 1:
             return ()
         (whose,) = attempt.people
-        return self._groups.get(_letters(whose.name or whose.id), ())
+        return self._groups.get(letters(whose.name or whose.id), ())
 
 
-def _contradicts(found: Person, member: Member) -> bool:
+def _contradicts(found: Person, member: RosterMember) -> bool:
     """Whether a number of Moodle's is another one: groups have such numbers, too."""
     if "Identifier" not in found.columns or not (found.name and member.person.name):
         return False
@@ -218,7 +219,7 @@ def _words(name: str) -> list[str]:
     return re.findall(r"\w+", name.casefold())
 
 
-def _person(found: Person, member: Member | None) -> Person:
+def _person(found: Person, member: RosterMember | None) -> Person:
     """Somebody as roster and export tell it; where they differ, as the roster does."""
     if member is None:
         return found
@@ -226,27 +227,16 @@ def _person(found: Person, member: Member | None) -> Person:
     return Person(own.id, own.name or found.name, {**found.columns, **own.columns})
 
 
-def _unique(pairs: Iterable[tuple[str, Member]]) -> dict[str, Member]:
-    found: dict[str, Member | None] = {}
-    for key, member in pairs:
-        found[key] = member if found.get(key, member) is member else None
-    return {key: member for key, member in found.items() if key and member is not None}
+def _only(members: Sequence[RosterMember] | None) -> RosterMember | None:
+    return members[0] if members and len(members) == 1 else None
 
 
 def _orders(name: str) -> Iterator[str]:
     """A name as it is, and with its first part last, or the other way round."""
-    yield from {_letters(name), *_turned(name)}
-
-
-def _turned(name: str) -> Iterator[str]:
+    yield letters(name)
     last, comma, first = name.partition(",")
     if comma:
-        yield _letters(first + last)
+        yield letters(first + last)
     parts = name.split()
     for at in range(1, len(parts)):
-        yield _letters("".join(parts[at:] + parts[:at]))
-
-
-def _letters(text: str) -> str:
-    """Letters and digits alone, as Canvas writes names."""
-    return re.sub(r"[\W_]+", "", text.casefold())
+        yield letters("".join(parts[at:] + parts[:at]))

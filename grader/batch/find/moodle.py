@@ -13,16 +13,16 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from grader.batch.find.attempt import Attempt, Item, Piece, Reading, mostly, person
-from grader.language.phrase import say
-from grader.submission.folder import is_junk, listed
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, tell
+from grader.message import NOTHING, Message, msg
+from grader.submission.folder import is_junk
 
-LAYOUT: Final = say("what Moodle's “Download all submissions” makes")
+LAYOUT: Final = msg("what Moodle's “Download all submissions” makes")
 _PREFIX: Final = re.compile(
     r"(?P<name>.*?)(?:_(?P<number>\d+))?_assignsubmission_(?P<kind>[a-z0-9]+)(?:_(?P<filename>.*))?",
     re.DOTALL,
 )
-_ONLY_TEXT: Final = say("Only a text was handed in online, and no file.")
+_ONLY_TEXT: Final = msg("Only a text was handed in online, and no file.")
 
 
 def looks_like(items: Sequence[Item]) -> bool:
@@ -30,7 +30,7 @@ def looks_like(items: Sequence[Item]) -> bool:
     return mostly(items, lambda item: _PREFIX.fullmatch(item.name))
 
 
-def read(items: Sequence[Item]) -> Reading:
+def read(items: Sequence[Item]) -> Export:
     """The hand-ins in one."""
     pieces: dict[tuple[str, str], list[Piece]] = {}
     others = []
@@ -48,8 +48,9 @@ def read(items: Sequence[Item]) -> Reading:
         _attempt(name, number, found, "" if of_groups else f"Participant {number}")
         for (name, number), found in pieces.items()
     ]
-    left_out = say("Left out, since Moodle does not name them so: {names}.", names=listed(others))
-    return Reading(LAYOUT, attempts, [left_out] if others else [])
+    notes = list[Message]()
+    tell(notes, msg("Left out, since Moodle does not name them so: {names}."), others)
+    return Export(LAYOUT, attempts, notes)
 
 
 def _attempt(name: str, number: str, pieces: list[Piece], identifier: str) -> Attempt:
@@ -59,6 +60,6 @@ def _attempt(name: str, number: str, pieces: list[Piece], identifier: str) -> At
         f"{name}_{number}",
         (person(number or name, known, {"Identifier": identifier}),),
         tuple(pieces),
-        problem="" if pieces else _ONLY_TEXT,
+        problem=NOTHING if pieces else _ONLY_TEXT,
         alone=True,
     )

@@ -1,4 +1,4 @@
-"""Who is in a class: `roster.csv`, or what a course system exports of its participants.
+"""Who is in a class: `roster.csv`, or what a course system exports of its participants, as CSV.
 
 Columns are known by their titles, whatever their order, case, spaces and hyphens: those of Moodle's
 grading worksheet and list of participants (English, German, French), Canvas's gradebook,
@@ -8,19 +8,21 @@ Gradescope's roster, GitHub Classroom's `classroom_roster.csv`, Classroom 50's r
 
 from __future__ import annotations
 
+import codecs
+import csv
+import io
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Final
 
-from grader.batch.find.attempt import person
-from grader.batch.find.table import read_table
-from grader.batch.find.times import read_time
-from grader.batch.hand_in import Person
+from grader.batch.entry import Person
+from grader.batch.find.attempt import moment, person, read_time
 from grader.errors import UsageError
-from grader.language.phrase import say
+from grader.message import Message, msg
 from grader.submission.folder import listed, shown
 
 #: Columns that say who it is, the best first. A person's id is of the first of them in which every
@@ -52,10 +54,13 @@ _PARTICIPANT: Final = re.compile(r"[^\d@]{5,} (\d+)")
 _TAG: Final = re.compile(r"submit/(.+)")
 #: Rows of Canvas's gradebook that are nobody.
 _NOBODY: Final = ("points possible", "student, test", "test student")
+MAX_BYTES: Final = 50_000_000
+_DELIMITERS: Final = ",;\t|"
+_UTF_16: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass(frozen=True)
-class Member:
+class RosterMember:
     """One row.
 
     Attributes:
@@ -80,8 +85,8 @@ class Roster:
     """
 
     name: str
-    members: Sequence[Member]
-    notes: Sequence[str] = ()
+    members: Sequence[RosterMember]
+    notes: Sequence[Message] = ()
 
 
 def folded(text: str) -> str:
@@ -95,7 +100,7 @@ def is_of_classroom50(path: Path) -> bool:
         titles, _ = read_table(path)
     except UsageError:
         return False
-    return _TAGS in map(_squashed, titles)
+    return _TAGS in map(letters, titles)
 
 
 def read_roster(path: Path) -> Roster:
@@ -104,117 +109,112 @@ def read_roster(path: Path) -> Roster:
     Raises:
         UsageError: it cannot be read, or no column of it says who somebody is.
     """
-    titles, rows = read_table(path)
-    columns = {_squashed(title): at for at, title in reversed(list(enumerate(titles)))}
-    ids = [columns[title] for title in _IDS if title in columns]
-    names = _Names(columns)
-    if not ids and not names.is_there:
+    titles, lines = read_table(path)
+    there = set(map(letters, titles))
+    ids = [title for title in _IDS if title in there]
+    if not ids and there.isdisjoint((*_NAMES, *_FIRST, *_LAST)):
         raise UsageError(
-            say(
-                "{name} has no column that says who somebody is: it has {titles}. "
-                "Expected one called id, name, email, username or the like in the first line.",
+            "{name} has no column that says who somebody is: it has {titles}. "
+            "Expected one called id, name, email, username or the like in the first line.",
+            name=shown(path.name),
+            titles=listed(titles),
+        )
+    everybody = (_Line(titles, line) for line in lines)
+    rows = [row for row in everybody if folded(row.name) not in _NOBODY]
+    keyed = [row for row in rows if row.filled(ids) or row.name]
+    notes = []
+    if nameless := len(rows) - len(keyed):
+        notes.append(
+            msg(
+                "{number} of the rows of {name} say neither an id nor a name.",
+                number=nameless,
                 name=shown(path.name),
-                titles=listed(titles),
             )
         )
-    rows = [row for row in rows if folded(names.of(row)) not in _NOBODY]
-    keyed = [row for row in rows if any(row[at] for at in ids) or names.of(row)]
-    notes = [_nameless(path, len(rows) - len(keyed))] if len(keyed) < len(rows) else []
     # first of all the column that tells everybody apart, else whatever a row has
-    ids.sort(key=lambda at: not _tells_apart(row[at] for row in keyed))
-    members: dict[str, Member] = {}
+    ids.sort(key=lambda title: not _tells_apart(row.cells[title] for row in keyed))
+    members: dict[str, RosterMember] = {}
     twice: list[str] = []
     for row in keyed:
-        member = _member(row, ids, names.of(row), titles, columns)
+        member = _member(row, ids)
         same = folded(member.person.id)
         if same not in members:
             members[same] = member
-        elif _TAGS in columns:  # one row each time that somebody handed in
-            members[same] = max(members[same], member, key=_moment)
+        elif _TAGS in there:  # one row each time that somebody handed in
+            members[same] = max(members[same], member, key=lambda each: moment(each.at))
         else:
             twice.append(member.person.id)
-    if unread := [row for row in keyed if (said := _time(row, columns)) and not _moment_of(said)]:
-        whose = [next((row[at] for at in ids if row[at]), names.of(row)) for row in unread]
-        notes.append(_unread(path, whose, [_time(row, columns) for row in unread]))
+    if unread := [row for row in keyed if row.time and not row.at]:
+        notes.append(_unread(path, [((*row.filled(ids), row.name)[0], row.time) for row in unread]))
     if twice:
-        notes.append(_twice(path, twice))
+        notes.append(
+            msg(
+                "{name} has several rows of the same id, of which the first counts: {ids}.",
+                name=shown(path.name),
+                ids=listed(twice),
+            )
+        )
     return Roster(path.name, list(members.values()), notes)
 
 
-class _Names:
-    """Where a table has names."""
+class _Line:
+    """One row of a table.
 
-    def __init__(self, columns: dict[str, int]) -> None:
-        def first(titles: Iterable[str]) -> list[int]:
-            return [columns[title] for title in titles if title in columns][:1]
+    Attributes:
+        columns: its cells by the titles of their columns.
+        cells: the same by titles in small letters and without spaces, where two have one the first.
+    """
 
-        self._whole, self._parts = first(_NAMES), first(_FIRST) + first(_LAST)
+    def __init__(self, titles: Sequence[str], line: Sequence[str]) -> None:
+        pairs = list(zip(titles, line, strict=True))
+        self.columns = {title: cell for title, cell in pairs if title}
+        self.cells = {letters(title): cell for title, cell in reversed(pairs)}
+
+    def filled(self, titles: Iterable[str]) -> list[str]:
+        """What stands in those of these columns that are not empty."""
+        return [cell for title in titles if (cell := self.cells.get(title))]
 
     @property
-    def is_there(self) -> bool:
-        return bool(self._whole or self._parts)
+    def name(self) -> str:
+        """Whose it is; '' where it does not say so."""
+        whole = self._first(_NAMES)
+        return whole or " ".join(filter(None, (self._first(_FIRST), self._first(_LAST))))
 
-    def of(self, row: Sequence[str]) -> str:
-        whole = " ".join(row[at] for at in self._whole)
-        return whole or " ".join(filter(None, (row[at] for at in self._parts)))
+    def _first(self, titles: Iterable[str]) -> str:
+        return next((self.cells[title] for title in titles if title in self.cells), "")
+
+    @property
+    def time(self) -> str:
+        """When it was handed in, as it says; '' for nothing, which Moodle writes as a dash."""
+        return next((cell for cell in self.filled(_TIMES) if cell != "-"), "")
+
+    @property
+    def at(self) -> datetime | None:
+        """The same as a time, if it can be read."""
+        tag = _TAG.fullmatch(self.time)
+        return read_time(tag[1] if tag else self.time)
 
 
-def _member(
-    row: Sequence[str],
-    ids: Sequence[int],
-    name: str,
-    titles: Sequence[str],
-    columns: Mapping[str, int],
-) -> Member:
-    known = [row[at] for at in ids if row[at]]
+def _member(row: _Line, ids: Sequence[str]) -> RosterMember:
+    known = row.filled(ids)
     numbers = [match[1] for value in known if (match := _PARTICIPANT.fullmatch(value))]
-    id = known[0] if known else name
+    id = known[0] if known else row.name
     if match := _PARTICIPANT.fullmatch(id) if known else None:
         id = match[1]
-    groups = {
-        part.strip()
-        for title in _GROUPS
-        if title in columns
-        for part in re.split("[,;]", row[columns[title]])
-    }
-    at = _moment_of(_time(row, columns))
-    columns_of = {title: value for title, value in zip(titles, row, strict=True) if title}
+    parts = (part.strip() for cell in row.filled(_GROUPS) for part in re.split("[,;]", cell))
+    groups = sorted(set(parts) - {""})
     keys = tuple(dict.fromkeys(filter(None, (id, *known, *numbers))))
-    return Member(person(id, name, columns_of), keys, tuple(sorted(groups - {""})), at)
+    return RosterMember(person(id, row.name, row.columns), keys, tuple(groups), row.at)
 
 
-def _time(row: Sequence[str], columns: Mapping[str, int]) -> str:
-    """What a row says of when it was handed in; '' for nothing, which Moodle writes as a dash."""
-    said = (row[columns[title]] for title in _TIMES if title in columns)
-    return next((each for each in said if each not in ("", "-")), "")
-
-
-def _moment_of(said: str) -> datetime | None:
-    tag = _TAG.fullmatch(said)
-    return read_time(tag[1] if tag else said)
-
-
-def _unread(path: Path, whose: Sequence[str], times: Sequence[str]) -> str:
-    pairs = zip(map(shown, whose), map(shown, times), strict=True)
-    return say(
+def _unread(path: Path, times: Iterable[tuple[str, str]]) -> Message:
+    return msg(
         "These times in {name} cannot be read, and count as unknown: {times}. "
         "Expected one such as 2026-11-01T12:30:00+01:00, or Moodle's in English; without a zone it "
         "is this machine's local time.",
         name=shown(path.name),
-        times=listed(say("{where}: {note}", where=who, note=at) for who, at in pairs),
+        times=listed(msg("{where}: {note}", where=shown(who), note=shown(at)) for who, at in times),
     )
-
-
-def _twice(path: Path, ids: Sequence[str]) -> str:
-    return say(
-        "{name} has several rows of the same id, of which the first counts: {ids}.",
-        name=shown(path.name),
-        ids=listed(ids),
-    )
-
-
-def _moment(member: Member) -> float:
-    return member.at.timestamp() if member.at else float("-inf")
 
 
 def _tells_apart(values: Iterable[str]) -> bool:
@@ -222,13 +222,68 @@ def _tells_apart(values: Iterable[str]) -> bool:
     return all(found) and len(set(found)) == len(found)
 
 
-def _nameless(path: Path, number: int) -> str:
-    return say(
-        "{number} of the rows of {name} say neither an id nor a name.",
-        number=number,
-        name=shown(path.name),
-    )
+def letters(text: str) -> str:
+    """Letters and digits alone, without case: as Canvas writes names, and titles are compared."""
+    return re.sub(r"[\W_]+", "", text.casefold())
 
 
-def _squashed(title: str) -> str:
-    return re.sub(r"[\W_]+", "", title.casefold())
+def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
+    """The titles of the columns, and the rows; each as long as the titles are many.
+
+    UTF-8, with or without a mark at its start; UTF-16 with one, as Excel's "Unicode text" has it;
+    else Windows' letters of Western Europe. What separates the cells is that of comma, semicolon,
+    tab and bar which stands most often in the first line, outside of quotes; `sep=;`, as Excel
+    understands it, goes before.
+
+    Raises:
+        UsageError: there is no such file, or it is no table.
+    """
+    name = shown(path.name)
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise UsageError(
+            "cannot read the roster {path}: {why}", path=shown(path), why=str(error.strerror)
+        ) from None
+    if len(raw) > MAX_BYTES:
+        raise UsageError(
+            "{name} has more than {size:g} MB: that is no roster", name=name, size=MAX_BYTES / 1e6
+        )
+    text = _decoded(raw)
+    if "\0" in text:
+        raise UsageError("{name} is no CSV file. Save the table as CSV, and name that.", name=name)
+    first, _, rest = text.partition("\n")
+    if first.strip().lower().startswith("sep="):
+        delimiter, text = first.strip()[4:5] or ",", rest
+    else:
+        delimiter = _delimiter(first)
+    try:
+        lines = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter))
+    except csv.Error as error:
+        raise UsageError(
+            "{name} is no table in CSV: {error}", name=name, error=str(error)
+        ) from None
+    filled = [line for line in lines if any(cell.strip() for cell in line)]
+    if not filled:
+        raise UsageError(
+            "{name} is empty: expected a first line with titles such as id,name", name=name
+        )
+    titles = [cell.strip() for cell in filled[0]]
+    rows = [[cell.strip() for cell in line[: len(titles)]] for line in filled[1:]]
+    return titles, [row + [""] * (len(titles) - len(row)) for row in rows]
+
+
+def _decoded(raw: bytes) -> str:
+    if raw.startswith(_UTF_16):
+        return raw.decode("utf-16", "replace")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252", "replace")
+
+
+def _delimiter(line: str) -> str:
+    outside = "".join(line.split('"')[::2])
+    times = Counter(sign for sign in outside if sign in _DELIMITERS)
+    return max(_DELIMITERS, key=lambda sign: times[sign]) if times else ","

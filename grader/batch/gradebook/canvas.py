@@ -10,10 +10,11 @@ import re
 from collections.abc import Sequence
 from pathlib import PurePath
 
-from grader.batch.gradebook import archive, known
-from grader.batch.gradebook.cells import cell, table
+from grader import files
+from grader.batch.gradebook import known
 from grader.batch.gradebook.feedback import Feedback, has_feedback
 from grader.batch.gradebook.grade import Grade, decimal
+from grader.reports.csv import cell, table
 
 _HEADER = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
 _POINTS_POSSIBLE = "Points Possible"
@@ -78,7 +79,7 @@ def feedback_file(name: str, grade: Grade, feedback: Feedback) -> bytes:
     """
     suffix = PurePath(name).suffix.lower()
     if suffix == ".zip":
-        return archive.packed([(FEEDBACK, feedback.page(grade.entry))])
+        return files.zipped([(FEEDBACK, feedback.page(grade.entry))])
     if suffix in (".html", ".htm"):
         return feedback.page(grade.entry)
     return feedback.markdown(grade.entry)

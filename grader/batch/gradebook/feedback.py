@@ -14,9 +14,7 @@ from dataclasses import dataclass, replace
 from grader import text
 from grader.batch.entry import Entry
 from grader.batch.gradebook.grade import LONGEST, Grade, out_of
-from grader.language.catalogue import LANGUAGES
-from grader.language.phrase import say
-from grader.language.telling import tell, told
+from grader.message import Message, msg
 from grader.recording.recording import Recording
 from grader.reports import ErrorReport, Report, render
 from grader.reports.beside import Beside
@@ -24,11 +22,12 @@ from grader.reports.wording import points
 from grader.result.error import ErrorResult
 from grader.result.result import RunSummary
 from grader.result.visible import View
+from grader.translations import LANGUAGES, tr, translate
 
 #: How ROS's log writes the time of a line; and an address in memory, as Python writes it.
 _LOGGED_AT, _ADDRESS = re.compile(r"\[\d{9,11}\.\d{9}\]"), re.compile(r"\b0x[0-9a-f]{8,16}\b")
 #: What a comment begins with, so that it is known as ours when it comes back.
-MARK = say("Graded automatically:")
+MARK = msg("Graded automatically:")
 
 
 @dataclass(frozen=True)
@@ -54,22 +53,22 @@ class Feedback:
         entry, late = grade.entry, grade.late_deduction
         if grade.final is None:
             return ""
-        said = {"mark": told(MARK), "points": out_of(grade.final, entry.max_score)}
+        said = {"mark": translate(MARK), "points": out_of(grade.final, entry.max_score)}
         said["first"] = self._first(entry)
         if late:
-            sentence = tell(
+            sentence = tr(
                 "{mark} {points} points ({score} less {late} for being late). {first}",
                 score=points(grade.score or 0),
                 late=points(late),
                 **said,
             )
         else:
-            sentence = tell("{mark} {points} points. {first}", **said)
+            sentence = tr("{mark} {points} points. {first}", **said)
         return text.clip(text.one_line(text.plain(sentence)), LONGEST)
 
     def _first(self, entry: Entry) -> str:
         if not has_feedback(entry):
-            return told(entry.message) or tell("Nothing was handed in.")
+            return translate(entry.message) or tr("Nothing was handed in.")
         report = self._report(entry)
         return report.message if isinstance(report, ErrorReport) else report.headline
 
@@ -91,7 +90,7 @@ class _WithoutRecordings(Beside):
     """Picture and output alone; what ran beside the submission is still told by the recording."""
 
     @property
-    def recordings(self) -> Mapping[int, Recording | str]:
+    def recordings(self) -> Mapping[int, Recording | Message]:
         """None."""
         return {}
 
@@ -103,7 +102,7 @@ class _WithoutRecordings(Beside):
 
 def is_ours(comment: str) -> bool:
     """Whether a comment is one of these, in any language."""
-    return any(told(MARK, language) in comment for language in LANGUAGES)
+    return any(translate(MARK, language) in comment for language in LANGUAGES)
 
 
 def has_feedback(entry: Entry) -> bool:

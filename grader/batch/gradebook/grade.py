@@ -6,12 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from grader.batch.entry import Entry
+from grader.batch.entry import Entry, Person
 from grader.batch.find.joining import UNCLEAR
 from grader.batch.gradebook import known
-from grader.batch.hand_in import Person
-from grader.language.telling import tell
 from grader.reports.wording import points
+from grader.translations import tr
 
 #: The longest text in a cell [characters].
 LONGEST = 300
@@ -59,15 +58,12 @@ def grades(entries: Iterable[Entry], nothing_is_zero: bool = True) -> list[Grade
     """Everybody's, by hand-in.
 
     Args:
-        nothing_is_zero: whether who has handed in nothing has 0 points, or no grade at all. What
-            was handed in and cannot be started has 0 in any case; what the grader failed to judge,
-            none.
+        nothing_is_zero: whether who has handed in nothing has 0 points, or no grade at all.
     """
     found = []
     for entry in entries:
         has_none = entry.state == "nothing" and not nothing_is_zero
-        has_none = has_none or entry.hand_in.problem == UNCLEAR
-        final = None if has_none else entry.score
+        final = None if has_none or entry.hand_in.problem == UNCLEAR else entry.score
         found += [Grade(person, entry, final) for person in entry.hand_in.people]
     return _one_each(found)
 
@@ -111,4 +107,4 @@ def decimal(value: float | None) -> str:
 
 def out_of(value: float, of: float) -> str:
     """Points for people: '12.5 of 30'."""
-    return tell("{score} of {max_score}", score=points(value), max_score=points(of))
+    return tr("{score} of {max_score}", score=points(value), max_score=points(of))

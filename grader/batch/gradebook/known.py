@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from grader.batch.gradebook.cells import is_safe_id
-from grader.batch.hand_in import HandIn, Person
+from grader.batch.entry import HandIn, Person
+from grader.reports.csv import is_safe_id
 
 #: Ways to name somebody that Moodle's grade import knows, the surest first, each by the names that
 #: rosters and exports have for it, in small letters. The first is what Moodle calls it.

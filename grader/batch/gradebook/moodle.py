@@ -12,9 +12,9 @@ from collections.abc import Sequence
 
 from grader import text
 from grader.batch.gradebook import known
-from grader.batch.gradebook.cells import cell, table
 from grader.batch.gradebook.feedback import Feedback, has_feedback, is_ours
 from grader.batch.gradebook.grade import Grade, decimal
+from grader.reports.csv import cell, table
 
 #: Those that Moodle 3 and 4 write in English. It looks for Identifier, Grade, Last modified (grade)
 #: and Feedback comments, by these very names.

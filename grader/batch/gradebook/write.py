@@ -12,46 +12,53 @@ bytes, in each language.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from grader import files
+from grader import files, text
 from grader.batch.entry import Entry
-from grader.batch.gradebook import archive, canvas, lines, moodle, table
+from grader.batch.find.joining import UNCLEAR
+from grader.batch.gradebook import canvas, known, moodle
 from grader.batch.gradebook.feedback import Feedback, has_feedback
-from grader.batch.gradebook.grade import Grade, grades
-from grader.batch.gradebook.notes import notes
-from grader.language.telling import told
+from grader.batch.gradebook.grade import LONGEST, Grade, decimal, grades
+from grader.message import Message, joined, msg
+from grader.reports.csv import cell, table
 from grader.result.visible import View
+from grader.text import plain_all
+from grader.translations import translate
 
 CSV, JSON_LINES, EXPORT = "gradebook.csv", "gradebook.jsonl", "export"
 MOODLE_WORKSHEET, MOODLE_GRADES = "moodle-grading-worksheet.csv", "moodle-grade-import.csv"
 CANVAS_GRADES, NOTES = "canvas-gradebook.csv", "notes.txt"
 MOODLE_FEEDBACK, CANVAS_FEEDBACK = "moodle-feedback.zip", "canvas-feedback.zip"
 FEEDBACK = "feedback.zip"
+#: Without it Excel takes UTF-8 for the letters of Windows.
+BYTE_ORDER_MARK = "\ufeff"
+_BEFORE = (
+    *("id", "name", "hand_in", "group", "attempt", "handed_in", "state"),
+    *("score", "late_deduction", "final", "max_score"),
+)
+_AFTER = ("message",)
 
 
-@dataclass(frozen=True)
-class Options:
-    """How a gradebook is written.
+def write(
+    out: Path,
+    entries: Sequence[Entry],
+    title: Message,
+    view: View = "student",
+    assignment: str = "",
+    nothing_is_zero: bool = True,
+) -> list[Message]:
+    """Write them; an export that there is no more goes.
 
-    Attributes:
+    Args:
         title: what the exercise is called.
         view: who reads the feedback: a student before, or after the exercise is over.
         assignment: what Canvas calls it: title, number, or both as in "Spiral (4711)"; '' for the
             exercise's title.
         nothing_is_zero: see `grader.batch.gradebook.grade.grades`.
-    """
-
-    title: str
-    view: View = "student"
-    assignment: str = ""
-    nothing_is_zero: bool = True
-
-
-def write(out: Path, entries: Sequence[Entry], options: Options) -> list[str]:
-    """Write them; an export that there is no more goes.
 
     Returns:
         what an import lacks and who is left out, as sentences.
@@ -59,54 +66,211 @@ def write(out: Path, entries: Sequence[Entry], options: Options) -> list[str]:
     Raises:
         UsageError: one of them cannot be written.
     """
-    everybody = grades(entries, options.nothing_is_zero)
-    feedback = Feedback(options.view)
-    assignment = canvas.assignment_of(everybody, options.assignment or options.title)
-    lacking = notes(everybody, assignment)
+    everybody = grades(entries, nothing_is_zero)
+    name = translate(title)
+    feedback = Feedback(view)
+    heading = canvas.assignment_of(everybody, assignment or name)
+    lacking = notes(everybody, heading)
     files.clear(out / EXPORT)  # a link leads somewhere else
+    files.put(out / CSV, as_csv(everybody).encode("utf-8"))
+    files.put(out / JSON_LINES, as_lines(everybody).encode("utf-8"))
     texts = {
-        f"{EXPORT}/{MOODLE_WORKSHEET}": moodle.worksheet(everybody, feedback),
-        f"{EXPORT}/{MOODLE_GRADES}": moodle.grade_import(everybody, options.title, feedback),
-        f"{EXPORT}/{CANVAS_GRADES}": canvas.gradebook(everybody, assignment),
-        f"{EXPORT}/{NOTES}": "".join(f"{told(note)}\n" for note in lacking),
+        MOODLE_WORKSHEET: moodle.worksheet(everybody, feedback),
+        MOODLE_GRADES: moodle.grade_import(everybody, name, feedback),
+        CANVAS_GRADES: canvas.gradebook(everybody, heading),
+        NOTES: "".join(f"{translate(note)}\n" for note in lacking),
     }
-    for name, content in texts.items():
-        _put(out / name, content)
-    files.put(out / CSV, table.render(everybody).encode("utf-8"))
-    files.put(out / JSON_LINES, lines.render(everybody).encode("utf-8"))
-    _put_feedback(out / EXPORT, everybody, feedback)
+    exports = {name: text.encode("utf-8") for name, text in texts.items()}
+    for file, content in (exports | _feedback(everybody, feedback)).items():
+        if content:
+            files.put(out / EXPORT / file, content)
+        else:
+            files.clear(out / EXPORT / file)
     return lacking
 
 
-def _put_feedback(folder: Path, everybody: Sequence[Grade], feedback: Feedback) -> None:
+def _feedback(everybody: Sequence[Grade], feedback: Feedback) -> dict[str, bytes]:
+    """The zips with what each student reads; nothing in the place of one that would be empty."""
+
     def page(name: str, grade: Grade) -> bytes:
         return feedback.page(grade.entry)
 
     def as_handed_in(name: str, grade: Grade) -> bytes:
         return canvas.feedback_file(name, grade, feedback)
 
+    def made(members: Mapping[str, Grade], content: Callable[[str, Grade], bytes]) -> bytes:
+        each = ((name, content(name, members[name])) for name in sorted(members))
+        return files.zipped(each) if members else b""
+
     for_moodle, for_canvas = moodle.feedback_files(everybody), canvas.feedback_files(everybody)
-    others = {} if for_moodle or for_canvas else _by_hand_in(everybody)
-    _put_zip(folder / MOODLE_FEEDBACK, for_moodle, page)
-    _put_zip(folder / CANVAS_FEEDBACK, for_canvas, as_handed_in)
-    _put_zip(folder / FEEDBACK, others, page)
+    others = {f"{g.entry.id}.html": g for g in everybody if has_feedback(g.entry)}
+    return {
+        MOODLE_FEEDBACK: made(for_moodle, page),
+        CANVAS_FEEDBACK: made(for_canvas, as_handed_in),
+        FEEDBACK: b"" if for_moodle or for_canvas else made(others, page),
+    }
 
 
-def _by_hand_in(everybody: Sequence[Grade]) -> dict[str, Grade]:
-    return {f"{grade.entry.id}.html": grade for grade in everybody if has_feedback(grade.entry)}
+def as_csv(grades: Sequence[Grade]) -> str:
+    """A header and one row a person.
+
+    Each check has a column of its own; what was not judged, or has no result, is empty there.
+    """
+    checks = check_names(grades)
+    taken = {*_BEFORE, *_AFTER}
+    titles = [f"{check} (check)" if check in taken else check for check in checks]
+    header = [cell(title) for title in (*_BEFORE, *titles, *_AFTER)]
+    return BYTE_ORDER_MARK + table([header, *(_row(grade, checks) for grade in grades)])
 
 
-def _put(path: Path, content: str) -> None:
-    if content:
-        files.put(path, content.encode("utf-8"))
-    else:
-        files.clear(path)
+def check_names(grades: Sequence[Grade]) -> list[str]:
+    """The names of all checks, in the order of the rubric."""
+    return list(dict.fromkeys(check for grade in grades for check in grade.entry.verdicts))
 
 
-def _put_zip(
-    path: Path, members: Mapping[str, Grade], content: Callable[[str, Grade], bytes]
-) -> None:
-    if members:
-        archive.put(path, ((name, content(name, members[name])) for name in sorted(members)))
-    else:
-        files.clear(path)
+def _row(grade: Grade, checks: Sequence[str]) -> list[str]:
+    entry, hand_in = grade.entry, grade.entry.hand_in
+    earned = {check: verdict.score for check, verdict in entry.verdicts.items()}
+    return [
+        *map(cell, (grade.person.id, grade.person.name, hand_in.id, "; ".join(grade.group))),
+        *(str(hand_in.attempt), "" if hand_in.at is None else hand_in.at.isoformat(), entry.state),
+        *map(decimal, (grade.score, grade.late_deduction, grade.final, entry.max_score)),
+        *(decimal(earned.get(check)) for check in checks),
+        cell(text.clip(translate(entry.message), LONGEST)),
+    ]
+
+
+def as_lines(grades: Sequence[Grade]) -> str:
+    """The same as gradebook.csv; nothing is put before what a spreadsheet would compute."""
+    return "".join(f"{json.dumps(_line(g), ensure_ascii=False, allow_nan=False)}\n" for g in grades)
+
+
+def _line(grade: Grade) -> Any:
+    entry, hand_in = grade.entry, grade.entry.hand_in
+    line = {
+        "id": grade.person.id,
+        "name": grade.person.name,
+        "hand_in": hand_in.id,
+        "group": list(grade.group),
+        "attempt": hand_in.attempt,
+        "handed_in": None if hand_in.at is None else hand_in.at.isoformat(),
+        "state": entry.state,
+        "score": grade.score,
+        "late_deduction": grade.late_deduction,
+        "final": grade.final,
+        "max_score": entry.max_score,
+        "checks": {check: verdict.score for check, verdict in entry.verdicts.items()},
+        "message": str(entry.message),
+    }
+    return plain_all(line)
+
+
+# What an import lacks, and who is left out of it ------------------------------------------------
+
+_NEITHER = msg(
+    "Nothing tells what Moodle or Canvas call these people, so there is no import for them. For "
+    "Moodle give --roster with its grading worksheet, for Canvas with its exported gradebook."
+)
+
+
+def notes(grades: Sequence[Grade], assignment: str) -> list[Message]:
+    """All that is to be said, in the order of the files.
+
+    Args:
+        assignment: the heading of Canvas's column.
+    """
+    found = list(_of_grades(grades))
+    is_moodle = any(known.participant(grade.person) for grade in grades)
+    is_canvas = any(map(canvas.is_known, grades))
+    if is_moodle:
+        found += _of_moodle(grades)
+    if is_canvas:
+        found += _of_canvas(grades, assignment)
+    if grades and not (is_moodle or is_canvas or moodle.grade_import_key(grades)):
+        found.append(_NEITHER)
+    return found
+
+
+def _of_grades(grades: Sequence[Grade]) -> Iterator[Message]:
+    failed = [grade for grade in grades if grade.entry.state == "failed"]
+    if failed:
+        yield msg(
+            "{people} without a grade: the grader failed. They are in no import, so that what a "
+            "course system has of them stays. Grade them again: --again failed",
+            people=_people(failed),
+        )
+    if doubles := [grade for grade in grades if grade.is_double]:
+        yield msg(
+            "{people} with more than one hand-in: in the imports is the newest, or none where "
+            "nothing tells which that is. Look at them yourself.",
+            people=_people(doubles),
+        )
+    if unclear := [grade for grade in grades if grade.entry.hand_in.problem == UNCLEAR]:
+        yield msg(
+            "{people} without a grade, and in no import: a hand-in that is nobody's may be theirs. "
+            "Make clear in the roster, or in the names of the files, who is who.",
+            people=_people(unclear),
+        )
+
+
+def _of_moodle(grades: Sequence[Grade]) -> Iterator[Message]:
+    there = {id(grade) for grade in moodle.numbered(grades)}
+    if lacking := [grade for grade in grades if id(grade) not in there]:
+        yield msg(
+            "Not in Moodle's grading worksheet and feedback: {people}, of whom the participant "
+            "number is not known. Give --roster with Moodle's grading worksheet.",
+            people=_people(lacking),
+        )
+    if not any(known.is_of_worksheet(grade.person) for grade in grades):
+        yield msg(
+            "The participant numbers are those in the names of Moodle's export. If groups have "
+            "handed in, they are numbers of groups, which Moodle would take for those of students: "
+            "then give --roster with Moodle's grading worksheet, or do not import them."
+        )
+    most = max(grade.entry.max_score for grade in grades)
+    said = (known.column(grade.person, ("Maximum Grade",)) for grade in grades)
+    others = dict.fromkeys(s for s in said if s and _number(s) not in (None, most))
+    if others:
+        yield msg(
+            "Moodle's assignment has a maximum of {theirs}, the exercise of {ours:.10g}: Moodle "
+            "leaves out what is above its own. Give it the exercise's.",
+            theirs=text.clip(next(iter(others)), 20),
+            ours=round(most, 2),
+        )
+
+
+def _of_canvas(grades: Sequence[Grade], assignment: str) -> Iterator[Message]:
+    if lacking := [grade for grade in grades if not canvas.is_known(grade)]:
+        yield msg(
+            "Not in Canvas's gradebook: {people}, of whom Canvas's ID is not known. Give --roster "
+            "with the gradebook that Canvas exports.",
+            people=_people(lacking),
+        )
+    if not canvas.has_number(assignment):
+        yield msg(
+            "Canvas will ask which assignment {assignment!r} is: the heading of its column has no "
+            "number. Give --roster with the gradebook that Canvas exports, or write there what "
+            "stands in it: Spiral (4711)",
+            assignment=assignment,
+        )
+    has_file = (g for g in grades if has_feedback(g.entry))
+    if without := [g for g in has_file if not known.canvas_file(g.entry.hand_in)]:
+        yield msg(
+            "Not in Canvas's feedback: {people}, whose files do not have the names that Canvas "
+            "gives to downloaded ones.",
+            people=_people(without),
+        )
+
+
+def _people(grades: Sequence[Grade]) -> Message:
+    """How many, and the first of them."""
+    first = (text.clip(text.one_line(g.person.name or g.person.id), 40) for g in grades[:3])
+    names, more = joined(first, ", "), len(grades) - 3
+    return msg("{names} and {more:,} more", names=names, more=more) if more > 0 else names
+
+
+def _number(value: str) -> float | None:
+    try:
+        return float(value.replace(",", "."))
+    except ValueError:
+        return None

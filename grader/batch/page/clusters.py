@@ -2,61 +2,72 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from grader import text
-from grader.batch.page.kinds import kind_of
 from grader.batch.page.students import STATES, Student
-from grader.language.phrase import marked, say
-from grader.language.telling import told
+from grader.message import NOTHING, Message, Value, joined, msg
 from grader.reports.wording import title_of
+from grader.translations import translate
 
 #: More kinds than this, of first causes and of a check, are told together.
 MOST_CAUSES, MOST_KINDS = 24, 8
 #: More students than this are only counted.
 MOST_LINKS = 400
 _TEXT_LIMIT = 400
-RARER = say("rarer kinds")
-#: What diagnoses are called, for the catalogues.
-_KEYS: Final = (
-    marked("called at once"),
-    marked("crashed"),
-    marked("does nothing"),
-    marked("ended by caught"),
-    marked("ended itself"),
-    marked("endless loop"),
-    marked("ends early"),
-    marked("has unfit qos"),
-    marked("hears once"),
-    marked("hides errors"),
-    marked("killed"),
-    marked("makes timers"),
-    marked("never awaits"),
-    marked("never spins"),
-    marked("not importable"),
-    marked("publishes without waiting"),
-    marked("slow callback"),
-    marked("spins in loop"),
-    marked("stays in init"),
-    marked("stuck in call"),
-    marked("stuck in callback"),
-    marked("unreadable"),
-    marked("waits for timer"),
-    marked("waits in vain"),
-    marked("wrong value"),
-)
+RARER = msg("rarer kinds")
+#: What diagnoses are called, by their keys.
+_CALLED: Final = {
+    str(each).replace(" ", "_"): each
+    for each in (
+        msg("called at once"),
+        msg("crashed"),
+        msg("does nothing"),
+        msg("ended by caught"),
+        msg("ended itself"),
+        msg("endless loop"),
+        msg("ends early"),
+        msg("has unfit qos"),
+        msg("hears once"),
+        msg("hides errors"),
+        msg("killed"),
+        msg("makes timers"),
+        msg("never awaits"),
+        msg("never spins"),
+        msg("not importable"),
+        msg("publishes without waiting"),
+        msg("slow callback"),
+        msg("spins in loop"),
+        msg("stays in init"),
+        msg("stuck in call"),
+        msg("stuck in callback"),
+        msg("unreadable"),
+        msg("waits for timer"),
+        msg("waits in vain"),
+        msg("wrong value"),
+    )
+}
+GAP = "…"
+#: What an exception is called says what kind of mistake it is.
+_ERROR = re.compile(r"\w*(?:Error|Exception|Warning|Interrupt)\b")
+_WORD = re.compile(r"\w+")
+#: Fewer words are a name for something: a colour, a side.
+_CLAUSE = 3
+#: What a student's program says is searched no farther [characters].
+_LIMIT = 600
 
 
 @dataclass(frozen=True)
-class Said:
+class Remark:
     """What is said of one student: under which heading, and the sentence."""
 
     student: Student
     heading: str
-    sentence: str
+    sentence: Message
     key: str = ""
 
 
@@ -90,32 +101,32 @@ def to_mend_first(students: Iterable[Student]) -> list[Cluster]:
 def of_check(students: Iterable[Student], check: str) -> list[Cluster]:
     """Why points of a check were lost."""
     said = [
-        Said(student, told(title_of(verdict)), told(verdict.rationale), _diagnosed(student))
+        Remark(student, title_of(verdict), verdict.rationale, _diagnosed(student))
         for student in students
-        if (verdict := student.verdicts.get(check)) is not None and not verdict.passed
+        if (verdict := student.entry.verdicts.get(check)) is not None and not verdict.passed
     ]
     return _clusters(said, MOST_KINDS)
 
 
 def _called(key: str) -> str:
     """A diagnosis in a word or two."""
-    return told(key.replace("_", " "))
+    return translate(_CALLED.get(key) or key.replace("_", " "))
 
 
-def _first_of(student: Student) -> Said | None:
+def _first_of(student: Student) -> Remark | None:
     result = student.entry.result
     if result is None:
         state = student.entry.state
-        return Said(student, told(STATES.get(state, state)), told(student.entry.message))
+        return Remark(student, translate(STATES.get(state, NOTHING)), student.entry.message)
     found = result.diagnosis
     if found is not None and not found.check:
-        return Said(student, _called(found.key), told(found.cause))
+        return Remark(student, _called(found.key), found.cause)
     lost = [verdict for verdict in result.verdicts if not verdict.passed]
     if not lost:
         return None
     costliest = max(lost, key=lambda verdict: verdict.max_score - verdict.score)
-    verdict = costliest if found is None else student.verdicts.get(found.check, costliest)
-    return Said(student, told(title_of(verdict)), told(verdict.rationale))
+    verdict = costliest if found is None else student.entry.verdicts.get(found.check, costliest)
+    return Remark(student, title_of(verdict), verdict.rationale)
 
 
 def _diagnosed(student: Student) -> str:
@@ -124,20 +135,25 @@ def _diagnosed(student: Student) -> str:
     return "" if found is None or found.check else _called(found.key)
 
 
-def _clusters(said: Sequence[Said], most: int) -> list[Cluster]:
+def _clusters(said: Sequence[Remark], most: int) -> list[Cluster]:
     """So many, the largest first, and the others together."""
-    groups: defaultdict[tuple[str, str], list[Said]] = defaultdict(list)
+    groups: defaultdict[tuple[str, Message], list[Remark]] = defaultdict(list)
     for each in said:
         groups[each.heading, kind_of(each.sentence)].append(each)
-    ordered = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0]))
+    ordered = sorted(groups.items(), key=_order)
     shown = [_cluster(heading, kind, alike) for (heading, kind), alike in ordered[:most]]
     rest = [each for _, alike in ordered[most:] for each in alike]
-    return [*shown, _cluster(told(RARER), "", rest)] if rest else shown
+    return [*shown, _cluster(translate(RARER), NOTHING, rest)] if rest else shown
 
 
-def _cluster(heading: str, kind: str, alike: Sequence[Said]) -> Cluster:
+def _order(group: tuple[tuple[str, Message], list[Remark]]) -> tuple[int, str, str]:
+    (heading, kind), alike = group
+    return -len(alike), heading, str(kind)
+
+
+def _cluster(heading: str, kind: Message, alike: Sequence[Remark]) -> Cluster:
     members = sorted((each.student for each in alike), key=lambda student: student.number)
-    nameless = kind
+    nameless = translate(kind)
     for student in members:
         nameless = student.without_names(nameless)
     causes = Counter(each.key for each in alike if each.key)
@@ -151,11 +167,29 @@ def _cluster(heading: str, kind: str, alike: Sequence[Said]) -> Cluster:
     )
 
 
-def _example(alike: Sequence[Said]) -> str:
+def _example(alike: Sequence[Remark]) -> str:
     """What is said most often; of equals the shortest, then the first in the alphabet."""
-    counted = Counter(_shown(each.sentence) for each in alike)
+    counted = Counter(_shown(translate(each.sentence)) for each in alike)
     return min(counted, key=lambda sentence: (-counted[sentence], len(sentence), sentence))
 
 
 def _shown(sentence: str) -> str:
     return text.clip(text.one_line(text.plain(sentence)), _TEXT_LIMIT)
+
+
+def kind_of(message: Message) -> Message:
+    """The message without what differs from student to student."""
+    if message.is_row:  # how many there are makes no other kind
+        parts = (part for part in message.values.values() if _WORD.search(str(part)))
+        return joined(dict.fromkeys(map(_kind, parts)), " ")
+    values = {name: _kind(value) for name, value in message.values.items()}
+    return Message(message.key, values, message.many, message.words)
+
+
+def _kind(value: Value) -> str | Message:
+    if isinstance(value, Message):
+        kind = kind_of(value)
+        return kind if len(_WORD.findall(str(kind))) >= _CLAUSE else _kind(str(value))
+    if isinstance(value, str) and (error := _ERROR.search(value[:_LIMIT])):
+        return error[0]
+    return GAP

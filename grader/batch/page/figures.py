@@ -16,19 +16,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from grader.exercise.verdict import Verdict
-from grader.language.phrase import say
-from grader.language.telling import tell
+from grader.message import NOTHING, Message, msg, plain_text
 from grader.result.result import Result
+from grader.translations import tr
 
 BINS = 10
 #: Below so many, a correlation says nothing.
 LEAST = 10
 _WORDS = (
-    (0.4, say("separates strong from weak very well")),
-    (0.3, say("separates strong from weak well")),
-    (0.2, say("separates strong from weak a little")),
-    (0.0, say("hardly separates strong from weak")),
-    (-1.0, say("the weak do better here than the strong: look at what it asks for")),
+    (0.4, msg("separates strong from weak very well")),
+    (0.3, msg("separates strong from weak well")),
+    (0.2, msg("separates strong from weak a little")),
+    (0.0, msg("hardly separates strong from weak")),
+    (-1.0, msg("the weak do better here than the strong: look at what it asks for")),
 )
 _EASY, _HARD = 0.85, 0.3
 
@@ -69,7 +69,7 @@ class Distribution:
 
 
 @dataclass(frozen=True)
-class Item:
+class CheckFigures:
     """How a check did.
 
     Attributes:
@@ -81,7 +81,7 @@ class Item:
     """
 
     check: str
-    title: str
+    title: Message
     max_score: float
     count: int
     passed: int
@@ -90,28 +90,28 @@ class Item:
     not_judged: int
     difficulty: float
     discrimination: float | None
-    why_not: str = ""
+    why_not: Message = NOTHING
 
     @property
     def parts(self) -> tuple[tuple[str, str, int], ...]:
         """The four counts with a class of the style sheet and a word."""
         return (
-            ("passed", tell("passed"), self.passed),
-            ("partial", tell("partly"), self.partial),
-            ("failed", tell("failed"), self.failed),
-            ("not_judged", tell("not judged"), self.not_judged),
+            ("passed", tr("passed"), self.passed),
+            ("partial", tr("partly"), self.partial),
+            ("failed", tr("failed"), self.failed),
+            ("not_judged", tr("not judged"), self.not_judged),
         )
 
     @property
     def words(self) -> str:
         """What the figures mean."""
-        ease = tell("Easy") if self.difficulty >= _EASY else tell("Medium")
-        ease = tell("Hard") if self.difficulty < _HARD else ease
+        ease = tr("Easy") if self.difficulty >= _EASY else tr("Medium")
+        ease = tr("Hard") if self.difficulty < _HARD else ease
         separates = self.why_not
         if self.discrimination is not None:
             rounded = round(self.discrimination, 2)
             separates = next(words for least, words in _WORDS if rounded >= least)
-        return tell("{ease}; {separates}.", ease=ease, separates=separates)
+        return tr("{ease}; {separates}.", ease=ease, separates=separates)
 
 
 def distribution(scores: Sequence[float], max_score: float) -> Distribution | None:
@@ -139,7 +139,7 @@ def _bars(scores: Sequence[float], max_score: float) -> tuple[Bar, ...]:
     return tuple(Bar(k * width, (k + 1) * width, places.count(k)) for k in range(BINS))
 
 
-def items(results: Sequence[Result], points: Mapping[str, float]) -> list[Item]:
+def items(results: Sequence[Result], points: Mapping[str, float]) -> list[CheckFigures]:
     """How each check did: those of the exercise in its order, then what else was judged."""
     of_each = [{verdict.check: verdict for verdict in result.verdicts} for result in results]
     names = dict.fromkeys([*points, *(name for verdicts in of_each for name in verdicts)])
@@ -150,16 +150,16 @@ def items(results: Sequence[Result], points: Mapping[str, float]) -> list[Item]:
     ]
 
 
-def _item(asked: Sequence[tuple[Verdict, Mapping[str, Verdict]]]) -> Item:
+def _item(asked: Sequence[tuple[Verdict, Mapping[str, Verdict]]]) -> CheckFigures:
     verdicts = [verdict for verdict, _ in asked]
     # rounded: equal sums of other parts are equal, and a constant is one
     rest = [
         round(sum(v.score for v in others.values()) - verdict.score, 6) for verdict, others in asked
     ]
     found, why_not = _discrimination([verdict.score for verdict in verdicts], rest)
-    return Item(
+    return CheckFigures(
         verdicts[0].check,
-        verdicts[0].title or verdicts[0].check,
+        verdicts[0].title or plain_text(verdicts[0].check),
         verdicts[0].max_score,
         len(verdicts),
         sum(verdict.passed for verdict in verdicts),
@@ -172,12 +172,12 @@ def _item(asked: Sequence[tuple[Verdict, Mapping[str, Verdict]]]) -> Item:
     )
 
 
-def _discrimination(scores: list[float], rest: list[float]) -> tuple[float | None, str]:
+def _discrimination(scores: list[float], rest: list[float]) -> tuple[float | None, Message]:
     """The correlation; or None and why there is none."""
     if len(scores) < LEAST:
-        return None, say("fewer than {least} are too few to tell whom it separates", least=LEAST)
+        return None, msg("fewer than {least} are too few to tell whom it separates", least=LEAST)
     if len(set(scores)) == 1:
-        return None, say("all have the same points here, so it separates nobody")
+        return None, msg("all have the same points here, so it separates nobody")
     if len(set(rest)) == 1:
-        return None, say("all have the same points elsewhere, so there is nothing to compare with")
-    return statistics.correlation(scores, rest), ""
+        return None, msg("all have the same points elsewhere, so there is nothing to compare with")
+    return statistics.correlation(scores, rest), NOTHING

@@ -20,9 +20,9 @@ from grader.batch.page import clusters, figures
 from grader.batch.page.students import STATES, Student, evenly, students
 from grader.batch.page.thumb import EDGE_PX, UNITS, Thumb
 from grader.exercise.exercise import Exercise
-from grader.language.telling import tell, told
+from grader.recording.subject import load_subject
 from grader.reports.page import templating
-from grader.scenes import load_scene
+from grader.translations import tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
 #: So many students have a picture and a path, and so many a row of the table.
@@ -40,13 +40,13 @@ def render(
     """
     everybody = students(entries)
     judged = [student for student in everybody if student.entry.result is not None]
-    handed_in = [s.score for s in everybody if s.entry.state != "nothing" and s.score is not None]
+    handed_in = [e.score for e in entries if e.state != "nothing" and e.score is not None]
     items = figures.items([s.entry.result for s in judged if s.entry.result], exercise.points)
     rows = everybody[:MOST_ROWS]
     template = _environment().get_template("class.html")
     return template.render(
         exercise=exercise,
-        thing=load_scene(exercise.scene).thing,
+        thing=translate(load_subject(exercise.scene).thing),
         links=links or {},
         total=len(everybody),
         rows=rows,
@@ -55,7 +55,7 @@ def render(
         judged=len(judged),
         items=items,
         first=clusters.to_mend_first(everybody),
-        nothing_to_mend=sum(all(v.passed for v in s.verdicts.values()) for s in judged),
+        nothing_to_mend=sum(all(v.passed for v in s.entry.verdicts.values()) for s in judged),
         lost={item.check: clusters.of_check(judged, item.check) for item in items},
         drawn=_drawn(rows),
         words=_script_words(),
@@ -66,7 +66,7 @@ def _states(everybody: Sequence[Student]) -> list[tuple[str, int, bool]]:
     """How many have no result, why, and whether that is the grader's doing."""
     counted = Counter(student.entry.state for student in everybody)
     return [
-        (told(words), counted[state], state == "failed")
+        (translate(words), counted[state], state == "failed")
         for state, words in STATES.items()
         if counted[state]
     ]
@@ -75,11 +75,11 @@ def _states(everybody: Sequence[Student]) -> list[tuple[str, int, bool]]:
 def _script_words() -> dict[str, str]:
     """What the page's script writes; `#` stands for what comes there."""
     return {
-        "found": tell("{done} of {total}", done="#", total="#"),
-        "ascending": tell("Sorted by {column}, ascending", column="#"),
-        "descending": tell("Sorted by {column}, descending", column="#"),
-        "points": tell(": {points} points", points="#"),
-        "student": tell("Student {number}", number="#"),
+        "found": tr("{done} of {total}", done="#", total="#"),
+        "ascending": tr("Sorted by {column}, ascending", column="#"),
+        "descending": tr("Sorted by {column}, descending", column="#"),
+        "points": tr(": {points} points", points="#"),
+        "student": tr("Student {number}", number="#"),
     }
 
 
@@ -93,7 +93,7 @@ def _drawn(rows: Sequence[Student]) -> list[Student]:
 
 @cache
 def _environment() -> jinja2.Environment:
-    made = templating.environment(_TEMPLATES / "class.js", _TEMPLATES / "class.css")
+    made = templating.environment(_TEMPLATES, "class")
     made.globals.update(
         edge=EDGE_PX,
         units=UNITS,

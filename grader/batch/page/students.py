@@ -6,27 +6,23 @@ import hashlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
-from functools import cached_property
 from typing import Final
 from urllib.parse import quote
 
 from grader import text
 from grader.batch.entry import SUBMISSIONS, Entry, State
 from grader.batch.page.thumb import Thumb
-from grader.exercise.verdict import Verdict
-from grader.language.phrase import say
-from grader.language.telling import tell, told
+from grader.message import NOTHING, Message, msg
 from grader.reports import wording
-from grader.result.handed_in import HandedIn
-from grader.result.result import PAGE
+from grader.result.result import PAGE, HandedIn
+from grader.translations import tr, translate
 
 _NAME_LIMIT, _WORD_LIMIT = 80, 40
 #: What is told of those without a result.
-STATES: Final[Mapping[State, str]] = {
-    "unusable": say("cannot be started"),
-    "nothing": say("nothing handed in"),
-    "failed": say("the grader failed"),
+STATES: Final[Mapping[State, Message]] = {
+    "unusable": msg("cannot be started"),
+    "nothing": msg("nothing handed in"),
+    "failed": msg("the grader failed"),
 }
 _GAP = "…"
 
@@ -56,34 +52,19 @@ class Student:
         return f"{SUBMISSIONS}/{quote(self.entry.id, safe='@+')}/{PAGE}"
 
     @property
-    def score(self) -> float | None:
-        """Its points."""
-        return self.entry.score
-
-    @cached_property
-    def verdicts(self) -> Mapping[str, Verdict]:
-        """Those of its result, by check."""
-        result = self.entry.result
-        return {} if result is None else {verdict.check: verdict for verdict in result.verdicts}
-
-    @property
     def status(self) -> str:
         """How its run ended, or why there was none."""
         result = self.entry.result
         if result is None:
-            return told(STATES.get(self.entry.state, self.entry.state))
+            return translate(STATES.get(self.entry.state, NOTHING))
         outcome = text.clip(text.plain(result.run.outcome), _WORD_LIMIT).replace("_", " ")
         return wording.outcome(outcome)
 
     @property
-    def at(self) -> datetime | None:
-        """When it was handed in."""
-        return self.entry.hand_in.at
-
-    @property
     def at_text(self) -> str:
-        """The same as people read it, with its zone; '' where nobody knows."""
-        return "" if self.at is None else self.at.isoformat(" ", "minutes")
+        """When it was handed in, as people read it, with its zone; '' where nobody knows."""
+        at = self.entry.hand_in.at
+        return "" if at is None else at.isoformat(" ", "minutes")
 
     @property
     def late_s(self) -> float:
@@ -99,9 +80,9 @@ class Student:
         minutes = max(int(found.late_s // 60), 1)
         days, hours = divmod(minutes // 60, 24)
         if days:
-            length = tell("{days} d {hours} h", days=days, hours=hours)
+            length = tr("{days} d {hours} h", days=days, hours=hours)
         else:
-            length = tell("{hours} h {minutes} min", hours=hours, minutes=minutes % 60)
+            length = tr("{hours} h {minutes} min", hours=hours, minutes=minutes % 60)
         return f"{length}, −{wording.points(found.deducted)}" if found.deducted else length
 
     @property
@@ -132,7 +113,7 @@ def students(entries: Iterable[Entry]) -> list[Student]:
 
 def evenly(chosen: Sequence[Student], most: int) -> list[Student]:
     """So many at most, spread over all scores; the best first."""
-    ordered = sorted(chosen, key=lambda student: (-(student.score or 0.0), student.number))
+    ordered = sorted(chosen, key=lambda student: (-(student.entry.score or 0.0), student.number))
     if len(ordered) <= most:
         return ordered
     return [ordered[k * len(ordered) // most] for k in range(most)]

@@ -1,6 +1,6 @@
 """A run as a class page shows it: the picture at the end and the way that led there, both small.
 
-    thumb.json      {"schema": ..., "picture": "data:image/png;base64,...", "path": [[x, y, ...]]}
+    thumb.json      {"picture": "data:image/png;base64,...", "path": [[x, y, ...]], "schema": ...}
 
 Reading a recording takes a second's part, and a class has hundreds: so it is made once, when a
 student's folder is. The same recording always makes the same bytes.
@@ -9,26 +9,23 @@ student's folder is. The same recording always makes the same bytes.
 from __future__ import annotations
 
 import base64
-import binascii
 import io
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Final, Literal, Self
 
 import numpy as np
 from PIL import Image
 
 from grader import strict_json
-from grader.batch.page.simplify import pieces, simplified
-from grader.files import read_own
 from grader.recording.recording import Recording, Recordings
+from grader.recording.subject import load_subject
+from grader.recording.view import Floats
 from grader.reports.page.html import draw
-from grader.scenes import load_scene
-from grader.scenes.view import Floats
+from grader.result import json_file
 
 THUMB = "thumb.json"
-SCHEMA = "turtlesim-grader/thumb/v1"
+SCHEMA: Final = "turtlesim-grader/thumb/v1"
 #: The edge of the picture [px], and what it may weigh [bytes].
 EDGE_PX, PICTURE_BYTES = 112, 4200
 _COLOURS = (32, 16, 8, 4, 2)
@@ -43,6 +40,23 @@ _PREFIX = "data:image/png;base64,"
 _LIMIT_BYTES = 40_000
 
 Piece = tuple[int, ...]
+#: A line with more points is thinned out evenly first: simplifying can take time with their square.
+_MOST_TO_SIMPLIFY = 2000
+
+
+def _is_png(value: str) -> str:
+    if not value.startswith(_PREFIX):
+        raise ValueError("expected the address of a PNG")
+    data = base64.b64decode(value.removeprefix(_PREFIX), validate=True)
+    if not data.startswith(_SIGNATURE) or len(data) > 2 * PICTURE_BYTES:
+        raise ValueError("expected a small PNG")
+    return value
+
+
+def _is_piece(numbers: Piece) -> Piece:
+    if len(numbers) < 4 or len(numbers) % 2 or not all(0 <= each <= UNITS for each in numbers):
+        raise ValueError(f"expected points from 0 to {UNITS}, two at least")
+    return numbers
 
 
 @dataclass(frozen=True)
@@ -54,27 +68,14 @@ class Thumb:
         path: where what is driven went, in pieces: x0, y0, x1, y1, ... [`UNITS`, y down].
     """
 
-    picture: str
-    path: tuple[Piece, ...]
+    picture: Annotated[str, _is_png]
+    path: tuple[Annotated[Piece, _is_piece], ...]
+    schema: Literal["turtlesim-grader/thumb/v1"] = SCHEMA
 
     @classmethod
     def read(cls, folder: Path) -> Self | None:
         """What lies in the folder of a hand-in; None where nothing does that can be shown."""
-        try:
-            data = read_own(folder / THUMB, _LIMIT_BYTES)
-            return cls._from_json(strict_json.loads(data.decode("utf-8")))
-        except (OSError, ValueError, RecursionError):
-            return None
-
-    @classmethod
-    def _from_json(cls, data: Any) -> Self:
-        if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-            raise ValueError(f"expected the schema {SCHEMA}")
-        picture: Any = data.get("picture")
-        path: Any = data.get("path")
-        if not _is_picture(picture) or not _is_path(path):
-            raise ValueError("expected a PNG and a path")
-        return cls(picture, tuple(tuple(piece) for piece in path))
+        return json_file.kept(cls, folder / THUMB, _LIMIT_BYTES)
 
     def svg(self) -> str:
         """The path as the `d` of an SVG path: from each point the step to the next."""
@@ -88,18 +89,15 @@ class Thumb:
 
 def thumb(recordings: Recordings) -> bytes:
     """The file's content: of the nominal run."""
-    data = {
-        "schema": SCHEMA,
-        "picture": _picture(recordings.nominal),
-        "path": _path(recordings.nominal),
-    }
-    return f"{json.dumps(data, separators=(',', ':'))}\n".encode()
+    return strict_json.line(Thumb(_picture(recordings.nominal), _path(recordings.nominal)))
 
 
 def _picture(recording: Recording) -> str:
-    """The picture at the end with as many colours as there is room for."""
+    """The picture at the end with as many colours as there is room for; '' where there is none."""
     made = recording.pictures
     pixels = made.others.get("plan", made.window)  # the path is drawn over it
+    if pixels is None:
+        return ""
     whole = Image.fromarray(pixels).convert("RGB")
     small = whole.resize((EDGE_PX, EDGE_PX), Image.Resampling.LANCZOS)
     for colours in _COLOURS:
@@ -112,14 +110,14 @@ def _picture(recording: Recording) -> str:
     return f"{_PREFIX}{base64.b64encode(file.getvalue()).decode()}"
 
 
-def _path(recording: Recording) -> list[list[int]]:
+def _path(recording: Recording) -> tuple[Piece, ...]:
     film = draw(recording).film  # the page of the student has drawn it already
     if film is None or not film.tracks:
-        return []
-    scale = UNITS / load_scene(recording.scene).plane.size_px
+        return ()
+    scale = UNITS / load_subject(recording.scene).plane.size_px
     track = film.tracks[0]
     whole = pieces(track.x * scale, track.y * scale)[:_MOST_PIECES]
-    return [_whole_numbers(piece) for piece in _few(whole)]
+    return tuple(_whole_numbers(piece) for piece in _few(whole))
 
 
 def _few(whole: list[Floats]) -> list[Floats]:
@@ -132,25 +130,45 @@ def _few(whole: list[Floats]) -> list[Floats]:
     return [np.vstack([piece[:-1:step], piece[-1:]]) for piece in shorter]
 
 
-def _whole_numbers(piece: Floats) -> list[int]:
-    return np.clip(np.rint(piece), 0, UNITS).astype(int).ravel().tolist()
+def _whole_numbers(piece: Floats) -> Piece:
+    return tuple(np.clip(np.rint(piece), 0, UNITS).astype(int).ravel().tolist())
 
 
-def _is_picture(value: object) -> bool:
-    if not isinstance(value, str) or not value.startswith(_PREFIX):
-        return False
-    try:
-        data = base64.b64decode(value.removeprefix(_PREFIX), validate=True)
-    except binascii.Error:
-        return False
-    return data.startswith(_SIGNATURE) and len(data) <= 2 * PICTURE_BYTES
+def pieces(x: Floats, y: Floats) -> list[Floats]:
+    """A line cut where a point is not finite; each piece (n, 2), two points at least."""
+    points = np.column_stack([x, y])
+    finite = np.isfinite(points).all(axis=1)
+    cuts = np.flatnonzero(np.diff(finite.astype(np.int8))) + 1
+    return [part for part in np.split(points, cuts) if len(part) > 1 and np.isfinite(part[0]).all()]
 
 
-def _is_path(value: object) -> bool:
-    return isinstance(value, list) and all(
-        isinstance(piece, list)
-        and len(piece) >= 4
-        and len(piece) % 2 == 0
-        and all(type(number) is int and 0 <= number <= UNITS for number in piece)
-        for piece in value
-    )
+def simplified(points: Floats, tolerance: float) -> Floats:
+    """Those of the points (n, 2) without which the line would be off by more than the tolerance.
+
+    The way of Ramer (1972) and of Douglas and Peucker (1973).
+    """
+    step = max(1, -(-len(points) // _MOST_TO_SIMPLIFY))
+    points = np.concatenate([points[:-1:step], points[-1:]])
+    kept = np.zeros(len(points), dtype=bool)
+    kept[[0, -1]] = True
+    open_ended = [(0, len(points) - 1)]
+    while open_ended:
+        first, last = open_ended.pop()
+        if last - first < 2:
+            continue
+        off = _distances(points[first + 1 : last], points[first], points[last])
+        farthest = int(np.argmax(off))
+        if off[farthest] > tolerance:
+            middle = first + 1 + farthest
+            kept[middle] = True
+            open_ended += [(first, middle), (middle, last)]
+    return points[kept]
+
+
+def _distances(points: Floats, start: Floats, end: Floats) -> Floats:
+    """How far the points are from the straight line between two others."""
+    along = end - start
+    squared = float(along @ along)
+    at = np.clip((points - start) @ along / squared, 0, 1) if squared else np.zeros(len(points))
+    off = points - start - np.outer(at, along)
+    return np.asarray(np.sqrt((off**2).sum(axis=1)))

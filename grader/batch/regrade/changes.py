@@ -8,13 +8,15 @@ from functools import cached_property
 from pathlib import Path
 
 from grader.batch.entry import Entry
+from grader.batch.pool import Task
 from grader.exercise.exercise import Exercise
 from grader.exercise.verdict import Verdict
-from grader.language.telling import tell, tell_many, told
+from grader.message import Message
 from grader.reports.wording import points, title_of
+from grader.translations import tr, tr_many, translate
 
 #: Differences below this come from rounding [points].
-NOTHING = 0.005
+NO_CHANGE = 0.005
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Change:
+class ChangedEntry:
     """Somebody who gets other points, or another verdict.
 
     Attributes:
@@ -61,7 +63,7 @@ class Failure:
     """A hand-in that could not be judged again; it stays as it is."""
 
     entry: Entry
-    why: str
+    why: Message
 
 
 @dataclass(frozen=True)
@@ -88,40 +90,40 @@ class Regrade:
     Attributes:
         out: the folder of the class.
         exercise: the one that it is judged by again.
-        exercise_path: as a worker loads it.
         entries: all of the class, as they are.
         changes: of the points or a verdict, the largest first.
         reworded: those of whom other words are said for the same points.
         failures: those who could not be judged again.
         judged: so many were.
         notes: what else is to be known.
+        made: the tasks whose folders hold what is to be, where the regrade is to be applied.
     """
 
     out: Path
     exercise: Exercise
-    exercise_path: str
     entries: tuple[Entry, ...]
-    changes: tuple[Change, ...]
-    reworded: tuple[Change, ...]
+    changes: tuple[ChangedEntry, ...]
+    reworded: tuple[ChangedEntry, ...]
     failures: tuple[Failure, ...]
     judged: int
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
+    made: tuple[Task, ...] = ()
 
     @property
     def headline(self) -> str:
         """In a line: '7 of 312 change: 2 get more points, 5 get fewer points.'."""
         total = len(self.entries)
         if not self.changes:
-            return tell("None of {total} changes.", total=total)
-        more = sum(change.points >= NOTHING for change in self.changes)
-        less = sum(change.points <= -NOTHING for change in self.changes)
+            return tr("None of {total} changes.", total=total)
+        more = sum(change.points >= NO_CHANGE for change in self.changes)
+        less = sum(change.points <= -NO_CHANGE for change in self.changes)
         same = len(self.changes) - more - less
         counts = [
-            tell("{number} get more points", number=more) if more else "",
-            tell("{number} get fewer points", number=less) if less else "",
-            tell("{number} keep theirs by other verdicts", number=same) if same else "",
+            tr("{number} get more points", number=more) if more else "",
+            tr("{number} get fewer points", number=less) if less else "",
+            tr("{number} keep theirs by other verdicts", number=same) if same else "",
         ]
-        return tell_many(
+        return tr_many(
             "{n} of {total} changes: {counts}.",
             "{n} of {total} change: {counts}.",
             len(self.changes),
@@ -132,18 +134,18 @@ class Regrade:
     @property
     def more_notes(self) -> list[str]:
         """Notes, with what the numbers say."""
-        found = list(map(told, self.notes))
+        found = list(map(translate, self.notes))
         worth = sorted({entry.max_score for entry in self.entries} - {self.exercise.max_score})
         if worth:
             before, *more = map(points, worth)
             for other in more:
-                before = tell("{one} or {other}", one=before, other=other)
+                before = tr("{one} or {other}", one=before, other=other)
             now = points(self.exercise.max_score)
             found.append(
-                tell("The exercise is worth {now} points; it was {before}.", now=now, before=before)
+                tr("The exercise is worth {now} points; it was {before}.", now=now, before=before)
             )
         if self.reworded:
-            reworded = tell_many(
+            reworded = tr_many(
                 "Of {n:,} more hand-in something else is said, for the same points.",
                 "Of {n:,} more hand-ins something else is said, for the same points.",
                 len(self.reworded),
@@ -151,7 +153,7 @@ class Regrade:
             found.append(reworded)
         unjudged = len(self.entries) - self.judged - len(self.failures)
         if unjudged:
-            stay = tell_many(
+            stay = tr_many(
                 "{n:,} hand-in without a run stay as they are.",
                 "{n:,} hand-ins without a run stay as they are.",
                 unjudged,
@@ -170,8 +172,8 @@ class Regrade:
             OfCheck(
                 name,
                 each[0].title,
-                sum(one.points >= NOTHING for one in each),
-                sum(one.points <= -NOTHING for one in each),
+                sum(one.points >= NO_CHANGE for one in each),
+                sum(one.points <= -NO_CHANGE for one in each),
                 len(each),
                 round(sum(one.points for one in each), 2),
             )
@@ -180,44 +182,49 @@ class Regrade:
         return sorted(made, key=lambda one: (-one.gain - one.lose, -abs(one.points), one.check))
 
 
-def compared(before: Entry, after: Entry) -> Change | None:
+def compared(before: Entry, after: Entry) -> ChangedEntry | None:
     """What of a judged hand-in has changed; None where nothing has."""
     differences = tuple(_of_checks(before, after))
     # what is deducted from the score, e.g. for being late
     taken = [_deducted(entry) for entry in (before, after)]
-    if abs(taken[1] - taken[0]) >= NOTHING:
-        why = tell(
+    if abs(taken[1] - taken[0]) >= NO_CHANGE:
+        why = tr(
             "{now} points are deducted from the score, not {before}",
             now=points(taken[1]),
             before=points(taken[0]),
         )
-        late = Difference(
-            "", tell("Handed in late"), None, None, round(taken[0] - taken[1], 2), why
-        )
+        late = Difference("", tr("Handed in late"), None, None, round(taken[0] - taken[1], 2), why)
         differences = (*differences, late)
-    return Change(before, after, differences) if differences else None
+    return ChangedEntry(before, after, differences) if differences else None
 
 
-def is_of_words(change: Change) -> bool:
+def is_of_words(change: ChangedEntry) -> bool:
     """Whether points and verdicts are the same, and only what is said of them is not."""
     return all(
         each.before is not None
         and each.after is not None
         and each.before.status == each.after.status
-        and abs(each.points) < NOTHING
+        and abs(each.points) < NO_CHANGE
         for each in change.differences
     )
 
 
 def _of_checks(before: Entry, after: Entry) -> Iterable[Difference]:
-    old, new = ({v.check: v for v in _verdicts(entry)} for entry in (before, after))
+    old, new = before.verdicts, after.verdicts
     for name in [*new, *(name for name in old if name not in new)]:
         was, is_ = old.get(name), new.get(name)
         if was is None or is_ is None or _said(was) != _said(is_):
             some = is_ or was
             assert some is not None
             gained = (is_.score if is_ else 0.0) - (was.score if was else 0.0)
-            yield Difference(name, title_of(some), was, is_, round(gained, 2), _why(was, is_))
+            yield Difference(
+                name,
+                title_of(some),
+                was,
+                is_,
+                round(gained, 2),
+                _why(was, is_),
+            )
 
 
 def _said(verdict: Verdict) -> tuple[object, ...]:
@@ -227,21 +234,17 @@ def _said(verdict: Verdict) -> tuple[object, ...]:
 
 def _why(was: Verdict | None, is_: Verdict | None) -> str:
     if is_ is None:
-        return tell("It is no longer asked for.")
+        return tr("It is no longer asked for.")
     if was is None:
-        return tell("It was not asked for before. {rationale}", rationale=is_.rationale)
+        return tr("It was not asked for before. {rationale}", rationale=is_.rationale)
     if (was.status, was.rationale) == (is_.status, is_.rationale):
-        return tell(
+        return tr(
             "It is worth {now} points, not {before}. {rationale}",
             now=points(is_.max_score),
             before=points(was.max_score),
             rationale=is_.rationale,
         )
-    return told(is_.rationale)
-
-
-def _verdicts(entry: Entry) -> tuple[Verdict, ...]:
-    return () if entry.result is None else entry.result.verdicts
+    return translate(is_.rationale)
 
 
 def _deducted(entry: Entry) -> float:

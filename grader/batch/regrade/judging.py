@@ -1,38 +1,64 @@
-"""Judges the recordings of a class again, in parallel, without running anything."""
+"""Judge the recordings of a class again, in parallel and without running anything; put it in force.
+
+    before/N/           N = 1, 2, ...: what the N-th regrade has replaced
+        changes.csv changes.html        what it changed, and why
+        class.json gradebook.csv gradebook.jsonl
+        submissions/ID/result.json entry.json      of each whose points, verdicts or words changed
+
+What was before is kept before anything is changed. Then each hand-in is replaced as a whole, and
+class.json, which says by what the class is judged, comes last: a call that is cut off leaves every
+hand-in as it was or as it will be, and the same call again does the rest.
+"""
 
 from __future__ import annotations
 
+import os
+import shutil
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from grader import scratch, versions
-from grader.batch import pool
-from grader.batch.class_file import ClassFile
-from grader.batch.entry import Entry, entries
-from grader.batch.regrade.changes import Change, Failure, Regrade, compared, is_of_words
-from grader.batch.store import STUDENTS, Store
-from grader.batch.task import Answer, Task
+from grader import files, scratch, versions
+from grader.batch import batch, pool
+from grader.batch.class_file import CLASS, ClassFile
+from grader.batch.entry import ENTRY, SUBMISSIONS, Entry, entries
+from grader.batch.pool import Answer, Task
+from grader.batch.regrade import shown
+from grader.batch.regrade.changes import ChangedEntry, Failure, Regrade, compared, is_of_words
+from grader.batch.store import BEFORE, RECORDING, RUN, STUDENTS, Store
 from grader.errors import UsageError
 from grader.exercise.exercise import Exercise
 from grader.exercise.loading import load_exercise
 from grader.exercise.sentences import not_followed
-from grader.language.phrase import Phrase, chained, say
+from grader.message import Message, chained, msg, msg_many
 from grader.removal import remove
+from grader.result.result import RESULT
+from grader.result.visible import View
 
 #: Judging a recording again takes no longer, unless something hangs [s].
 MOST_S = 600.0
 #: Told of each hand-in that is over.
 Tell = Callable[[Entry], None]
+CHANGES_CSV, CHANGES_PAGE = "changes.csv", "changes.html"
+#: What is made of all entries together and told to others.
+GRADEBOOKS = ("gradebook.csv", "gradebook.jsonl")
 
 
-def regrade(out: Path, exercise_path: str, jobs: int, tell: Tell = lambda _: None) -> Regrade:
-    """Judge the recordings of a class by another state of its exercise; nothing is written.
+def regrade(
+    out: Path,
+    exercise_path: str,
+    jobs: int,
+    tell: Tell = lambda _: None,
+    store: Store | None = None,
+) -> Regrade:
+    """Judge the recordings of a class by another state of its exercise; nothing of it is changed.
 
     Args:
         out: the folder of the class.
         exercise_path: the edited exercise.yaml, or what else names an exercise.
+        store: that of the class, opened, where the regrade is to be applied; then everything that
+            takes the place of something is made there.
 
     Raises:
         UsageError: it is no folder of a class, or the exercise is not that of the class.
@@ -40,30 +66,42 @@ def regrade(out: Path, exercise_path: str, jobs: int, tell: Tell = lambda _: Non
     """
     before, exercise = _of_class(out, exercise_path)
     found = entries(out)
-    changes: list[Change] = []
+    judged = {entry.id: entry for entry in found if entry.state == "judged"}
+    changes: list[ChangedEntry] = []
     failures: list[Failure] = []
-    judged = 0
-    for entry, again in _judged_again(out, found, exercise_path, jobs):
-        tell(entry)
-        if isinstance(again, str):
-            failures.append(Failure(entry, again))
-            continue
-        judged += 1
-        change = compared(entry, again)
-        if change is not None:
-            changes.append(change)
+    made: list[Task] = []
+    with scratch.make_folder() as place:
+        asked = (
+            replace(task, into=store.new_place())
+            if store
+            else replace(task, judge_only=True, into=place / str(number))
+            for number, task in enumerate(_tasks(out, judged.values(), exercise_path))
+        )
+        for task, answer in pool.work(asked, jobs, MOST_S):
+            for entry in (judged[hand_in.id] for hand_in in task.hand_ins):
+                again = _read(task, answer, entry)
+                if isinstance(again, Message):
+                    failures.append(Failure(entry, again))
+                    remove(task.into / STUDENTS / entry.id)
+                elif change := compared(entry, again):
+                    changes.append(change)
+                tell(entry)
+            if store is None:
+                remove(task.into)
+            elif answer.state == "done":
+                made.append(task)
     changes.sort(key=lambda change: (-abs(change.points), change.before.id))
     failures.sort(key=lambda failure: failure.entry.id)
     return Regrade(
         out,
         exercise,
-        exercise_path,
         tuple(found),
         tuple(change for change in changes if not is_of_words(change)),
         tuple(change for change in changes if is_of_words(change)),
         tuple(failures),
-        judged,
+        len(judged) - len(failures),
         tuple(_notes(out, before, exercise, found)),
+        tuple(made),
     )
 
 
@@ -81,19 +119,17 @@ def _of_class(out: Path, exercise_path: str) -> tuple[ClassFile, Exercise]:
     before, exercise = ClassFile.read(out), load_exercise(exercise_path)
     if exercise.name != before.exercise:
         raise UsageError(
-            say(
-                "{out} was graded for the exercise {then!r}, and {path} is one of {now!r}: give an "
-                "edited copy of that exercise's exercise.yaml",
-                out=str(out),
-                then=before.exercise,
-                path=exercise_path,
-                now=exercise.name,
-            )
+            "{out} was graded for the exercise {then!r}, and {path} is one of {now!r}: give an "
+            "edited copy of that exercise's exercise.yaml",
+            out=str(out),
+            then=before.exercise,
+            path=exercise_path,
+            now=exercise.name,
         )
     return before, exercise
 
 
-def tasks(out: Path, found: Iterable[Entry], exercise_path: str) -> Iterator[Task]:
+def _tasks(out: Path, found: Iterable[Entry], exercise_path: str) -> Iterator[Task]:
     """A task for each run of a class; `into` is not set yet."""
     before, by_run = ClassFile.read(out), defaultdict(list)
     for entry in found:
@@ -118,23 +154,7 @@ def _run(out: Path, entry: Entry) -> Path:
     return store.run(entry.key) if store.has(entry.key) else entry.folder
 
 
-def _judged_again(
-    out: Path, found: Iterable[Entry], exercise_path: str, jobs: int
-) -> Iterator[tuple[Entry, Entry | str]]:
-    """Each judged hand-in with its new judgement, or why there is none."""
-    by_id = {entry.id: entry for entry in found if entry.state == "judged"}
-    with scratch.make_folder() as place:
-        asked = (
-            replace(task, judge_only=True, into=place / str(number))
-            for number, task in enumerate(tasks(out, by_id.values(), exercise_path))
-        )
-        for task, answer in pool.work(asked, jobs, MOST_S):
-            for hand_in in task.hand_ins:
-                yield by_id[hand_in.id], _read(task, answer, by_id[hand_in.id])
-            remove(task.into)
-
-
-def _read(task: Task, answer: Answer, before: Entry) -> Entry | str:
+def _read(task: Task, answer: Answer, before: Entry) -> Entry | Message:
     if answer.state != "done":
         return answer.why
     try:
@@ -142,10 +162,10 @@ def _read(task: Task, answer: Answer, before: Entry) -> Entry | str:
     except UsageError as error:
         return error.message
     if any(then != now for then, now in zip(_traces(before), _traces(again), strict=False)):
-        return say(
+        return msg(
             "its recording is not the one that its result was made of. To have it graded anew: "
             "grader batch ... --again {id}",
-            id=Phrase(before.id),
+            id=before.id,
         )
     return again
 
@@ -157,11 +177,18 @@ def _traces(entry: Entry) -> list[str]:
 
 def _notes(
     out: Path, before: ClassFile, exercise: Exercise, found: Sequence[Entry]
-) -> Iterator[str]:
+) -> Iterator[Message]:
     """What of the exercise recordings cannot follow, and what else differs."""
-    yield from before.unfinished(out, len(found))
+    if len(found) < before.hand_ins:
+        yield msg_many(
+            "{part} is not finished: {graded} of {n:,} hand-in.",
+            "{part} is not finished: {graded} of {n:,} hand-ins.",
+            before.hand_ins,
+            part=str(out),
+            graded=len(found),
+        )
     if before.exercise_sha256 == exercise.sha256:
-        yield say("The class was graded by just this exercise.")
+        yield msg("The class was graded by just this exercise.")
     results = [entry.result for entry in found if entry.result is not None]
     origins = [result.provenance for result in results if result.provenance is not None]
     told = Counter(
@@ -170,7 +197,7 @@ def _notes(
         for sentence in not_followed(origin.recorded, exercise.conditions)
     )
     for sentence, number in told.items():
-        yield say(
+        yield msg(
             "{number} of {total}: {sentence}",
             number=number,
             total=len(results),
@@ -178,9 +205,102 @@ def _notes(
         )
     others = {origin.judged.grader for origin in origins} - {versions.grader()}
     if others:
-        yield say(
+        yield msg(
             "They were judged by version {then} of the grader, and are now by {now}: what changes "
             "may come from that, too.",
             then=chained(sorted(others)),
             now=versions.grader(),
         )
+
+
+def apply(
+    found: Regrade,
+    store: Store,
+    tell: Tell = lambda _: None,
+    view: View = "student",
+    assignment: str = "",
+) -> None:
+    """Write what a regrade has found; those who could not be judged stay as they are.
+
+    Args:
+        store: that in which it was made; nobody else has changed it.
+        view, assignment: see `grader.batch.batch.write_outputs`.
+
+    Raises:
+        UsageError: something cannot be written; the same call goes on where this one ended.
+    """
+    keep(found, store)
+    by_id = {entry.id: entry for entry in found.entries}
+    for task in found.made:
+        _keep_run(task, store)
+        store.put(task.key, task.into)
+        for hand_in in task.hand_ins:
+            tell(by_id[hand_in.id])
+    for entry in found.entries:
+        if entry.state != "judged":
+            _put_unjudged(entry, found, store)
+            tell(entry)
+    now = replace(ClassFile.read(store.out), exercise_sha256=found.exercise.sha256)
+    batch.write_outputs(store.out, entries(store.out), found.exercise, view, assignment)
+    now.put(store.out)
+
+
+def keep(found: Regrade, store: Store) -> Path:
+    """Keep what is going to change: before/N, whole or not at all.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    top = store.out / BEFORE
+    made, into = store.new_place() / BEFORE, _next(top)
+    try:
+        for name in (CLASS, *GRADEBOOKS):
+            if (store.out / name).is_file():
+                files.put(made / name, (store.out / name).read_bytes())
+        for change in (*found.changes, *found.reworded):
+            for name in (RESULT, ENTRY):
+                data = (change.before.folder / name).read_bytes()
+                files.put(made / SUBMISSIONS / change.before.id / name, data)
+        files.put(made / CHANGES_CSV, shown.table(found).encode("utf-8"))
+        # from before/N/ to submissions/
+        files.put(made / CHANGES_PAGE, shown.page(found, "../..").encode("utf-8"))
+        top.mkdir(exist_ok=True)
+        made.rename(into)
+    except OSError as error:
+        raise files.cannot_write(top, error.strerror or str(error)) from None
+    return into
+
+
+def _next(top: Path) -> Path:
+    number = 1
+    while os.path.lexists(top / str(number)):
+        number += 1
+    return top / str(number)
+
+
+def _keep_run(task: Task, store: Store) -> None:
+    """Have the recording in the store, where it may have lain with the hand-in alone."""
+    if not store.has(task.key) and task.run is not None:
+        kept = task.into / RUN / RECORDING
+        shutil.copytree(task.run / RECORDING, kept, symlinks=True, ignore=_strange)
+
+
+def _strange(folder: str, names: list[str]) -> list[str]:
+    """What no recording has: pipes, links, devices."""
+    paths = (Path(folder, name) for name in names)
+    return [p.name for p in paths if p.is_symlink() or not (p.is_dir() or p.is_file())]
+
+
+def _put_unjudged(entry: Entry, found: Regrade, store: Store) -> None:
+    """Who has no result gets the new exercise's points to be had, and nothing else."""
+    place = store.new_place()
+    folder = place / STUDENTS / entry.id
+    files.make_folder(folder)
+    exercise = found.exercise
+    replace(
+        entry,
+        max_score=exercise.max_score,
+        exercise_sha256=exercise.sha256,
+        folder=folder,
+    ).put()
+    store.put("", place)

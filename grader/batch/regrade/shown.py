@@ -1,30 +1,52 @@
-"""A regrade in the terminal: the line that counts, the checks, and who changes."""
+"""A regrade, shown: in the terminal, as one self-contained HTML page, and as CSV.
+
+The table has a row for each check of each hand-in that changes, or is not judged again.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from urllib.parse import quote
 
+import jinja2
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.batch.entry import Entry
-from grader.batch.regrade.changes import Change, Difference, OfCheck, Regrade
-from grader.language.telling import tell, tell_many, told
-from grader.reports.wording import points, word
-from grader.text import clip, for_terminal, one_line
+from grader.batch.entry import SUBMISSIONS, Entry
+from grader.batch.regrade.changes import ChangedEntry, Difference, OfCheck, Regrade
+from grader.exercise.verdict import Verdict
+from grader.reports.csv import cell
+from grader.reports.csv import table as as_csv
+from grader.reports.page import templating
+from grader.reports.wording import WORDS, points, word
+from grader.result.result import PAGE
+from grader.text import clip, for_terminal, number, one_line, plain
+from grader.translations import tr, tr_many, translate
 
 #: More hand-ins are in the table and on the page only.
 MOST = 40
 _MOST_WHYS = 5
 _LONGEST = 160
+_TEMPLATES = Path(__file__).parent / "templates"
+_LONGEST_ON_PAGE = 600
+HEADER: tuple[object, ...] = (
+    *("id", "name", "before", "after", "change"),
+    *("check", "check_before", "check_after", "check_change", "verdict_before", "verdict_after"),
+    "why",
+)
+NOT_JUDGED_AGAIN = "not judged again"
+_LONGEST_IN_TABLE = 1000
 
 
 def show(found: Regrade, console: Console) -> None:
     """Print it."""
     console.print(_text(found.headline, "bold"), soft_wrap=True)
     for note in found.more_notes:
-        console.print(_text(tell("Note: {flag}", flag=note)), soft_wrap=True)
+        console.print(_text(tr("Note: {flag}", flag=note)), soft_wrap=True)
     if found.changes:
         console.print()
         console.print(_checks(found))
@@ -32,7 +54,7 @@ def show(found: Regrade, console: Console) -> None:
         console.print(_people(found))
         rest = len(found.changes) - MOST
         if rest > 0:
-            more = tell_many(
+            more = tr_many(
                 "… and {n:,} more hand-in: see the table or the page.",
                 "… and {n:,} more hand-ins: see the table or the page.",
                 rest,
@@ -48,52 +70,42 @@ def signed(value: float) -> str:
 
 def verdicts(each: Difference) -> str:
     """What was said of a check and what is: 'passed → failed'; '' where it is the same."""
-    said = [tell("new") if each.before is None else word(each.before)]
-    said.append(tell("gone") if each.after is None else word(each.after))
+    said = [tr("new") if each.before is None else word(each.before)]
+    said.append(tr("gone") if each.after is None else word(each.after))
     return "" if said[0] == said[1] else " → ".join(said)
 
 
 def _checks(found: Regrade) -> Table:
-    table = _table(tell("check"), tell("more"), tell("fewer"), tell("in all"))
+    table = _table(tr("check"), tr("more"), tr("fewer"), tr("in all"))
     for each in found.of_checks:
         table.add_row(_name(each), str(each.gain), str(each.lose), signed(each.points))
     return table
 
 
 def _name(each: OfCheck) -> Text:
-    name = _text(told(each.title), "bold")
+    name = _text(translate(each.title), "bold")
     return Text.assemble(name, _text(f" ({each.check})", "dim")) if each.check else name
 
 
 def _people(found: Regrade) -> Table:
-    table = _table(*_headings(), last="left")
+    table = _table(tr("hand-in"), tr("before"), tr("after"), tr("change"))
+    table.add_column(tr("check and why"))
     for change in found.changes[:MOST]:
-        told = [_told(each) for each in change.differences]
+        translate = [_told(each) for each in change.differences]
         points_now = (_score(change.before), _score(change.after), signed(change.points))
-        table.add_row(_who(change), *points_now, Text("\n").join(told))
+        table.add_row(_who(change), *points_now, Text("\n").join(translate))
     return table
 
 
-def _headings() -> tuple[str, ...]:
-    return (
-        tell("hand-in"),
-        tell("before"),
-        tell("after"),
-        tell("change"),
-        tell("check and why"),
-    )
-
-
-def _table(first: str, *others: str, last: str = "right") -> Table:
+def _table(first: str, *numbers: str) -> Table:
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column(first, overflow="fold")
-    for name in others[:-1]:
+    for name in numbers:
         table.add_column(name, justify="right", no_wrap=True)
-    table.add_column(others[-1], justify="left" if last == "left" else "right")
     return table
 
 
-def _who(change: Change) -> Text:
+def _who(change: ChangedEntry) -> Text:
     entry = change.before
     name = clip(one_line(entry.hand_in.name), 40)
     return _text(entry.id if name == entry.id else f"{entry.id} {name}")
@@ -113,23 +125,88 @@ def _failures(found: Regrade, console: Console) -> None:
         return
     console.print()
     said = Counter(failure.why for failure in found.failures)
-    for why, number in said.most_common(_MOST_WHYS):
+    for why, times in said.most_common(_MOST_WHYS):
         first = next(failure.entry.id for failure in found.failures if failure.why == why)
-        if number > 1:
-            first = tell("{first} and {more} others", first=first, more=number - 1)
-        text = tell(
+        if times > 1:
+            first = tr("{first} and {more} others", first=first, more=times - 1)
+        text = tr(
             "Not judged again, and left as it is: {who}: {why}",
             who=first,
-            why=clip(one_line(told(why)), 300),
+            why=clip(one_line(translate(why)), 300),
         )
         console.print(_text(text, "red"), soft_wrap=True)
     if len(said) > _MOST_WHYS:
-        console.print(_text(_more_reasons(len(said) - _MOST_WHYS), "red"))
-
-
-def _more_reasons(more: int) -> str:
-    return tell("… for {more} other reasons: see the table.", more=more)
+        more = tr("… for {more} other reasons: see the table.", more=len(said) - _MOST_WHYS)
+        console.print(_text(more, "red"))
 
 
 def _text(value: str, style: str = "") -> Text:
     return Text(for_terminal(value), style)
+
+
+def page(found: Regrade, to_class: str = "") -> str:
+    """The page.
+
+    Args:
+        to_class: the way from the page to the folder of the class, for links to reports; '' for no
+            links.
+    """
+    made: str = (
+        _environment()
+        .get_template("regrade.html")
+        .render(
+            found=found,
+            title=plain(translate(found.exercise.title)),
+            checks=found.of_checks,
+            link=lambda id: (
+                f"{to_class}/{SUBMISSIONS}/{quote(id, safe='')}/{PAGE}" if to_class else ""
+            ),
+        )
+    )
+    return made
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    made = templating.environment(_TEMPLATES, "regrade")
+    made.filters.update(
+        signed=signed,
+        verdicts=verdicts,
+        text=lambda value: clip(one_line(plain(value)), _LONGEST_ON_PAGE),
+    )
+    return made
+
+
+def table(found: Regrade) -> str:
+    """The table; its columns are those of `HEADER`."""
+    rows = [HEADER, *(row for change in found.changes for row in _rows(change))]
+    for failure in found.failures:
+        score = _points(failure.entry.score)
+        why = cell(clip(f"{NOT_JUDGED_AGAIN}: {failure.why!s}", _LONGEST_IN_TABLE))
+        rows.append((*_whose(failure.entry), score, score, 0, *[""] * 6, why))
+    return as_csv(rows)
+
+
+def _rows(change: ChangedEntry) -> Iterator[tuple[object, ...]]:
+    scores = _points(change.before.score), _points(change.after.score), number(change.points)
+    for each in change.differences:
+        why = cell(clip(each.why, _LONGEST_IN_TABLE))
+        yield (*_whose(change.before), *scores, *_check(each), why)
+
+
+def _whose(entry: Entry) -> list[str]:
+    return [cell(entry.id), cell(entry.hand_in.name)]
+
+
+def _check(each: Difference) -> list[object]:
+    old, new = (_score_of(verdict) for verdict in (each.before, each.after))
+    verdicts = [str(WORDS[v.status]) if v else "" for v in (each.before, each.after)]
+    return [cell(each.check or each.title), old, new, number(each.points), *verdicts]
+
+
+def _score_of(verdict: Verdict | None) -> float | int | str:
+    return number(verdict.score) if verdict else ""
+
+
+def _points(score: float | None) -> float | int | str:
+    return "" if score is None else number(score)

@@ -2,7 +2,7 @@
 
 schema    which form this is
 files     [name, sha256] of each of its Python files
-commands  [tick, hash] of what it asked for in its nominal run, from the first on
+commands  [time_ns, hash] of what it asked for in its nominal run, from the first on
 path      x, y [mm] of points at equal steps along its way, from where it began
 left_out  how many files and commands were too much
 """
@@ -10,23 +10,21 @@ left_out  how many files and commands were too much
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Annotated, Any, Final, Literal, NamedTuple, Self
 
 import numpy as np
 
 from grader import strict_json
 from grader.batch.similar.sources import kept
-from grader.files import read_own
 from grader.recording.recording import Recording
-from grader.scenes import load_scene
-from grader.scenes.scene import Command
+from grader.recording.subject import Command, load_subject
+from grader.result import json_file
 
-SCHEMA: Final = "turtlesim-grader/similar/v2"
+SCHEMA: Final = "turtlesim-grader/similar/v3"
 NAME: Final = "similar.json"
 MOST_COMMANDS: Final = 1000
 #: Points of a path.
@@ -35,11 +33,12 @@ POINTS: Final = 64
 SHORTEST_M: Final = 0.5
 _FARTHEST_MM: Final = 10_000_000
 _MOST_BYTES: Final = 2**22
+BOUNDS: Final = strict_json.OURS._replace(number=2**53, may_lack=False)
 #: Bytes of a hash: below 2**53, so that a number in JSON holds it whoever reads it.
 _HASH_BYTES: Final = 6
 
 
-class Source(NamedTuple):
+class HashedFile(NamedTuple):
     """A file: its name and hash."""
 
     name: str
@@ -47,48 +46,32 @@ class Source(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """A command: how many ticks after the first one, and a hash of what it asks for."""
+    """A command: how long after the first one [ns], and a hash of what it asks for."""
 
-    tick: int
+    time_ns: int
     hash: int
+
+
+def _has_points(path: tuple[int, ...]) -> tuple[int, ...]:
+    if len(path) not in (0, 2 * POINTS):
+        raise ValueError(f"expected a path of {POINTS} points, found {len(path)} numbers")
+    return path
 
 
 @dataclass(frozen=True)
 class Behaved:
     """What of a hand-in is compared; see the module."""
 
-    files: tuple[Source, ...] = ()
+    files: tuple[HashedFile, ...] = ()
     commands: tuple[Asked, ...] = ()
-    path: tuple[int, ...] = ()
+    path: Annotated[tuple[int, ...], _has_points] = ()
     left_out: int = 0
-
-    def to_bytes(self) -> bytes:
-        """As it lies on disk; the same for the same."""
-        data = {"schema": SCHEMA, **asdict(self)}
-        return json.dumps(data, separators=(",", ":")).encode("ascii") + b"\n"
+    schema: Literal["turtlesim-grader/similar/v3"] = SCHEMA
 
     @classmethod
-    def of_bytes(cls, data: bytes) -> Behaved:
-        """Read it back.
-
-        Raises:
-            ValueError: that is none.
-        """
-        try:
-            found = strict_json.loads(data[:_MOST_BYTES].decode("ascii"))
-            if not isinstance(found, dict) or found.get("schema") != SCHEMA:
-                raise ValueError(f"is no {NAME}")
-            made = cls(
-                tuple(Source(*_of(each, str, str)) for each in found["files"]),
-                tuple(Asked(*_of(each, int, int)) for each in found["commands"]),
-                tuple(_of(found["path"], *[int] * len(found["path"]))),
-                *_of([found["left_out"]], int),
-            )
-        except (KeyError, TypeError, RecursionError) as error:
-            raise ValueError(f"is no {NAME}: {error}") from None
-        if len(made.path) not in (0, 2 * POINTS):
-            raise ValueError(f"is no {NAME}: a path of {len(made.path)} numbers")
-        return made
+    def read(cls, folder: Path) -> Self | None:
+        """That of a hand-in's folder; None where there is none that can be used."""
+        return json_file.kept(cls, folder / NAME, _MOST_BYTES, BOUNDS)
 
 
 def hash_of(words: Iterable[str]) -> int:
@@ -109,26 +92,18 @@ def behaved(source: Path, nominal: Recording | None, left_out: int = 0) -> bytes
         OSError: the sources cannot be read.
     """
     commands, path, too_many = _run(nominal)
-    files = (Source(each.name, hashlib.sha256(each.data).hexdigest()) for each in kept(source))
-    return Behaved(tuple(files), commands, path, left_out + too_many).to_bytes()
-
-
-def read(folder: Path) -> Behaved | None:
-    """That of a hand-in's folder; None where there is none that can be used."""
-    try:
-        return Behaved.of_bytes(read_own(folder / NAME, _MOST_BYTES))
-    except (OSError, ValueError):
-        return None
+    files = (HashedFile(each.name, hashlib.sha256(each.data).hexdigest()) for each in kept(source))
+    return strict_json.line(Behaved(tuple(files), commands, path, left_out + too_many))
 
 
 def _run(nominal: Recording | None) -> tuple[tuple[Asked, ...], tuple[int, ...], int]:
     """Its commands, its path, and how many commands were left out."""
     if nominal is None:
         return (), (), 0
-    done = load_scene(nominal.scene).behaviour(nominal.trace)
-    begin = done.commands[0].tick if done.commands else 0
+    done = load_subject(nominal.scene).behaviour(nominal.trace)
+    begin = done.commands[0].time_ns if done.commands else 0
     taken = islice(done.commands, MOST_COMMANDS)
-    commands = tuple(Asked(each.tick - begin, _hash(each)) for each in taken)
+    commands = tuple(Asked(each.time_ns - begin, _hash(each)) for each in taken)
     return commands, _path(done.path), len(done.commands) - len(commands)
 
 
@@ -149,14 +124,3 @@ def _path(points: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[int, ...]:
     columns = [np.interp(at, driven, points[:, axis] - points[0, axis]) for axis in (0, 1)]
     mm = np.clip(np.rint(np.column_stack(columns) * 1000), -_FARTHEST_MM, _FARTHEST_MM)
     return tuple(int(value) for value in mm.ravel())
-
-
-def _of(values: Any, *kinds: type) -> list[Any]:
-    """A list of values of these types, and no others.
-
-    Raises:
-        ValueError: it is not.
-    """
-    if not isinstance(values, list) or [type(value) for value in values] != list(kinds):
-        raise ValueError(f"is no {NAME}: found {values!s:.60}")
-    return values

@@ -1,64 +1,166 @@
-"""similar.html: one self-contained page, without any script, in the looks of a report's page."""
+"""A class looked at together: read from its folder, written as similar.html and similar.jsonl.
+
+Read are entry.json and similar.json of each hand-in. The same class gives the same bytes. The page
+stands alone, has no script, and looks as a report's page does.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
+from typing import Any, Final
 
 import jinja2
-from markupsafe import Markup
 
-from grader.batch.similar import compare, export
-from grader.batch.similar.shown import Class, person, shown
-from grader.language.catalogue import spoken
-from grader.language.telling import tell, tell_many, told
-from grader.reports.page.compiled import BesideTheTemplates
+from grader import files
+from grader.batch.entry import Entry
+from grader.batch.page.students import Student, students
+from grader.batch.similar import sources
+from grader.batch.similar.behaviour import Behaved
+from grader.batch.similar.compare import LARGE_CLASS, ONE_IN, Compared, Look, Pair, compare
+from grader.exercise.exercise import Exercise
+from grader.message import Message, msg
+from grader.reports.page import templating
+from grader.translations import tr, translate
 
+PAGE: Final = "similar.html"
+LINES: Final = "similar.jsonl"
+SCHEMA: Final = "turtlesim-grader/pair/v2"
 _TEMPLATES = Path(__file__).parent / "templates"
 
 
-def render(found: Class, exercise: str) -> str:
-    """The page.
+@dataclass(frozen=True)
+class Class:
+    """A class, and what was found in it.
+
+    Attributes:
+        students: whoever handed in something.
+        look: what was found; its numbers are places in `students`.
+        only_given: numbers of those who handed in nothing but what everybody was given.
+    """
+
+    students: tuple[Student, ...]
+    look: Look
+    only_given: tuple[int, ...]
+
+
+def write(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
+    """Write both files into the folder of a class.
+
+    Raises:
+        UsageError: they cannot be written.
+        ExerciseError, OSError: as `look_together`.
+    """
+    found = look_together(entries, exercise)
+    page = _environment().get_template("similar.html")
+    html = page.render(found=found, look=found.look, exercise=translate(exercise.title))
+    files.put(out / PAGE, html.encode("utf-8"))
+    files.put(out / LINES, _json_lines(found).encode("utf-8"))
+
+
+def look_together(entries: Sequence[Entry], exercise: Exercise) -> Class:
+    """Compare what a class handed in.
 
     Args:
-        exercise: its title.
+        entries: from `grader.batch.entry.entries`.
+
+    Raises:
+        ExerciseError, OSError: what was given cannot be read.
     """
-    look = found.look
-    return (
-        _environment()
-        .get_template("similar.html")
-        .render(
-            exercise=told(exercise),
-            look=look,
-            size=len(found.entries),
-            pairs=list(shown(found)),
-            groups=[[person(found, number) for number in members] for members in look.groups],
-            only_given=[person(found, number) for number in found.only_given],
-            export=f"{export.FOLDER}/",
-        )
+    given = {hashlib.sha256(each.data).hexdigest() for each in sources.given_files(exercise)}
+    by_id = {student.entry.id: student for student in students(entries)}
+    present = [entry for entry in entries if entry.state != "nothing"]
+    found = [Behaved.read(entry.folder) for entry in present]
+    only_given = tuple(
+        number
+        for number, each in enumerate(found)
+        if each and each.files and {file.sha256 for file in each.files} <= given
     )
+    handed_in = [
+        Compared("" if number in only_given else _content(entry, each), each)
+        for number, (entry, each) in enumerate(zip(present, found, strict=True))
+    ]
+    return Class(tuple(by_id[entry.id] for entry in present), compare(handed_in), only_given)
+
+
+def _content(entry: Entry, found: Behaved | None) -> str:
+    """Names what was handed in: its Python files, else all of it."""
+    if found is not None and found.files:
+        return "\n".join(sorted(file.sha256 for file in found.files))
+    return entry.key
+
+
+def _json_lines(found: Class) -> str:
+    """One line of JSON a pair, in the order of the page."""
+    rows = (_row(found, pair) for pair in found.look.pairs)
+    return "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows)
+
+
+def _row(found: Class, pair: Pair) -> dict[str, Any]:
+    data = asdict(pair)
+    ids = [found.students[data.pop(name)].entry.id for name in ("first", "second")]
+    return {"schema": SCHEMA, "ids": ids, **data}
 
 
 @cache
 def _environment() -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(_TEMPLATES),
-        bytecode_cache=BesideTheTemplates(_TEMPLATES),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
+    made = templating.environment(_TEMPLATES, "similar")
+    made.globals.update(
+        facts=_facts,
+        headline=_headline,
+        export=f"{sources.FOLDER}/",
+        large_class=LARGE_CLASS,
+        one_in=ONE_IN,
     )
-    of_reports = files("grader.reports.page") / "templates" / "page.css"
-    style = of_reports.read_text(encoding="utf-8")
-    style += (_TEMPLATES / "similar.css").read_text(encoding="utf-8")
-    environment.globals.update(
-        spoken=spoken,
-        tell=tell,
-        tell_many=tell_many,
-        style=Markup(style),
-        large_class=compare.LARGE_CLASS,
-        one_in=compare.ONE_IN,
+    return made
+
+
+def _headline(pair: Pair) -> str:
+    if pair.same_content:
+        return tr("the same files, byte for byte")
+    return tr("the same behaviour")
+
+
+def _facts(size: int, pair: Pair) -> Iterator[tuple[str, str, str]]:
+    """In which respects two are alike: what, how, and how usual that is in the class."""
+    if pair.same_content:
+        same = tr("The Python files are the same, byte for byte.")
+        yield tr("What was handed in"), same, ""
+    how = tr(
+        "{share} of them are equal, one by one; those of the first {seconds:.2f} s are the same.",
+        share=_percent(pair.equal_commands),
+        seconds=pair.equal_s,
     )
-    return environment
+    usual = tr("As a whole they are not alike.")
+    if pair.commands_hands:
+        usual = _hands(size, pair.commands_hands, msg("send such commands"))
+    yield tr("Commands"), how, usual
+    if pair.path_mm is not None:
+        how = tr("{m:.3f} m apart, as a mean along the way.", m=pair.path_mm / 1000)
+        usual = _hands(size, pair.path_hands, msg("went as near one of the two"))
+        yield tr("Way"), how, usual
+
+
+def _hands(size: int, hands: int, what: Message) -> str:
+    if hands <= 2:
+        return tr("Of {size:,} hand-ins no others {what}.", size=size, what=what)
+    return tr(
+        "Of {size:,} hand-ins {hands:,} {what}, these two among them.",
+        size=size,
+        hands=hands,
+        what=what,
+    )
+
+
+def _percent(share: float) -> str:
+    """A share as people write it: 100 % is all of it, and 0 % nothing."""
+    value = f"{100 * share:.0f}"
+    if float(value) >= 100 and share < 1:
+        return tr("more than {share} %", share="99")
+    if share and not float(value):
+        return tr("less than {share} %", share="1")
+    return tr("{share} %", share=value)

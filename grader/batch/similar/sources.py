@@ -1,25 +1,47 @@
-"""The Python files of a hand-in, kept with its result: DIR/submissions/ID/source/.
+"""The sources of a class, and what JPlag and Dolos read of them, which compare sources.
 
-They are what JPlag and Dolos compare (`export`). A name that
-not every system takes is made one that it does; what is too much is left out, and that is told.
+    DIR/submissions/ID/source/        the Python files of a hand-in, kept with its result
+    export/jplag/students/ID/...py    a folder for each hand-in
+    export/jplag/base/...py           what everybody was given
+    export/dolos.zip                  students/ID.py, starter.py, info.csv
+
+    java -jar jplag.jar -l python3 export/jplag/students -bc export/jplag/base
+    dolos run -l python export/dolos.zip
+
+A name that not every system takes is made one that it does; what is too much is left out, and that
+is told. What everybody was given, or may have read, says nothing about two who have it in common:
+the exercise's starter, and its right solutions as far as it names them (mutants.yaml).
+
+JPlag takes the folders below the one that it is given for submissions, and leaves out what matches
+the base code (its wiki, How to Use JPlag). Dolos compares file with file, so that each hand-in is
+one; its info.csv has a row a file, and the one whose `ignored` is true is its template (its docs,
+Adding metadata; dataset.ts).
 """
 
 from __future__ import annotations
 
 import os
 import re
-import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from grader.errors import SubmissionError
+from grader import files as whole_files
+from grader.batch.entry import Entry
+from grader.errors import ExerciseError, SubmissionError
+from grader.exercise.exercise import Exercise
+from grader.removal import remove
+from grader.reports.csv import cell, table
 from grader.submission.folder import MAX_SOURCE_BYTES, files_below, read_bounded
+from grader.testing.solutions import FILE_NAME, read_solutions
 
 SOURCE: Final = "source"
 MOST_FILES: Final = 60
 MOST_BYTES: Final = 1_000_000  # of all of them together
 _STRANGE = re.compile(r"[^A-Za-z0-9._+-]|^[.-]")
+FOLDER: Final = "export"
+JPLAG, DOLOS = "jplag", "dolos.zip"
+_GIVEN: Final = "starter.py"
 
 
 class File(NamedTuple):
@@ -41,8 +63,7 @@ def keep(copy: Path, into: Path) -> int:
     Raises:
         OSError: a folder cannot be written, or what was handed in cannot be read.
     """
-    if into.exists():
-        shutil.rmtree(into)
+    remove(into)
     into.mkdir(parents=True)
     taken: set[str] = set()
     size = left_out = 0
@@ -98,3 +119,88 @@ def _free_name(path: Path, taken: set[str]) -> str:
         name = f"{stem}_{number}.py"
     taken.add(name.lower())
     return name
+
+
+def given_files(exercise: Exercise) -> list[File]:
+    """The files that are known, by where they are from.
+
+    Raises:
+        ExerciseError: its mutants.yaml cannot be used.
+        OSError: one of them cannot be read.
+    """
+    found: list[File] = []
+    if exercise.starter is not None:
+        found += _below(exercise.starter, "starter")
+    for path in _right_solutions(exercise):
+        found += _below(path, "reference")
+    return sorted(set(found))
+
+
+def _right_solutions(exercise: Exercise) -> Iterator[Path]:
+    if (exercise.folder / FILE_NAME).is_file():
+        yield from (each.path for each in read_solutions(exercise) if each.is_right)
+
+
+def _below(path: Path, whose: str) -> list[File]:
+    if not path.exists():
+        raise ExerciseError("there is no {path}, which is to be known to everybody", path=str(path))
+    if path.is_file():
+        return [File(f"{whose}/{path.name}", path.read_bytes())]
+    below = sorted(path.rglob("*.py"))
+    return [File(f"{whose}/{p.relative_to(path).as_posix()}", p.read_bytes()) for p in below]
+
+
+def write_exports(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
+    """Make both exports anew in the folder of a class. No names are in them, but ids.
+
+    Raises:
+        UsageError: they cannot be written, or sources not read.
+        ExerciseError: the exercise's solutions cannot be used.
+    """
+    with whole_files.writing(out / FOLDER):
+        given = given_files(exercise)
+        sources = [(entry, kept(entry.folder / SOURCE)) for entry in entries]
+        present = [(entry, files) for entry, files in sources if files]
+        _write_jplag(present, given, out / FOLDER / JPLAG)
+        whole_files.put(out / FOLDER / DOLOS, dolos(present, given))
+
+
+def dolos(present: Sequence[tuple[Entry, list[File]]], given: Sequence[File]) -> bytes:
+    """The zip for Dolos."""
+    members = {f"students/{entry.id}.py": _joined(files) for entry, files in present}
+    rows = [_row(entry) for entry, _ in present]
+    if given:
+        members[_GIVEN] = _joined(given)
+        rows.append([_GIVEN, "given", "", "true"])
+    has_times = all(row[2] for row in rows[: len(present)])
+    # an empty time is an error to Dolos, a missing column is not
+    shown = [
+        row if has_times else [*row[:2], row[3]]
+        for row in (["filename", "full_name", "created_at", "ignored"], *rows)
+    ]
+    members["info.csv"] = table(shown).encode("utf-8")
+    return whole_files.zipped(sorted(members.items()))
+
+
+def _row(entry: Entry) -> list[str]:
+    at = entry.hand_in.at
+    return [f"students/{entry.id}.py", cell(entry.id), "" if at is None else at.isoformat(" "), ""]
+
+
+def _joined(files: Sequence[File]) -> bytes:
+    """Files as one, each below its name."""
+    if len(files) == 1:
+        return files[0].data
+    parts = (f"# {file.name}\n".encode() + file.data.rstrip(b"\n") + b"\n" for file in files)
+    return b"\n".join(parts)
+
+
+def _write_jplag(
+    present: Sequence[tuple[Entry, list[File]]], given: Sequence[File], folder: Path
+) -> None:
+    remove(folder)
+    below = [(f"students/{entry.id}", file) for entry, files in present for file in files]
+    for place, file in (*below, *(("base", file) for file in given)):
+        path = folder / place / file.name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(file.data)

@@ -8,16 +8,15 @@ from typing import Any
 from grader.exercise.check import Checks, Tolerances
 from grader.exercise.sentences import error_first, how_it_ended
 from grader.exercise.verdict import Finding
-from grader.exercises.turtlesim_challenge.calls import judge_calls
 from grader.exercises.turtlesim_challenge.commands import too_fast
 from grader.exercises.turtlesim_challenge.edge import judge_edge
 from grader.exercises.turtlesim_challenge.path import Path
 from grader.exercises.turtlesim_challenge.penning import judge_pens
 from grader.exercises.turtlesim_challenge.pens import check_demanded
 from grader.exercises.turtlesim_challenge.picture import judge_picture
-from grader.exercises.turtlesim_challenge.rate import judge_rate
+from grader.exercises.turtlesim_challenge.rate import judge_calls, judge_rate
 from grader.exercises.turtlesim_challenge.spiral import judge_spiral
-from grader.language.phrase import Phrase, joined, say, say_many
+from grader.message import Message, joined, msg, msg_many
 from grader.recording.recording import Recording, Recordings
 from grader.scenes.turtlesim.trace import TurtleTrace
 from turtlesim_py.world.events import CmdVel
@@ -47,8 +46,8 @@ def moves(recordings: Recordings, _: Tolerances) -> Finding:
     foreign = _foreign(path)
     if not (path.moving & (path.linear > 0)).any():
         return _unmoved(path, commands, joined([*foreign, how_it_ended(recording)]))
-    start = path.at(int(path.ticks[path.first]), say("here it starts to move"))
-    text = say("{commands} velocity commands moved turtle1.", commands=len(commands))
+    start = path.at(int(path.ticks[path.first]), msg("here it starts to move"))
+    text = msg("{commands} velocity commands moved turtle1.", commands=len(commands))
     return Finding(1, joined([text, *foreign]), evidence=(start,))
 
 
@@ -56,27 +55,27 @@ def _silent(recording: Recording) -> Finding:
     """No command came."""
     run = recording.run
     if run.outcome in ("crashed", "exited", "killed"):  # its end tells when
-        text = say("Your node published no velocity command on /turtle1/cmd_vel.")
+        text = msg("Your node published no velocity command on /turtle1/cmd_vel.")
     else:
-        text = say(
+        text = msg(
             "Your node published no velocity command on /turtle1/cmd_vel in {seconds:.1f} s.",
             seconds=run.simulated_s,
         )
     help_ = _where_it_published(recording)
     if run.outcome == "crashed":
-        help_ = say("Mend that error first; all that the node printed is in output.txt.")
+        help_ = msg("Mend that error first; all that the node printed is in output.txt.")
     return Finding(0, joined([text, how_it_ended(recording)]), help_)
 
 
-def _unmoved(path: Path, commands: Sequence[CmdVel], more: str) -> Finding:
+def _unmoved(path: Path, commands: Sequence[CmdVel], more: Message) -> Finding:
     """Commands came, and none has moved it."""
     seconds = path.recording.run.simulated_s
-    first = (path.at(commands[0].tick, say("the first command")),)
+    first = (path.at(commands[0].tick, msg("the first command")),)
     fast = too_fast(path, int(path.ticks[-1])) if len(path) else None
     if fast is not None:
         return Finding(0, joined([fast.text, more]), fast.help)
     if not any(value for call in commands for value in (*call.linear, *call.angular)):
-        text = say_many(
+        text = msg_many(
             "Your node published {n} velocity command in {seconds:.1f} s, and never moved "
             "turtle1: all were zeros.",
             "Your node published {n} velocity commands in {seconds:.1f} s, and never moved "
@@ -84,28 +83,28 @@ def _unmoved(path: Path, commands: Sequence[CmdVel], more: str) -> Finding:
             len(commands),
             seconds=seconds,
         )
-        help_ = say(
+        help_ = msg(
             "Is linear.x of the Twist ever set? Look at the condition that is to be true first: "
             "is it ever?"
         )
         return Finding(0, joined([text, more]), help_, first)
-    text = say(
+    text = msg(
         "Your node published velocity commands ({commands} in {seconds:.1f} s), but they never "
         "moved turtle1.",
         commands=len(commands),
         seconds=seconds,
     )
     return Finding(
-        0, joined([text, more]), say("Is linear.x of the Twist different from zero?"), first
+        0, joined([text, more]), msg("Is linear.x of the Twist different from zero?"), first
     )
 
 
-def _foreign(path: Path) -> list[str]:
+def _foreign(path: Path) -> list[str | Message]:
     """A sentence about motion that was no driving, and a blank before it; or nothing."""
     if not path.foreign:
         return []
     names = ", ".join(sorted({event.op for event in path.foreign}))
-    text = say(
+    text = msg(
         "It was also moved by {names} ({calls} calls, the first at {first_s:.2f} s); "
         "only the longest stretch without them is judged.",
         names=names,
@@ -115,24 +114,24 @@ def _foreign(path: Path) -> list[str]:
     return [" ", text]
 
 
-def _where_it_published(recording: Recording) -> Phrase:
+def _where_it_published(recording: Recording) -> Message:
     twists = [t.topic for t in recording.topics if t.type.endswith("/Twist")]
     others = [topic for topic in twists if topic != "/turtle1/cmd_vel"]
     types = [t.type for t in recording.topics if t.topic == "/turtle1/cmd_vel"]
     if others:
-        return say(
+        return msg(
             "It publishes velocities on {topics}: compare the topic's name.",
             topics=", ".join(others),
         )
     if types and types[0] != "geometry_msgs/msg/Twist":
-        return say(
+        return msg(
             "It publishes {type} on /turtle1/cmd_vel; the turtle listens to "
             "geometry_msgs/msg/Twist.",
             type=types[0],
         )
     if types:
-        return say("It has a publisher on /turtle1/cmd_vel: is publish() ever called?")
-    return say("Does it create a publisher on /turtle1/cmd_vel, and does it spin?")
+        return msg("It has a publisher on /turtle1/cmd_vel: is publish() ever called?")
+    return msg("Does it create a publisher on /turtle1/cmd_vel, and does it spin?")
 
 
 @checks(after=("moves",))

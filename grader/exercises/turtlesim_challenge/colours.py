@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from grader.language.phrase import Phrase, say
+from grader.message import Message, in_context, msg
 from grader.scenes.turtlesim import words
 from turtlesim_py.world.canvas import Pen
 from turtlesim_py.world.trajectory import Floats
@@ -67,9 +67,9 @@ def groups(colors: Mapping[int, Color | None], distance: float) -> list[list[int
     return found
 
 
-def name(color: Color | None) -> str:
+def name(color: Color | None) -> Message:
     """What to call a colour, as its page does: 'red (255, 0, 0)'; 'off' for none."""
     if color is None:
-        return Phrase("off", say("off (of a pen)").key)
+        return in_context("off", "of a pen")
     said = words.color(*map(int, color))
-    return say("the pen's first colour, {color}", color=said) if tuple(color) == FIRST else said
+    return msg("the pen's first colour, {color}", color=said) if tuple(color) == FIRST else said

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from grader.exercises.turtlesim_challenge.cause import Cause
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.language.phrase import joined, say
+from grader.message import Message, joined, msg
+from grader.scenes.turtlesim.trace import stands_still
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import COMMAND_TIMEOUT_NS, TICK_S
 
@@ -28,19 +29,13 @@ TOO_WIDE_M = 2.5
 NANOSECONDS = 1e5
 
 
-def stands_still(command: CmdVel) -> bool:
-    """Whether a command says to stand still."""
-    return not command.linear[0] and not command.angular[2]
-
-
 def drove_on(path: Path, until: int, edge_m: float) -> tuple[CmdVel, CmdVel] | None:
     """The first command to stop near an edge that was followed by one to drive, and that one."""
     commands = [call for call in path.calls(CmdVel) if call.tick <= until]
     for stop, further in pairwise(commands):
         if stop.linear[0] or not further.linear[0]:
             continue
-        row = int(np.clip(np.searchsorted(path.ticks, stop.tick), 0, len(path) - 1))
-        if path.wall_distance[row] <= edge_m:
+        if path.wall_distance[path.row_at(stop.tick)] <= edge_m:
             return stop, further
     return None
 
@@ -87,13 +82,13 @@ def why_so_few_turns(path: Path) -> Cause | None:
     if wider_m < TOO_WIDE_M:
         return None
     return Cause(
-        say(
+        msg(
             "linear.x grew by {step:.3g} with each command, from {first:.3g} to {last:.3g} m/s.",
             step=step,
             first=speeds[0],
             last=speeds[-1],
         ),
-        say(
+        msg(
             "Let linear.x grow more slowly, or begin smaller: what a command adds decides how "
             "far one turn lies from the next."
         ),
@@ -107,12 +102,12 @@ def too_fast(path: Path, until: int) -> Cause | None:
             break
         speed = abs(call.linear[0])
         if math.isfinite(speed) and speed * TICK_S > path.size_m:
-            help_ = say("linear.x is in metres a second: 1.0 is a good speed.")
+            help_ = msg("linear.x is in metres a second: 1.0 is a good speed.")
             if speed > NANOSECONDS:
-                more = say("Nanoseconds are not seconds: divide by 1e9.")
+                more = msg("Nanoseconds are not seconds: divide by 1e9.")
                 help_ = joined([help_, more], " ")
             return Cause(
-                say(
+                msg(
                     "linear.x was {speed} m/s in the command at {time_s:.2f} s: that crosses the "
                     "window before the next pose comes.",
                     speed=f"{call.linear[0]:,.0f}".replace(",", " "),
@@ -128,10 +123,10 @@ def _straight(commands: Sequence[CmdVel]) -> Cause | None:
     if any(call.angular[2] for call in commands):
         return None
     others = [name for at, name in ((0, "x"), (1, "y")) if any(c.angular[at] for c in commands)]
-    text = say("angular.z was 0 in every command.")
+    text = msg("angular.z was 0 in every command.")
     if others:
-        text = say("angular.z was 0 in every command, angular.{axis} was set.", axis=others[0])
-    return Cause(text, say("The turtle turns by angular.z alone: set that, to 1.0 for example."))
+        text = msg("angular.z was 0 in every command, angular.{axis} was set.", axis=others[0])
+    return Cause(text, msg("The turtle turns by angular.z alone: set that, to 1.0 for example."))
 
 
 def _shrinks(commands: Sequence[CmdVel]) -> Cause | None:
@@ -142,12 +137,12 @@ def _shrinks(commands: Sequence[CmdVel]) -> Cause | None:
     if not (np.diff(speeds) <= 0).all() or speeds[-1] > 0.999 * speeds[0]:
         return None
     return Cause(
-        say(
+        msg(
             "linear.x began at {first:.3g} and became smaller, down to {last:.3g}.",
             first=speeds[0],
             last=speeds[-1],
         ),
-        say("Begin small, and let linear.x grow a little with each command."),
+        msg("Begin small, and let linear.x grow a little with each command."),
     )
 
 
@@ -156,12 +151,12 @@ def _paused(commands: Sequence[CmdVel]) -> Cause | None:
     if gap <= WATCHDOG_TICKS:
         return None
     return Cause(
-        say(
+        msg(
             "A command came every {gap_s:.2f} s only, and the turtle paused each time: a "
             "command moves it for 1 s.",
             gap_s=gap * TICK_S,
         ),
-        say("Publish faster than once a second."),
+        msg("Publish faster than once a second."),
     )
 
 
@@ -170,12 +165,12 @@ def _degrees(commands: Sequence[CmdVel]) -> Cause | None:
     if not math.isfinite(turn) or abs(turn) <= DEGREES or abs(turn) > 360:
         return None
     return Cause(
-        say(
+        msg(
             "angular.z is {turn:g} rad/s: {turns:.1f} turns a second.",
             turn=turn,
             turns=abs(turn) / (2 * math.pi),
         ),
-        say("angular.z is in radians a second, not in degrees."),
+        msg("angular.z is in radians a second, not in degrees."),
     )
 
 
@@ -188,11 +183,11 @@ def _takes_turns(commands: Sequence[CmdVel]) -> Cause | None:
     if between < TAKE_TURNS * len(commands):
         return None
     return Cause(
-        say(
+        msg(
             "Commands to drive and commands with linear.x 0 took turns: each overrules the one "
             "before."
         ),
-        say("Publish from one place in your node, linear.x and angular.z in one Twist."),
+        msg("Publish from one place in your node, linear.x and angular.z in one Twist."),
     )
 
 
@@ -205,8 +200,8 @@ def _same(commands: Sequence[CmdVel]) -> Cause | None:
         return None
     if np.ptp(speeds) < 1e-9:
         return Cause(
-            say("linear.x was {speed:.3g} in every command.", speed=speeds[0]),
-            say(
+            msg("linear.x was {speed:.3g} in every command.", speed=speeds[0]),
+            msg(
                 "For a spiral linear.x has to grow a little with each command: does your node "
                 "keep the greater value?"
             ),
@@ -217,12 +212,20 @@ def _same(commands: Sequence[CmdVel]) -> Cause | None:
     if np.ptp(radii) > 0.01 * float(radii.mean()):
         return None
     return Cause(
-        say(
+        msg(
             "angular.z grew with linear.x, from {first:.3g} to {last:.3g}: the radius stays "
             "{radius_m:.2f} m.",
             first=turns[0],
             last=turns[-1],
             radius_m=radii.mean(),
         ),
-        say("Let linear.x grow alone: with a constant angular.z the radius grows."),
+        msg("Let linear.x grow alone: with a constant angular.z the radius grows."),
     )
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What went wrong: a sentence with numbers, and what to do."""
+
+    text: Message
+    help: Message

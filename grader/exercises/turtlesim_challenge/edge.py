@@ -14,7 +14,7 @@ from grader.exercises.turtlesim_challenge.stops import (
     judge_stop,
     passed_by_m,
 )
-from grader.language.phrase import Phrase, chained, joined, say, say_many
+from grader.message import Message, chained, joined, msg, msg_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.turtle import TICK_S
 
@@ -22,7 +22,7 @@ from turtlesim_py.world.turtle import TICK_S
 SAME_MOMENT_TICKS = 32
 
 
-_BY_THE_POSE = say(
+_BY_THE_POSE = msg(
     "The stop must depend on the pose, not on the time or on how often something was done."
 )
 
@@ -44,7 +44,7 @@ def judge_edge(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if worst.finding.share >= 1 and _all_at_one_moment(stops):
         return Finding(
             0,
-            say(
+            msg(
                 "It stopped by a command, {gap_m:.2f} m from the wall, but at the same moment, "
                 "after {time_s:.2f} s, from wherever it started: that it was near a wall each "
                 "time is chance.",
@@ -74,22 +74,22 @@ def _judge_varied(path: Path, tolerances: Tolerances) -> Stop:
     passed_by = passed_by_m(stop)
     if passed_by <= tolerances["passed_by_m"]:
         return stop
-    seen = say(
+    seen = msg(
         "the turtle stopped {gap_m:.2f} m from the {wall} wall, but had been nearer to that "
         "wall by {passed_by_m:.2f} m before, and had driven on.",
         gap_m=stop.gap_m,
         wall=WALL_NAMES[stop.wall],
         passed_by_m=passed_by,
     )
-    finding = Finding(0, seen, "", stop.finding.evidence)
+    finding = Finding(0, seen, evidence=stop.finding.evidence)
     return replace(stop, kind="far", finding=finding)
 
 
-def _all_right(stops: list[Stop]) -> str:
+def _all_right(stops: list[Stop]) -> Message:
     late = [number for number, stop in enumerate(stops) if stop.kind == "late"]
     told = next(stop for stop in stops if stop.kind != "late")
     if not late and len(stops) > 1:
-        return say_many(
+        return msg_many(
             "It stopped by a command, {gap_m:.2f} m from the wall, and in the run that starts "
             "elsewhere too.",
             "It stopped by a command, {gap_m:.2f} m from the wall, and in the {n} runs that start "
@@ -99,7 +99,7 @@ def _all_right(stops: list[Stop]) -> str:
         )
     if not late:
         return told.finding.rationale
-    more = say(
+    more = msg(
         "In {which} the time, {seconds:.0f} s, was up before it came to a stop.",
         which=_which_run(late[0]),
         seconds=stops[late[0]].path.recording.run.simulated_s,
@@ -107,8 +107,8 @@ def _all_right(stops: list[Stop]) -> str:
     return joined([told.finding.rationale, more], " ")
 
 
-def _which_run(number: int) -> Phrase:
-    return say("run {number}", number=number) if number else say("the run from the centre")
+def _which_run(number: int) -> Message:
+    return msg("run {number}", number=number) if number else msg("the run from the centre")
 
 
 def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
@@ -122,7 +122,7 @@ def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
         and takes_long
         and is_told_to_stop_at(worst.path, here.path.stop_tick, SAME_MOMENT_TICKS)
     ):
-        text = say(
+        text = msg(
             "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but when it "
             "started elsewhere (run {run}) it was told to stop at the same moment, at "
             "{time_s:.1f} s, wherever it was: {seen}",
@@ -137,7 +137,7 @@ def _not_elsewhere(stops: list[Stop], worst: Stop) -> Finding:
         return only
     told = worst.finding.rationale
     if worst.finding.help == here.finding.help and worst.kind == "other":  # one cause, told once
-        told = say("it stood {gap_m:.2f} m from the nearest wall.", gap_m=worst.gap_m)
+        told = msg("it stood {gap_m:.2f} m from the nearest wall.", gap_m=worst.gap_m)
     return Finding(
         worst.finding.share,
         _but_elsewhere(here, worst.path.number, told),
@@ -152,7 +152,7 @@ def _not_where_it_was_put(here: Stop, worst: Stop) -> Finding:
     lead = [here.seen] if here.kind == "halfway" else []
     if here.kind == "stopped":
         lead = [
-            say(
+            msg(
                 "From the centre it stopped by a command, {gap_m:.2f} m from the wall.",
                 gap_m=here.gap_m,
             )
@@ -160,21 +160,21 @@ def _not_where_it_was_put(here: Stop, worst: Stop) -> Finding:
     return replace(worst.finding, rationale=joined([*lead, told], " "))
 
 
-def started_elsewhere(run: int, seen: str) -> Phrase:
+def started_elsewhere(run: int, seen: Message) -> Message:
     """What was seen in a run that starts elsewhere."""
-    return say("The turtle started elsewhere (run {run}). {seen}", run=run, seen=seen)
+    return msg("The turtle started elsewhere (run {run}). {seen}", run=run, seen=seen)
 
 
-def _but_elsewhere(here: Stop, run: int, seen: str) -> Phrase:
+def _but_elsewhere(here: Stop, run: int, seen: Message) -> Message:
     if here.kind == "stopped":
-        return say(
+        return msg(
             "From the centre it stopped by a command, {gap_m:.2f} m from the wall, but not when "
             "it started elsewhere (run {run}): {seen}",
             gap_m=here.gap_m,
             run=run,
             seen=seen,
         )
-    text = say("When it started elsewhere (run {run}): {seen}", run=run, seen=seen)
+    text = msg("When it started elsewhere (run {run}): {seen}", run=run, seen=seen)
     return joined([here.seen, text], " ") if here.kind == "halfway" else text
 
 
@@ -189,7 +189,7 @@ def _one_wall_only(stops: list[Stop]) -> Finding | None:
     wall = WALL_NAMES[worst.wall]
     return Finding(
         0,
-        say_many(
+        msg_many(
             "It stopped at the {walls} wall, but not at the {wall} one. In {which}: {seen}",
             "It stopped at the {walls} walls, but not at the {wall} one. In {which}: {seen}",
             len(at),
@@ -198,7 +198,7 @@ def _one_wall_only(stops: list[Stop]) -> Finding | None:
             which=_which_run(worst.path.number),
             seen=worst.finding.rationale,
         ),
-        say(
+        msg(
             "Is the {wall} wall watched, or is its limit too near (x and y never go below 0 or "
             "above {size})? There are four: x and y each have a smallest and a largest value.",
             wall=wall,

@@ -10,10 +10,10 @@ import numpy as np
 
 from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge import colours
-from grader.exercises.turtlesim_challenge.cause import Cause
+from grader.exercises.turtlesim_challenge.commands import Cause
 from grader.exercises.turtlesim_challenge.path import CENTRE_M, QUADRANTS, ROMAN, Path
 from grader.exercises.turtlesim_challenge.pens import Coloring, came_after
-from grader.language.phrase import Phrase, chained, joined, listed, say
+from grader.message import Message, chained, joined, listed, msg
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import TICK_S
@@ -31,14 +31,14 @@ EARLY_TICKS, EARLY = 6, 0.15
 NOW_AND_THEN_S = 0.35
 
 WHERE = {
-    1: say("x > middle and y > middle"),
-    2: say("x < middle and y > middle"),
-    3: say("x < middle and y < middle"),
-    4: say("x > middle and y < middle"),
+    1: msg("x > middle and y > middle"),
+    2: msg("x < middle and y > middle"),
+    3: msg("x < middle and y < middle"),
+    4: msg("x > middle and y < middle"),
 }
 #: As it stands in a program.
 MIDDLE = f"{int(100 * CENTRE_M) / 100:g}"
-SPIRAL_FIRST = say(
+SPIRAL_FIRST = msg(
     "Look at the spiral first: colours are judged in the quadrants that it goes through."
 )
 
@@ -72,11 +72,11 @@ def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Caus
     same = [group for group in groups if len(group) > 1]
     told = joined([_of_one_colour(group, own) for group in same], " ")
     if not all(len({own[quadrant] for quadrant in group}) == 1 for group in same):
-        help_ = say(
+        help_ = msg(
             "Give each quadrant a colour of its own, one that an eye tells from the others."
         )
     elif max(map(len, same)) == QUADRANTS:
-        help_ = say(
+        help_ = msg(
             "Give each quadrant a colour of its own. If your node has four colours, look at its "
             "conditions: is each of them ever true? As for limits, the middle of the window is at "
             "{middle}.",
@@ -84,12 +84,12 @@ def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Caus
         )
     else:
         each = [
-            say("{quadrant} is {condition}", quadrant=ROMAN[q], condition=WHERE[q])
+            msg("{quadrant} is {condition}", quadrant=ROMAN[q], condition=WHERE[q])
             for group in same
             for q in group
         ]
-        conditions = joined(each, say("; "))
-        help_ = say(
+        conditions = joined(each, msg("; "))
+        help_ = msg(
             "Give each quadrant a colour of its own. If your node has four colours, look at its "
             "conditions: {where}; the middle of the window is at {middle}.",
             where=conditions,
@@ -98,18 +98,18 @@ def alike(groups: list[list[int]], own: dict[int, colours.Color | None]) -> Caus
     return Cause(told, help_)
 
 
-def _of_one_colour(group: list[int], own: dict[int, colours.Color | None]) -> Phrase:
+def _of_one_colour(group: list[int], own: dict[int, colours.Color | None]) -> Message:
     names = list(dict.fromkeys(colours.name(own[quadrant]) for quadrant in group))
     quadrants = {"quadrants": listed([ROMAN[q] for q in group])}
     if len(names) > 1:
-        return say(
+        return msg(
             "Quadrants {quadrants} are {colours}: no eye tells them apart.",
             colours=listed(names),
             **quadrants,
         )
     if len(group) == 2:
-        return say("Quadrants {quadrants} are both {color}.", color=names[0], **quadrants)
-    return say("Quadrants {quadrants} all are {color}.", color=names[0], **quadrants)
+        return msg("Quadrants {quadrants} are both {color}.", color=names[0], **quadrants)
+    return msg("Quadrants {quadrants} all are {color}.", color=names[0], **quadrants)
 
 
 def _once(path: Path, found: Coloring) -> Cause | None:
@@ -118,11 +118,11 @@ def _once(path: Path, found: Coloring) -> Cause | None:
     if calls != 1 or entered < LEAST_CALLS or len(found.own) < 2:
         return None
     return Cause(
-        say(
+        msg(
             "set_pen was called once in the whole run; {entered} quadrants were entered.",
             entered=entered,
         ),
-        say(
+        msg(
             "Does your node ever see another quadrant? Its conditions have to compare x and y "
             "with {middle}, the middle. And if it does: what keeps it from calling once more?",
             middle=MIDDLE,
@@ -149,13 +149,13 @@ def _before_the_line(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
     if len(seen) < LEAST_CALLS or len(seen) < EARLY * len(early):
         return None
     return Cause(
-        say(
+        msg(
             "The colour changes elsewhere than at x = {middle} or y = {middle}: about "
             "{early_s:.2f} s before the turtle is there.",
             middle=MIDDLE,
             early_s=float(np.median(seen)) * TICK_S,
         ),
-        say(
+        msg(
             "Is it theta, or the time, by which your node tells the quadrants? Compare x and y of "
             "the pose with {middle}.",
             middle=MIDDLE,
@@ -165,12 +165,12 @@ def _before_the_line(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
 
 def _lifted(found: Coloring) -> Cause:
     lifted = [ROMAN[q] for q, color in sorted(found.own.items()) if color is None]
-    text = say(
+    text = msg(
         "The pen is off in quadrant {quadrants}: it draws nothing there.", quadrants=listed(lifted)
     )
     if len(lifted) == len(found.own):
-        text = say("The pen is off everywhere: it draws nothing there.")
-    return Cause(text, say("What do your requests say of `off`? 0 is a pen that draws."))
+        text = msg("The pen is off everywhere: it draws nothing there.")
+    return Cause(text, msg("What do your requests say of `off`? 0 is a pen that draws."))
 
 
 def _other_line(path: Path) -> Cause | None:
@@ -190,12 +190,12 @@ def _other_line(path: Path) -> Cause | None:
     if not lines or explained.mean() < MOST:
         return None
     return Cause(
-        say(
+        msg(
             "The colour changes at {lines}; the middle of the window is at {middle}.",
             lines=chained(lines),
             middle=MIDDLE,
         ),
-        say("Which limits does your node compare x and y of the pose with?"),
+        msg("Which limits does your node compare x and y of the pose with?"),
     )
 
 
@@ -226,11 +226,11 @@ def _quadrant_before(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
     if total < LEAST_CALLS or fits_before < 0.95 * total or fits_itself >= fits_before:
         return None
     return Cause(
-        say(
+        msg(
             "The pen has the colour of the quadrant that the turtle came from, not of the one "
             "that it came into."
         ),
-        say(
+        msg(
             "Of the two quadrants that your node compares, the one before and the new one: for "
             "which does it ask the colour?"
         ),
@@ -250,20 +250,20 @@ def _late(found: Coloring, tolerances: Tolerances) -> Cause | None:
     low, high = np.percentile(came, [10, 90])
     if high - low <= NOW_AND_THEN_S:
         return Cause(
-            say(
+            msg(
                 "The colour comes {late_s:.2f} s after the turtle; {allowed_s:.2f} s are allowed.",
                 late_s=typical,
                 allowed_s=allowed,
             ),
-            say("Call set_pen in the pose callback, at once: what does your node wait for?"),
+            msg("Call set_pen in the pose callback, at once: what does your node wait for?"),
         )
     return Cause(
-        say(
+        msg(
             "The colour comes now and then only, {low_s:.2f} to {high_s:.2f} s after the turtle; "
             "{allowed_s:.2f} s are allowed.",
             low_s=low,
             high_s=max(float(high), typical),  # what came too late is told in any case
             allowed_s=allowed,
         ),
-        say("Look at the quadrant in the pose callback, not in a slow timer."),
+        msg("Look at the quadrant in the pose callback, not in a slow timer."),
     )

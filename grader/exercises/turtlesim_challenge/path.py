@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from grader.exercise.driven_path import DrivenPath
-from grader.language.phrase import say
+from grader.message import msg
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.events import (
@@ -28,15 +28,15 @@ CENTRE_M = SIZE_M / 2.0
 QUADRANTS = 4
 ROMAN = {1: "I", 2: "II", 3: "III", 4: "IV"}
 NAMES = {
-    1: say("I (top right)"),
-    2: say("II (top left)"),
-    3: say("III (bottom left)"),
-    4: say("IV (bottom right)"),
+    1: msg("I (top right)"),
+    2: msg("II (top left)"),
+    3: msg("III (bottom left)"),
+    4: msg("IV (bottom right)"),
 }
 
 
 @dataclass(frozen=True)
-class Entry:
+class Visit:
     """The turtle came into a quadrant.
 
     Attributes:
@@ -110,7 +110,7 @@ class Path(DrivenPath):
         first, last = self.ticks[0], self.ticks[-1]
         return [call for call in self.trace.of_kind(kind) if first <= call.tick <= last]
 
-    def entries(self, band_m: float, centre_m: float = CENTRE_M) -> list[Entry]:
+    def entries(self, band_m: float, centre_m: float = CENTRE_M) -> list[Visit]:
         """Every entry into a quadrant on the turtle's way, the first one included.
 
         Within `band_m` of a dividing line the turtle still counts for where it was before.
@@ -124,7 +124,7 @@ class Path(DrivenPath):
         changes = np.flatnonzero(np.diff(quadrant, prepend=0))
         stays = np.split(ticks[clear], changes[1:])
         return [
-            Entry(int(quadrant[start]), tuple(stay.tolist()))
+            Visit(int(quadrant[start]), tuple(stay.tolist()))
             for start, stay in zip(changes, stays, strict=True)
         ]
 

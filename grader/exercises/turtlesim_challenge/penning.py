@@ -8,9 +8,9 @@ from grader.exercise.check import Tolerances
 from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import colours, mistakes, pens
 from grader.exercises.turtlesim_challenge.edge import started_elsewhere
-from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Entry, Path
+from grader.exercises.turtlesim_challenge.path import NAMES, QUADRANTS, ROMAN, Path, Visit
 from grader.exercises.turtlesim_challenge.stops import judge_start
-from grader.language.phrase import Phrase, joined, say, say_many
+from grader.message import Message, joined, msg, msg_many
 from grader.recording.recording import Recordings
 from turtlesim_py.world.events import SetPen
 from turtlesim_py.world.turtle import TICK_S
@@ -27,8 +27,8 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
     if not path.calls(SetPen):
         return Finding(
             0,
-            say("The pen was never changed."),
-            say("Call the service /turtle1/set_pen when the turtle enters another quadrant."),
+            msg("The pen was never changed."),
+            msg("Call the service /turtle1/set_pen when the turtle enters another quadrant."),
         )
     nominal = pens.coloring(path, tolerances, QUADRANTS)
     paths = [path, *(Path(run, number) for number, run in enumerate(recordings.varied, start=1))]
@@ -47,29 +47,29 @@ def judge_pens(recordings: Recordings, tolerances: Tolerances) -> Finding:
     found, path = colorings[shown], paths[shown]
     sentences, help_ = _told(path, found, tolerances)
     if shown:
-        sentences[0] = say(
+        sentences[0] = msg(
             "When the turtle started elsewhere (run {run}): {seen}", run=worst, seen=sentences[0]
         )
     sentences += _points(colorings[worst], worst)
     return Finding(share, joined(sentences, " "), help_, _evidence(path, found, tolerances))
 
 
-def _all_right(right: int, entered: int, varied: int) -> Phrase:
-    elsewhere = say_many(
+def _all_right(right: int, entered: int, varied: int) -> Message:
+    elsewhere = msg_many(
         ", and in the run that starts elsewhere too",
         ", and in the {n} runs that start elsewhere too",
         varied,
     )
-    return say(
+    return msg(
         "All {entries} gave the pen its quadrant's colour{short}{elsewhere}.",
         entries=_entries(right),
-        short="" if right == entered else say(" (short stays not counted)"),
+        short="" if right == entered else msg(" (short stays not counted)"),
         elsewhere=elsewhere if varied else "",
     )
 
 
-def _entries(number: int) -> Phrase:
-    return say_many("{n} entry", "{n} entries", number)
+def _entries(number: int) -> Message:
+    return msg_many("{n} entry", "{n} entries", number)
 
 
 def _elsewhere(path: Path, tolerances: Tolerances, nominal: pens.Coloring) -> pens.Coloring:
@@ -90,10 +90,12 @@ def first_moved_away(recordings: Recordings) -> Finding | None:
     return None
 
 
-def _told(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple[list[str], str]:
+def _told(
+    path: Path, found: pens.Coloring, tolerances: Tolerances
+) -> tuple[list[Message], Message]:
     """What was seen, the cause first, and what to do."""
     if not found.judged:
-        seen = say("The turtle left no quadrant in which there was time to change the colour.")
+        seen = msg("The turtle left no quadrant in which there was time to change the colour.")
         return [seen], mistakes.SPIRAL_FIRST
     causes = list(mistakes.causes(path, found, tolerances))
     sentences = [cause.text for cause in causes]
@@ -101,7 +103,7 @@ def _told(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple[lis
     if found.bad:
         right, of = len(found.judged) - len(found.bad), len(found.judged)
         sentences.append(
-            say(
+            msg(
                 "{right} of {entries} into a quadrant gave the pen that quadrant's colour in time.",
                 right=right,
                 entries=_entries(of),
@@ -110,24 +112,24 @@ def _told(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple[lis
     sentences += _told_demanded(found, tolerances)
     if found.wanted > len(found.own):
         sentences.append(
-            say_many(
+            msg_many(
                 "Of the four quadrants {n} was entered for long enough.",
                 "Of the four quadrants {n} were entered for long enough.",
                 len(found.own),
             )
         )
     if not found.tells:
-        sentences.append(say("One quadrant alone tells nothing."))
+        sentences.append(msg("One quadrant alone tells nothing."))
     return sentences, help_
 
 
-_LOOK_THERE = say(
+_LOOK_THERE = msg(
     "Look at the first moment that is named: in which quadrant is the turtle, and which colour "
     "does your node ask for?"
 )
 
 
-def _points(found: pens.Coloring, run: int) -> list[str]:
+def _points(found: pens.Coloring, run: int) -> list[Message]:
     """How the points come about, where there are some."""
     if not 0 < found.share < 1:
         return []
@@ -136,19 +138,19 @@ def _points(found: pens.Coloring, run: int) -> list[str]:
     values = {"right": right, "of": of, "different": found.different, "wanted": wanted}
     if run:
         return [
-            say(
+            msg(
                 "Points in run {run}: {right}/{of} (entries) times {different}/{wanted} (colours).",
                 run=run,
                 **values,
             )
         ]
-    return [say("Points: {right}/{of} (entries) times {different}/{wanted} (colours).", **values)]
+    return [msg("Points: {right}/{of} (entries) times {different}/{wanted} (colours).", **values)]
 
 
-def _told_demanded(found: pens.Coloring, tolerances: Tolerances) -> list[str]:
+def _told_demanded(found: pens.Coloring, tolerances: Tolerances) -> list[Message]:
     asked = pens.demanded(tolerances)
     return [
-        say(
+        msg(
             "Quadrant {quadrant} is to be {color}.",
             quadrant=ROMAN[quadrant],
             color=colours.name(asked[quadrant]),
@@ -166,28 +168,28 @@ def _evidence(path: Path, found: pens.Coloring, tolerances: Tolerances) -> tuple
     return tuple(path.at(e.tick, _note(e, found, tolerances)) for e in shown[:SHOWN])
 
 
-def _note(entry: Entry, found: pens.Coloring, tolerances: Tolerances) -> Phrase:
+def _note(entry: Visit, found: pens.Coloring, tolerances: Tolerances) -> Message:
     entered = {"quadrant": NAMES[entry.quadrant]}
     own = found.own[entry.quadrant]
     before = colours.name(found.colors[entry.settled(found.waits[entry])])
     if entry not in found.bad:
-        return say("enters quadrant {quadrant}, in {color}", color=before, **entered)
+        return msg("enters quadrant {quadrant}, in {color}", color=before, **entered)
     if own is None:
-        return say("enters quadrant {quadrant} with the pen off", **entered)
+        return msg("enters quadrant {quadrant} with the pen off", **entered)
     color = colours.name(own)
     delay = pens.came_after(entry, found, tolerances["color_distance"])
     if delay is None:
-        return say(
+        return msg(
             "enters quadrant {quadrant}, and draws in {before} there, not in {color}",
             before=before,
             color=color,
             **entered,
         )
     if delay <= found.waits[entry]:
-        return say(
+        return msg(
             "enters quadrant {quadrant}; its colour, {color}, does not stay", color=color, **entered
         )
-    return say(
+    return msg(
         "enters quadrant {quadrant}; {color} comes {late_s:.2f} s later, until then {before}",
         color=color,
         late_s=delay * TICK_S,

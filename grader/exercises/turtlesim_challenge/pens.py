@@ -12,8 +12,8 @@ import numpy as np
 
 from grader.exercise.check import Tolerances
 from grader.exercises.turtlesim_challenge.colours import Color, alike, groups
-from grader.exercises.turtlesim_challenge.path import QUADRANTS, Entry, Path
-from grader.language.phrase import say
+from grader.exercises.turtlesim_challenge.path import QUADRANTS, Path, Visit
+from grader.message import msg
 from grader.recording.recording import Recording
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.world.canvas import Pen
@@ -40,12 +40,12 @@ class Coloring:
         wanted: how many quadrants with colours of their own make all of the points.
     """
 
-    judged: list[Entry]
-    bad: list[Entry]
+    judged: list[Visit]
+    bad: list[Visit]
     own: dict[int, Color | None]
     alike: list[list[int]]
     colors: list[Color | None]
-    waits: dict[Entry, int]
+    waits: dict[Visit, int]
     wanted: int
 
     @property
@@ -127,11 +127,11 @@ def check_demanded(asked: Any) -> None:
         ValueError: it is no mapping of quadrants, 1 to 4, to different colours.
     """
     if not isinstance(asked, dict):
-        raise ValueError(say("expected quadrants with colours, found {found}", found=repr(asked)))
+        raise ValueError(msg("expected quadrants with colours, found {found}", found=repr(asked)))
     for quadrant, color in asked.items():
         if type(quadrant) is not int or not 1 <= quadrant <= QUADRANTS:
             raise ValueError(
-                say(
+                msg(
                     "expected quadrants from 1 to {most}, found {found}",
                     most=QUADRANTS,
                     found=repr(quadrant),
@@ -140,7 +140,7 @@ def check_demanded(asked: Any) -> None:
         is_color = isinstance(color, list) and len(color) == len("rgb")
         if not is_color or not all(type(c) is int and 0 <= c <= 255 for c in color):
             raise ValueError(
-                say(
+                msg(
                     "{quadrant}: expected [red, green, blue], each a whole number from 0 to 255, "
                     "found {found}",
                     quadrant=quadrant,
@@ -150,7 +150,7 @@ def check_demanded(asked: Any) -> None:
     for (one, color), (another, other) in combinations(asked.items(), 2):
         if color == other:
             raise ValueError(
-                say(
+                msg(
                     "{one} and {another} are the same; expected different colours",
                     one=one,
                     another=another,
@@ -158,7 +158,7 @@ def check_demanded(asked: Any) -> None:
             )
 
 
-def came_after(entry: Entry, coloring: Coloring, distance: float) -> int | None:
+def came_after(entry: Visit, coloring: Coloring, distance: float) -> int | None:
     """How many ticks after an entry the pen took the quadrant's colour; None: never."""
     color = coloring.own[entry.quadrant]
     if color is None:
@@ -199,7 +199,7 @@ def _draws(colors: list[Color | None]) -> bool:
     return 2 * colors.count(None) < len(colors)
 
 
-def _own_colors(entries: list[Entry], colors: list[Color | None]) -> dict[int, Color | None]:
+def _own_colors(entries: list[Visit], colors: list[Color | None]) -> dict[int, Color | None]:
     counts: dict[int, Counter[Color | None]] = {}
     for entry in entries:
         counts.setdefault(entry.quadrant, Counter())[colors[entry.last_tick]] += 1

@@ -9,7 +9,7 @@ from grader.exercise.verdict import Evidence, Finding
 from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import why_no_wider, why_so_few_turns
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.language.phrase import Phrase, chained, joined, say
+from grader.message import NOTHING, Message, chained, joined, msg
 
 
 def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
@@ -35,50 +35,50 @@ def judge_spiral(path: Path, tolerances: Tolerances) -> Finding:
         joined([*missed, _earned(good)], " "),
         cause.help
         if cause is not None
-        else say(
+        else msg(
             "A constant angular velocity with a slowly growing linear velocity makes a spiral."
         ),
         tuple(item for _, _, evidence in parts.values() for item in evidence),
     )
 
 
-def _all_right(path: Path) -> Phrase:
+def _all_right(path: Path) -> Message:
     turns, _ = shape.turns(path)
     growth = shape.growth(path)
-    sizes = say(
+    sizes = msg(
         "{growth_min:.2f} to {growth_max:.2f} m", growth_min=growth.min(), growth_max=growth.max()
     )
-    return say(
+    return msg(
         "{turns:.1f} turns from the centre, each wider by {sizes}.", turns=turns, sizes=sizes
     )
 
 
-def _earned(good: Mapping[str, float]) -> Phrase:
+def _earned(good: Mapping[str, float]) -> Message:
     """What the parts that are right have earned."""
     if not good:
-        return say("Of the points it earned nothing.")
+        return msg("It earned no points.")
     told = [
-        say("{share:.0f} % {part}", share=100 * share, part=_FOR[name])
+        msg("{share:.0f} % {part}", share=100 * share, part=_FOR[name])
         for name, share in good.items()
     ]
-    return say("Of the points it earned {parts}.", parts=chained(told))
+    return msg("It earned {parts}.", parts=chained(told))
 
 
 _FOR = {
-    "start": say("for the start"),
-    "turns": say("for the turns"),
-    "growth": say("for the growth"),
+    "start": msg("for the start"),
+    "turns": msg("for the turns"),
+    "growth": msg("for the growth"),
 }
-#: What is wrong with a part, '' for nothing, and where to see it.
-Part = tuple[str, tuple[Evidence, ...]]
+#: What is wrong with a part, if anything, and where to see it.
+Part = tuple[Message, tuple[Evidence, ...]]
 
 
 def _start(path: Path, tolerances: Tolerances) -> Part:
     start_m = float(path.distance[path.first])
     if start_m <= tolerances["start_m"]:
-        return "", ()
-    evidence = path.at(int(path.ticks[path.first]), say("the start"))
-    text = say(
+        return NOTHING, ()
+    evidence = path.at(int(path.ticks[path.first]), msg("the start"))
+    text = msg(
         "The path starts {start_m:.2f} m from the centre; {limit_m:g} m is fine.",
         start_m=start_m,
         limit_m=tolerances["start_m"],
@@ -88,12 +88,12 @@ def _start(path: Path, tolerances: Tolerances) -> Part:
 
 def _turns(path: Path, tolerances: Tolerances) -> Part:
     turns, other_way = shape.turns(path)
-    wanted = say(
+    wanted = msg(
         "at least {turns:g} turns in one direction are asked for.", turns=tolerances["turns"]
     )
     if other_way > tolerances["wrong_way_share"]:
         return (
-            say(
+            msg(
                 "It made {turns:.1f} turns, with {other_way:.0f} % of the turning the "
                 "other way; {wanted}",
                 turns=turns,
@@ -102,11 +102,11 @@ def _turns(path: Path, tolerances: Tolerances) -> Part:
             )
         ), ()
     if turns < tolerances["turns"]:
-        return say("It made {turns:.1f} turns; {wanted}", turns=turns, wanted=wanted), ()
+        return msg("It made {turns:.1f} turns; {wanted}", turns=turns, wanted=wanted), ()
     rounds = shape.loops(path).rounds
     if rounds < tolerances["turns"] - shape.BEHIND_TURNS:
         return (
-            say(
+            msg(
                 "The turtle turned {turns:.1f} times, but its path goes only "
                 "{rounds:.1f} times round any centre; at least {wanted:g} times are "
                 "asked for.",
@@ -115,20 +115,20 @@ def _turns(path: Path, tolerances: Tolerances) -> Part:
                 wanted=tolerances["turns"],
             )
         ), ()
-    return "", ()
+    return NOTHING, ()
 
 
 def _growth(path: Path, tolerances: Tolerances) -> Part:
     growth = shape.growth(path)
     if not len(growth):
-        return say("With fewer than two turns nobody can tell whether they grow."), ()
+        return msg("With fewer than two turns nobody can tell whether they grow."), ()
     if growth.min() < tolerances["growth_m"]:
         least = round(float(growth.min()), 2)
         changed = (
-            say("it changed by {least:+.2f} m", least=least) if least else say("it stayed the same")
+            msg("it changed by {least:+.2f} m", least=least) if least else msg("it stayed the same")
         )
         return (
-            say(
+            msg(
                 "Its mean distance from the centre must grow with each turn; from one "
                 "turn to the next {changed}.",
                 changed=changed,
@@ -137,21 +137,21 @@ def _growth(path: Path, tolerances: Tolerances) -> Part:
     loops = shape.loops(path)
     goes_round = loops.rounds >= tolerances["turns"] - shape.BEHIND_TURNS
     if not goes_round or loops.outside < shape.MOSTLY:
-        return say("Going round, its path does not stay outside of what it has drawn before."), ()
+        return msg("Going round, its path does not stay outside of what it has drawn before."), ()
     if loops.straight_out > shape.HALFWAY:
         return (
-            say(
+            msg(
                 "It grows by driving straight outwards from one circle to the next; a "
                 "spiral grows while it goes round."
             )
         ), ()
     if loops.farthest_m > tolerances["gentle_m"]:
-        return say(
+        return msg(
             "It came away from its last turn by {farthest_m:.2f} m.", farthest_m=loops.farthest_m
         ), ()
     if growth.max() > tolerances["gentle_m"]:
-        return say(
+        return msg(
             "Its distance from the centre jumped by {growth_max:.2f} m in one turn.",
             growth_max=growth.max(),
         ), ()
-    return "", ()
+    return NOTHING, ()

@@ -15,30 +15,30 @@ from grader.exercises.turtlesim_challenge import shape
 from grader.exercises.turtlesim_challenge.commands import (
     drove_on,
     overruled_stop,
-    stands_still,
     too_fast,
     why_no_wider,
     why_so_few_turns,
 )
 from grader.exercises.turtlesim_challenge.path import Path
-from grader.language.phrase import Phrase, joined, say
+from grader.message import NOTHING, Message, in_context, joined, msg
 from grader.scenes.turtlesim.driving import REST_TICKS
+from grader.scenes.turtlesim.trace import stands_still
 from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.turtle import TICK_S
 
 #: What is left of the points of a stop near an edge that is not quite one: because no commands
 #: came any more, or while the turtle turns on and on.
 HALF = 0.5
-HALF_OF_IT = say("That is half of the points.")
+HALF_OF_IT = msg("That is half of the points.")
 #: Who is told to stop so soon after a wall was touched has waited for that.
 AT_THE_WALL_TICKS = 32
 WALLS = ("left", "bottom", "right", "top")
 #: How sentences name them: "the {wall} wall". The keys tell translators which left is meant.
 WALL_NAMES = {
-    "left": Phrase("left", say("left (of a wall)").key),
-    "bottom": Phrase("bottom", say("bottom (of a wall)").key),
-    "right": Phrase("right", say("right (of a wall)").key),
-    "top": Phrase("top", say("top (of a wall)").key),
+    "left": in_context("left", "of a wall"),
+    "bottom": in_context("bottom", "of a wall"),
+    "right": in_context("right", "of a wall"),
+    "top": in_context("top", "of a wall"),
 }
 
 #: How a run ended. `late`: the time was up while a spiral still grew, and had not
@@ -61,7 +61,7 @@ class Stop:
     finding: Finding
     path: Path
     wall: str = ""
-    seen: str = ""
+    seen: Message = NOTHING
 
     @property
     def gap_m(self) -> float:
@@ -103,29 +103,29 @@ def judge_start(path: Path) -> Finding | None:
         return None
     return Finding(
         0,
-        say(
-            "This run does not count: at {time_s:.2f} s your node had the turtle moved "
-            "away from where it was put, by {call}.",
+        msg(
+            "This run does not count: at {time_s:.2f} s your node moved the turtle away from "
+            "its start, by {call}.",
             time_s=call.tick * TICK_S,
             call=call.op,
         ),
-        say(
-            "Begin wherever the turtle is, and read from the pose where that is; reset, "
-            "teleports, kill and spawn put it somewhere else."
+        msg(
+            "Start wherever the turtle is, and read that from the pose; don't call reset, kill, "
+            "spawn or a teleport."
         ),
-        (path.at(call.tick, say("put here by {call}", call=call.op)),),
+        (path.at(call.tick, msg("put here by {call}", call=call.op)),),
     )
 
 
 def nearest_wall(path: Path, row: int) -> str:
     """The wall that the turtle is nearest to."""
-    return WALLS[int(np.argmin(_to_walls(path)[row]))]
+    return WALLS[int(np.argmin(path.to_walls[row]))]
 
 
 def passed_by_m(stop: Stop) -> float:
     """By how much it had been nearer to its wall before, and drove away again [m]."""
     row = stop.path.last
-    to_wall = _to_walls(stop.path)[: row + 1, WALLS.index(stop.wall)]
+    to_wall = stop.path.to_walls[: row + 1, WALLS.index(stop.wall)]
     return float(to_wall[row] - to_wall.min())
 
 
@@ -136,33 +136,29 @@ def is_told_to_stop_at(path: Path, tick: int, within_ticks: int) -> bool:
     )
 
 
-def _to_walls(path: Path) -> np.ndarray:
-    """How far each reading is from each of `WALLS` [m], float64 (n, 4)."""
-    return np.column_stack((path.x, path.y, path.size_m - path.x, path.size_m - path.y))
-
-
 def _touched(path: Path, wall: str, tolerances: Tolerances) -> Finding:
-    touched = path.at(int(path.ticks[path.wall or 0]), say("it touches the wall here"))
+    at = int(path.ticks[path.wall or 0])
+    touched = path.at(at, msg("it touches the wall here"))
     ran = {"wall": WALL_NAMES[wall], "time_s": touched.time_s}
-    fast = too_fast(path, touched.tick)
+    fast = too_fast(path, at)
     if fast is None and shape.turns(path)[0] < 1:
         fast = why_so_few_turns(path)
     if fast is not None:
-        text = say("The turtle ran into the {wall} wall at {time_s:.1f} s.", **ran)
+        text = msg("The turtle ran into the {wall} wall at {time_s:.1f} s.", **ran)
         return Finding(0, joined([fast.text, text], " "), fast.help, (touched,))
-    pair = drove_on(path, touched.tick, tolerances["edge_m"])
+    pair = drove_on(path, at, tolerances["edge_m"])
     if pair is None and not any(stands_still(call) for call in path.calls(CmdVel)):
-        text = say(
+        text = msg(
             "The turtle ran into the {wall} wall at {time_s:.1f} s, and no Twist of zeros was "
             "ever sent.",
             **ran,
         )
         return Finding(0, text, _IS_IT_EVER_TRUE, (touched,))
     if pair is None:
-        return _too_late(path, ran, touched)
+        return _too_late(path, ran, touched, at)
     stop, further = pair
     told = path.at(stop.tick, _TOLD_TO_STOP)
-    text = say(
+    text = msg(
         "The turtle ran into the {wall} wall at {time_s:.1f} s: {what_came}.",
         what_came=_stop_and_go(stop, further),
         **ran,
@@ -170,21 +166,21 @@ def _touched(path: Path, wall: str, tolerances: Tolerances) -> Finding:
     return Finding(0, text, _ONE_SAYS_STOP, (told, touched))
 
 
-def _too_late(path: Path, ran: Mapping[str, Any], touched: Evidence) -> Finding:
+def _too_late(path: Path, ran: Mapping[str, Any], touched: Evidence, at: int) -> Finding:
     """It was told to stop, at some time, but not before it was at the wall."""
     told = next(c for c in path.calls(CmdVel) if stands_still(c))
-    if not 0 <= told.tick - touched.tick <= AT_THE_WALL_TICKS:
-        text = say("The turtle ran into the {wall} wall at {time_s:.1f} s.", **ran)
-        help_ = say("Watch the pose, and stop before a wall is reached.")
+    if not 0 <= told.tick - at <= AT_THE_WALL_TICKS:
+        text = msg("The turtle ran into the {wall} wall at {time_s:.1f} s.", **ran)
+        help_ = msg("Watch the pose, and stop before a wall is reached.")
         return Finding(0, text, help_, (touched,))
     return Finding(
         0,
-        say(
+        msg(
             "The turtle ran into the {wall} wall at {time_s:.1f} s, and was told to stop only "
             "then.",
             **ran,
         ),
-        say(
+        msg(
             "The limits are too near the walls: x and y never go below 0 or above {size}. Stop "
             "where one of them comes below 1, say, or above 10.",
             size=f"{path.size_m:.2f}",
@@ -193,20 +189,20 @@ def _too_late(path: Path, ran: Mapping[str, Any], touched: Evidence) -> Finding:
     )
 
 
-_TOLD_TO_STOP = say("told to stop here")
-_LAST_PLACE = say("the last place it moved to")
-_IS_IT_EVER_TRUE = say(
+_TOLD_TO_STOP = msg("told to stop here")
+_LAST_PLACE = msg("the last place it moved to")
+_IS_IT_EVER_TRUE = msg(
     "Watch the pose, and stop before a wall is reached. If your node does so: is the condition "
     "ever true? `and` or `or`? How far from the walls, at 0 and 11.09, are its limits?"
 )
-_ONE_SAYS_STOP = say(
-    "Who stops must also cease to drive: what else in your node publishes velocities, and how does "
-    "it learn that the turtle is to stand?"
+_ONE_SAYS_STOP = msg(
+    "After stopping, don't send driving commands. What else in your node publishes velocities, "
+    "and how does it learn that the turtle has to stand still?"
 )
 
 
-def _stop_and_go(stop: CmdVel, further: CmdVel) -> Phrase:
-    return say(
+def _stop_and_go(stop: CmdVel, further: CmdVel) -> Message:
+    return msg(
         "your node stopped it at {stop_s:.2f} s and then sent another command, to drive on, at "
         "{further_s:.2f} s",
         stop_s=stop.tick * TICK_S,
@@ -215,15 +211,15 @@ def _stop_and_go(stop: CmdVel, further: CmdVel) -> Phrase:
 
 
 def _lost(path: Path, tick: int) -> Finding:
-    lost = path.at(tick, say("the last place it was at"))
+    lost = path.at(tick, msg("the last place it was at"))
     return Finding(
         0,
-        say(
+        msg(
             "At {time_s:.1f} s your node sent a velocity that is not a number, and the "
             "turtle was nowhere from then on.",
             time_s=lost.time_s,
         ),
-        say("Which division or logarithm can give nan or inf?"),
+        msg("Which division or logarithm can give nan or inf?"),
         (lost,),
     )
 
@@ -240,19 +236,19 @@ def _is_on_its_way(path: Path, tolerances: Tolerances) -> bool:
 
 def _late(path: Path) -> Finding:
     seconds = path.recording.run.simulated_s
-    end = path.at(path.stop_tick, say("here it was when the time was up"))
+    end = path.at(path.stop_tick, msg("here it was when the time was up"))
     return Finding(
         0,
-        say(
+        msg(
             "A run lasts {seconds:.0f} s, and then the spiral was still growing, {away_m:.2f} m "
-            "away from the nearest wall: whether the turtle would have stopped there was not to "
+            "away from the nearest wall: whether the turtle would have stopped there could not "
             "be seen.",
             seconds=seconds,
             away_m=path.wall_distance.min(),
         ),
-        say(
-            "Nothing is wrong with the way so far: let the spiral grow faster, so that it comes "
-            "near a wall within {seconds:.0f} s.",
+        msg(
+            "The path is right so far: let the spiral grow faster, so that it comes near a wall "
+            "within {seconds:.0f} s.",
             seconds=seconds,
         ),
         (end,),
@@ -266,41 +262,41 @@ def _moving(path: Path, tolerances: Tolerances) -> Finding:
     if pair is not None:
         stop, further = pair
         told = path.at(stop.tick, _TOLD_TO_STOP)
-        text = say("{moving}: {what_came}.", moving=text, what_came=_stop_and_go(stop, further))
+        text = msg("{moving}: {what_came}.", moving=text, what_came=_stop_and_go(stop, further))
         return Finding(0, text, _ONE_SAYS_STOP, (told, end))
     nearest = float(path.wall_distance.min()) if len(path) else 0.0
     if nearest <= tolerances["edge_m"]:
         return Finding(
             0,
-            say(
+            msg(
                 "{moving}; it had come as near to a wall as {nearest_m:.2f} m.",
                 moving=text,
                 nearest_m=nearest,
             ),
-            say(
+            msg(
                 "Compare x and y of the pose with the size of the window, and publish a zero Twist."
             ),
             (end,),
         )
-    text = say(
+    text = msg(
         "{moving}, and never came nearer to a wall than {nearest_m:.2f} m.",
         moving=text,
         nearest_m=nearest,
     )
     cause = why_no_wider(path)
     if cause is None:
-        return Finding(0, text, say("The spiral has to grow until it is near an edge."), (end,))
+        return Finding(0, text, msg("The spiral has to grow until it is near an edge."), (end,))
     return Finding(0, joined([cause.text, text], " "), cause.help, (end,))
 
 
-def _was_still_moving(path: Path) -> Phrase:
+def _was_still_moving(path: Path) -> Message:
     run = path.recording.run
     if run.outcome == "time_limit":
-        return say(
+        return msg(
             "The turtle was still going when the time ({seconds:.0f} s) was up",
             seconds=run.simulated_s,
         )
-    return say("The turtle was still moving after {seconds:.0f} s", seconds=run.simulated_s)
+    return msg("The turtle was still moving after {seconds:.0f} s", seconds=run.simulated_s)
 
 
 def _goes_on(path: Path) -> bool:
@@ -316,38 +312,38 @@ def _far(path: Path, gap: float, tolerances: Tolerances) -> Stop:
     rested = {"gap_m": gap, "near_m": tolerances["edge_m"]}
     unstopped = _unstopped(path)
     if unstopped is None:
-        text = say(
+        text = msg(
             "The turtle came to rest {gap_m:.2f} m from the nearest wall; {near_m:g} m or less is "
             "near.",
             **rested,
         )
-        help_ = say("What should make it stop is the pose, near an edge.")
+        help_ = msg("What should make it stop is the pose, near an edge.")
         return Stop("far", Finding(0, joined([text, ending]), help_, (end,)), path)
     why, help_ = unstopped
-    text = say(
+    text = msg(
         "It came to rest {gap_m:.2f} m from the nearest wall; {near_m:g} m or less is near.",
         **rested,
     )
     return Stop("other", Finding(0, joined([why, " ", text, ending]), help_, (end,)), path)
 
 
-def _unstopped(path: Path) -> tuple[Phrase, Phrase] | None:
+def _unstopped(path: Path) -> tuple[Message, Message] | None:
     """Why no command to stop was in force when it drove no more, with help; None: one was."""
     drove = [call for call in path.calls(CmdVel) if call.tick <= path.stop_tick + 1]
     if drove and not drove[-1].linear[0]:
         return None
     stop = overruled_stop(drove)
     if stop is not None:
-        return say(
+        return msg(
             "The turtle was told to stop at {time_s:.2f} s, and in the same moment to "
             "drive on: the last command counts.",
             time_s=stop.tick * TICK_S,
-        ), say(
+        ), msg(
             "After the Twist of zeros the same callback publishes once more: is a `return` missing?"
         )
-    return say(
+    return msg(
         "The turtle came to rest because no more commands came, not because it was told to stop."
-    ), say("Publish a Twist of zeros to stop.")
+    ), msg("Publish a Twist of zeros to stop.")
 
 
 def _told_to_rest(path: Path, gap: float) -> Finding:
@@ -364,24 +360,24 @@ def _told_to_rest(path: Path, gap: float) -> Finding:
     if unstopped is not None:
         by_error = run.outcome in ("crashed", "killed", "stalled")
         why, help_ = unstopped
-        stood = say("It stood {gap_m:.2f} m from the wall.", gap_m=gap)
+        stood = msg("It stood {gap_m:.2f} m from the wall.", gap_m=gap)
         text = joined([why, " ", stood, ending])
         return Finding(0 if by_error else HALF, text, help_, (end,))
     if path.rest >= len(path) - 2:
-        text = say(
-            "The turtle drove no farther {gap_m:.2f} m from the wall, but it turned on the spot "
+        text = msg(
+            "The turtle stopped driving {gap_m:.2f} m from the wall, but it turned on the spot "
             "until the run was over.",
             gap_m=gap,
         )
-        help_ = say("A Twist of zeros stops turning, too: what does angular.z say?")
+        help_ = msg("A Twist of zeros stops turning, too: what does angular.z say?")
         return Finding(HALF, text, help_, (end,))
     if not stands_still(turned[-1]):
-        text = say(
-            "The turtle was told to drive no farther {gap_m:.2f} m from the wall, and to turn on "
+        text = msg(
+            "Your node stopped driving {gap_m:.2f} m from the wall, but let the turtle turn on "
             "the spot; that ended only because no more commands came.",
             gap_m=gap,
         )
-        help_ = say("Publish a Twist of zeros to stop, angular.z as well.")
+        help_ = msg("Publish a Twist of zeros to stop, angular.z as well.")
         return Finding(HALF, joined([text, ending]), help_, (end,))
-    text = say("It stopped by a command, {gap_m:.2f} m from the wall.", gap_m=gap)
+    text = msg("It stopped by a command, {gap_m:.2f} m from the wall.", gap_m=gap)
     return Finding(1, text, evidence=(end,))

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Final
 from weakref import WeakKeyDictionary
 
 import jinja2
@@ -21,24 +21,23 @@ import numpy as np
 from markupsafe import Markup
 
 from grader import text
-from grader.language.catalogue import spoken
-from grader.language.telling import in_language, number, tell, told
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.exercise.verdict import Evidence
+from grader.message import msg
 from grader.recording.recording import Recording
-from grader.reports import wording
+from grader.recording.subject import Subject, load_subject
+from grader.recording.view import Floats, Solid, Table, Tree
+from grader.reports import Format, readable, wording
 from grader.reports.error_report import ErrorReport
 from grader.reports.page import templating
-from grader.reports.page.expected import Drawn, expected
-from grader.reports.page.pictures import canvas_uri, plane_uri, window_uri
-from grader.reports.page.pins import RADIUS_PX, Pin, pins
-from grader.reports.page.plots import HEIGHT, WIDTH, Plots, plots
-from grader.reports.page.solids import Turnable, turnable
+from grader.reports.page.parts import DrawnTree, Turnable, drawn, turnable
+from grader.reports.page.pictures import RADIUS_PX, Pin, canvas_uri, pins, plane_uri, window_uri
+from grader.reports.page.plots import HEIGHT, WIDTH, Drawn, Plots, expected, plots
 from grader.reports.page.tracks import Film, film
-from grader.reports.page.trees import DrawnTree, drawn
 from grader.reports.report import Report
 from grader.result.result import RunSummary
-from grader.scenes import load_scene
 from grader.scenes.scene import Scene
-from grader.scenes.view import Floats, Solid, Table, Tree
+from grader.translations import current, number, tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _OUTPUT_LIMIT = 100_000
@@ -47,7 +46,24 @@ _PAPER_LINES, _PAPER_LIMIT = 25, 4000
 
 
 @dataclass(frozen=True)
-class RunView:
+class Drawing:
+    """What a page shows of a recording by itself.
+
+    Attributes:
+        film, plots: None without a recording.
+        turnable: the window at the end, to be turned, where the scene has that.
+        trees, tables: what else there is to see.
+    """
+
+    film: Film | None = None
+    plots: Plots | None = None
+    turnable: Turnable | None = None
+    trees: tuple[DrawnTree, ...] = ()
+    tables: tuple[Table, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunView(Drawing):
     """A run as the page shows it.
 
     Attributes:
@@ -57,11 +73,8 @@ class RunView:
         picture: the scene's plane at the end as data URI, or ''.
         still: the window at the end, where that is not the plane, as data URI, or ''.
         still_words: what it shows.
-        turnable: the same, to be turned.
-        trees, tables: what else there is to see.
         expected: what checks want of curves, by their titles.
         pins: the evidence in the plane.
-        film, plots: None without a recording.
         output: what the node printed.
         on_paper: whether it is printed: there is a fault in it, or in no run at all.
     """
@@ -72,13 +85,8 @@ class RunView:
     picture: str
     still: str
     still_words: str
-    turnable: Turnable | None
-    trees: tuple[DrawnTree, ...]
-    tables: tuple[Table, ...]
     expected: Mapping[str, Drawn]
     pins: tuple[Pin, ...]
-    film: Film | None
-    plots: Plots | None
     output: str
     on_paper: bool
 
@@ -95,16 +103,9 @@ class RunView:
         return bool(self.picture or self.film or self.pins)
 
 
-class Moment(NamedTuple):
-    """A run, and a time in it [simulated s]; None for its end."""
-
-    run: int
-    time_s: float | None
-
-
 def render(report: Report) -> str:
     """The page."""
-    plane = report.scene.plane
+    plane = report.subject.plane
     numbers = range(len(report.varied_runs) + 1)
     on_paper = _faulty_runs(report).intersection(numbers) or {0}
     runs = [_view(report, number, number in on_paper) for number in numbers]
@@ -119,34 +120,33 @@ def render(report: Report) -> str:
             pinned={pin.point.number for run in runs if run.can_be_seen for pin in run.pins},
             has_parts=any(run.still or run.trees or run.tables for run in runs),
             has_solids=any(run.turnable for run in runs),
-            is_looked_at=bool(report.scene.examiner),
+            is_looked_at=not isinstance(report.subject, Scene),
             opens_at=first_fault if first_fault and first_fault.run in numbers else None,
             titles={verdict.check: wording.title_of(verdict) for verdict in report.verdicts},
             places={verdict.check: index for index, verdict in enumerate(report.verdicts)},
-            outcomes=_outcomes(report.scene),
+            outcomes=_outcomes(report.subject),
+            flags=readable.flags,
             box={
                 **{"width": WIDTH, "height": HEIGHT},
                 **{"size": plane.size_px, "meter": plane.metre_px, "origin": plane.origin_m},
                 "metres": range(math.floor(plane.origin_m) + 1, math.ceil(plane.end_m)),
             },
             to_px=plane.to_px,
-            thing=report.scene.thing,
-            the=report.scene.the_thing,
+            thing=translate(report.subject.thing),
+            the=translate(report.subject.the_thing),
             words=_script_words(),
             radius=RADIUS_PX,
         )
     )
 
 
-def _first_fault(report: Report) -> Moment | None:
-    """The moment that shows the first thing to mend; None where nothing shows it."""
+def _first_fault(report: Report) -> Diagnosis | Evidence | None:
+    """What tells the run and the time of the first thing to mend; None where nothing does."""
     found = report.diagnosis
     if found is not None and not found.check:
-        return Moment(found.run, found.time_s)
+        return found
     first = report.first_to_mend
-    if first is None or not first.evidence:
-        return None
-    return Moment(first.evidence[0].run, first.evidence[0].time_s)
+    return first.evidence[0] if first is not None and first.evidence else None
 
 
 def _faulty_runs(report: Report) -> set[int]:
@@ -161,33 +161,26 @@ def _faulty_runs(report: Report) -> set[int]:
     }
 
 
-def _outcomes(scene: Scene) -> dict[str, str]:
-    the = scene.the_thing
-    if scene.examiner:
-        return {
-            "finished": tell("{the_thing} was looked at", the_thing=the),
-            "time limit": tell("looking at {the_thing} did not come to an end", the_thing=the),
-            "crashed": tell("{the_thing} ended the process that looked at it", the_thing=the),
-            "killed": tell("{the_thing} ended the process that looked at it", the_thing=the),
-        }
+def _outcomes(subject: Subject) -> dict[str, str]:
+    the = subject.the_thing
     return {
-        "finished": told(scene.finished),
-        "exited": tell("the node ended by itself, without an error"),
-        "crashed": tell("the node ended with an error"),
-        "stalled": tell("the node stopped responding"),
-        "time limit": tell("{the_thing} was still going at the time limit", the_thing=the),
-        wording.NOTHING_MOVED: tell("{the_thing} never moved, so the run was ended", the_thing=the),
-        "killed": tell("somebody killed the node"),
+        "exited": tr("the node ended by itself, without an error"),
+        "crashed": tr("the node ended with an error"),
+        "stalled": tr("the node stopped responding"),
+        "time limit": tr("{the_thing} was still going at the time limit", the_thing=the),
+        wording.NOTHING_MOVED: tr("{the_thing} never moved, so the run was ended", the_thing=the),
+        "killed": tr("somebody killed the node"),
+        **{key: translate(clause) for key, clause in subject.outcomes.items()},
     }
 
 
 def _script_words() -> dict[str, str]:
     """What the page's script writes."""
     return {
-        "play": tell("Play"),
-        "pause": tell("Pause"),
-        "end": tell("end"),
-        "seconds": tell("{seconds} s", seconds="#"),
+        "play": tr("Play"),
+        "pause": tr("Pause"),
+        "end": tr("end"),
+        "seconds": tr("{seconds} s", seconds="#"),
         "point": number("0.0")[1:-1],
     }
 
@@ -199,7 +192,7 @@ def render_error(report: ErrorReport) -> str:
 
 @cache
 def _environment() -> jinja2.Environment:
-    made = templating.environment(_TEMPLATES / "page.js")
+    made = templating.environment(_TEMPLATES, "page")
     code = (_TEMPLATES / "solid.js").read_text(encoding="utf-8")
     made.globals.update(
         solid_script=Markup(code),
@@ -220,17 +213,6 @@ def _environment() -> jinja2.Environment:
     return made
 
 
-@dataclass(frozen=True)
-class Drawing:
-    """What a page shows of a recording by itself."""
-
-    film: Film | None = None
-    plots: Plots | None = None
-    turnable: Turnable | None = None
-    trees: tuple[DrawnTree, ...] = ()
-    tables: tuple[Table, ...] = ()
-
-
 #: By language.
 _drawings: WeakKeyDictionary[Recording, dict[str, Drawing]] = WeakKeyDictionary()
 
@@ -238,20 +220,19 @@ _drawings: WeakKeyDictionary[Recording, dict[str, Drawing]] = WeakKeyDictionary(
 def draw(recording: Recording) -> Drawing:
     """Draw a recording, once: ahead of the page, while other runs go, or for it."""
     drawings = _drawings.setdefault(recording, {})
-    drawing = drawings.get(spoken())
+    drawing = drawings.get(current())
     if drawing is None:
-        scene = load_scene(recording.scene)
-        view, tick_s = scene.view(recording.trace), scene.tick_ns / 1e9
-        ticks = recording.run.ticks
+        view = load_subject(recording.scene).view(recording.trace)
+        duration_ns = recording.trace.duration_ns
         solids = [part for part in view.parts if isinstance(part, Solid)]
         drawing = Drawing(
-            film(view, ticks, tick_s),
-            plots(view, ticks, tick_s),
-            turnable(solids[0], tick_s) if solids else None,
+            film(view, duration_ns),
+            plots(view, duration_ns),
+            turnable(solids[0]) if solids else None,
             tuple(drawn(part) for part in view.parts if isinstance(part, Tree)),
-            tuple(in_language(part) for part in view.parts if isinstance(part, Table)),
+            tuple(part for part in view.parts if isinstance(part, Table)),
         )
-        drawings[spoken()] = drawing
+        drawings[current()] = drawing
     return drawing
 
 
@@ -259,43 +240,39 @@ def _view(report: Report, number: int, on_paper: bool) -> RunView:
     recording = report.recordings.get(number)
     drawing = Drawing() if recording is None else draw(recording)
     window = canvas_uri(report) if number == 0 else window_uri(report, number)
-    is_apart = not report.scene.window_is_plane
+    is_apart = not report.subject.window_is_plane
     output = report.output if number == 0 else text.plain(recording.output if recording else "")
     return RunView(
-        number,
-        _title(report, number),
-        report.varied_runs[number - 1] if number else report.run,
-        plane_uri(report, number) if is_apart else window,
-        window if is_apart else "",
-        _still_words(drawing),
-        drawing.turnable,
-        drawing.trees,
-        drawing.tables,
-        expected(report, drawing.plots) if number == 0 else {},
-        pins(report, number),
-        drawing.film,
-        drawing.plots,
-        text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
-        on_paper,
+        **vars(drawing),
+        number=number,
+        title=_title(report, number),
+        facts=report.varied_runs[number - 1] if number else report.run,
+        picture=plane_uri(report, number) if is_apart else window,
+        still=window if is_apart else "",
+        still_words=_still_words(drawing),
+        expected=expected(report, drawing.plots) if number == 0 else {},
+        pins=pins(report, number),
+        output=text.clip_middle(output.strip("\n"), _OUTPUT_LIMIT),
+        on_paper=on_paper,
     )
 
 
 def _still_words(drawing: Drawing) -> str:
     if drawing.turnable is not None:
-        return str(in_language(drawing.turnable.solid.text))
+        return translate(drawing.turnable.solid.text)
     shown = drawing.film.drawn if drawing.film is not None else ()
-    return "; ".join(shown) or tell("The window at the end")
+    return "; ".join(shown) or tr("The window at the end")
 
 
 def _name(number: int) -> str:
-    return tell("Varied run {number}", number=number) if number else tell("Nominal run")
+    return tr("Varied run {number}", number=number) if number else tr("Nominal run")
 
 
 def _title(report: Report, number: int) -> str:
     start = report.varied_runs[number - 1].start if number else None
     if start is None:
         return _name(number)
-    return tell(
+    return tr(
         "Varied run {number}: from {place}, heading {heading:.0f}°",
         number=number,
         place=text.place(start.x, start.y),
@@ -323,3 +300,8 @@ def _film_data(shown: Film) -> dict[str, Any]:
 def _numbers(values: Floats, digits: int) -> list[float | None]:
     rounded = values.round(digits).tolist()
     return [value if math.isfinite(value) else None for value in rounded]
+
+
+FORMAT: Final = Format(
+    msg("one self-contained page: picture, plots, animation, verdicts"), render, render_error
+)

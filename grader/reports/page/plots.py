@@ -1,4 +1,7 @@
-"""Plots over time as SVG: curves are thinned out, so a plot has some kB however long the run."""
+"""Plots over time as SVG: curves are thinned out, so a plot has some kB however long the run.
+
+What checks want of a curve is drawn in its plot: a band to stay in, lines to go beyond.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grader.language.telling import in_language, tell, told
+from grader import text
+from grader.recording.view import Call, Curve, Floats, View
 from grader.reports.page.tracks import svg_path
-from grader.scenes.view import Call, Curve, Floats, View
+from grader.reports.report import Report
+from grader.translations import tr, translate
 
 #: A curve is drawn in a box of this size, which the page stretches. Two points a column.
 WIDTH, HEIGHT = 500, 100
@@ -61,22 +66,6 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Row:
-    """A call in words.
-
-    Attributes:
-        time_s: when [s].
-        color: "#rrggbb", where it names one.
-        text, where: as in a scene's view; '' where there is nothing to say.
-    """
-
-    time_s: float
-    color: str
-    text: str
-    where: str
-
-
-@dataclass(frozen=True)
 class Calls:
     """The calls of one service.
 
@@ -84,13 +73,13 @@ class Calls:
         name: the service's.
         count: how many there were.
         marks: all of them, as far as they can be told apart.
-        rows: the first of them, in words.
+        rows: the first of them.
     """
 
     name: str
     count: int
     marks: tuple[Mark, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[Call, ...]
 
     @property
     def has_text(self) -> bool:
@@ -113,22 +102,22 @@ class Plots:
     calls: tuple[Calls, ...]
 
 
-def plots(view: View, ticks: int, tick_s: float) -> Plots | None:
+def plots(view: View, duration_ns: int) -> Plots | None:
     """The plots of a view; None if there is nothing in it.
 
     Args:
-        ticks: how many were recorded, of `tick_s` [s] each.
+        duration_ns: how long was recorded.
     """
-    if not view.curves or not ticks:
+    if not view.curves or not duration_ns:
         return None
-    duration_s = ticks * tick_s
-    curves = tuple(_plot(curve, curve.ticks / ticks * WIDTH) for curve in view.curves)
+    duration_s = duration_ns / 1e9
+    curves = tuple(_plot(curve, curve.times_ns / duration_ns * WIDTH) for curve in view.curves)
     time_ticks = tuple(
         Tick(100 * value / duration_s, f"{value:g}")
         for value in _nice(0, duration_s, 6)
         if value <= duration_s
     )
-    return Plots(duration_s, time_ticks, curves, _calls(view.calls, ticks, tick_s))
+    return Plots(duration_s, time_ticks, curves, _calls(view.calls, duration_ns))
 
 
 def _plot(curve: Curve, x: Floats) -> Plot:
@@ -139,8 +128,8 @@ def _plot(curve: Curve, x: Floats) -> Plot:
     bottom, top = steps[0], steps[-1]
     y = (top - values) / (top - bottom) * HEIGHT
     labels = tuple(Tick(100 * (v - bottom) / (top - bottom), f"{v:g}") for v in steps)
-    title, unit = told(curve.title), told(curve.unit)
-    summary = tell(
+    title, unit = translate(curve.title), curve.unit
+    summary = tr(
         "{title}: from {low:.3g} to {high:.3g} {unit}", title=title, low=low, high=high, unit=unit
     )
     path = svg_path(*_thinned(x, y))
@@ -168,7 +157,7 @@ def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     return x[rows], y[rows]
 
 
-def _calls(made: Sequence[Call], ticks: int, tick_s: float) -> tuple[Calls, ...]:
+def _calls(made: Sequence[Call], duration_ns: int) -> tuple[Calls, ...]:
     by_service: dict[str, list[Call]] = defaultdict(list)
     for call in made:
         by_service[call.name].append(call)
@@ -177,16 +166,11 @@ def _calls(made: Sequence[Call], ticks: int, tick_s: float) -> tuple[Calls, ...]
         Calls(
             name,
             len(calls),
-            _sparse([Mark(100 * call.tick / ticks, call.color) for call in calls]),
-            tuple(_row(call, tick_s) for call in calls[:_ROWS]),
+            _sparse([Mark(100 * call.time_ns / duration_ns, call.color) for call in calls]),
+            tuple(calls[:_ROWS]),
         )
         for name, calls in listed
     )
-
-
-def _row(call: Call, tick_s: float) -> Row:
-    said, where = in_language((call.text, call.where))
-    return Row(call.tick * tick_s, call.color, said, where)
 
 
 def _sparse(marks: list[Mark]) -> tuple[Mark, ...]:
@@ -203,3 +187,56 @@ def _nice(low: float, high: float, about: int) -> list[float]:
     step = power * next((m for m in (1, 2, 5) if m * power >= raw), 10)
     first, last = math.floor(low / step + 1e-9), math.ceil((low + span) / step - 1e-9)
     return [round(step * k, 12) for k in range(first, last + 1)]
+
+
+# What checks want of a curve ----------------------------------------------------------------------
+
+_LONGEST = 160
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What is wanted of one curve.
+
+    Attributes:
+        text: in words.
+        bands: top and height of where it has to stay, as far as the plot shows it.
+        lines: how high the values are that it has to go beyond.
+    """
+
+    text: str
+    bands: tuple[tuple[float, float], ...]
+    lines: tuple[float, ...]
+
+
+def expected(report: Report, plots: Plots | None) -> dict[str, Drawn]:
+    """Of the plots of the nominal run, by their titles."""
+    if plots is None:
+        return {}
+    wanted = {
+        translate(each.curve): each for verdict in report.verdicts for each in verdict.expected
+    }
+    found = {}
+    for plot in plots.curves:
+        each = wanted.get(plot.title)
+        if each is not None:
+            bands, lines = _bands(plot, each.within), _lines(plot, each.beyond)
+            found[plot.title] = Drawn(
+                text.clip(text.plain(translate(each.text)), _LONGEST), bands, lines
+            )
+    return found
+
+
+def _bands(plot: Plot, within: tuple[float, float] | None) -> tuple[tuple[float, float], ...]:
+    if within is None:
+        return ()
+    low, high = (min(max(value, plot.bottom), plot.top) for value in within)
+    return ((_y(plot, high), _y(plot, low) - _y(plot, high)),) if high > low else ()
+
+
+def _lines(plot: Plot, beyond: tuple[float, float] | None) -> tuple[float, ...]:
+    return tuple(_y(plot, value) for value in beyond or () if plot.bottom <= value <= plot.top)
+
+
+def _y(plot: Plot, value: float) -> float:
+    return HEIGHT * (plot.top - value) / (plot.top - plot.bottom)

@@ -1,48 +1,84 @@
-"""Templates of pages that stand alone: everything is escaped, and only their own script runs."""
+"""Templates of pages that stand alone: everything is escaped, and only their own script runs.
+
+Compiled ones are kept beside them, as Python keeps compiled modules: in __pycache__.
+"""
 
 from __future__ import annotations
 
 import base64
 import hashlib
+import os
+import sys
+from contextlib import suppress
+from importlib.metadata import version
+from importlib.util import cache_from_source
 from pathlib import Path
 
 import jinja2
+from jinja2.bccache import Bucket, FileSystemBytecodeCache
 from markupsafe import Markup
 
-from grader import text
-from grader.language.catalogue import spoken
-from grader.language.telling import in_language, number, tell, tell_many, told
-from grader.reports.page.compiled import BesideTheTemplates
+from grader import text, versions
+from grader.translations import current, number, tr, tr_many, translate
 
 #: How all pages look.
 STYLE = Path(__file__).parent / "templates" / "page.css"
 
 
-def environment(script: Path, *styles: Path) -> jinja2.Environment:
-    """What renders the templates in the folder of a script.
+def environment(folder: Path, page: str) -> jinja2.Environment:
+    """What renders the templates in a folder.
 
-    They get `script` and `script_digest`, for a content security policy that lets nothing else run,
-    and `style`: that of all pages, and what a page adds to it.
+    They get `script`, which is PAGE.js if there is one, and `script_digest`, for a content security
+    policy that lets nothing else run, and `style`: that of all pages, and PAGE.css.
     """
     made = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(script.parent),
-        bytecode_cache=BesideTheTemplates(script.parent),
+        loader=jinja2.FileSystemLoader(folder),
+        bytecode_cache=BesideTheTemplates(folder),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    code = script.read_text(encoding="utf-8")
-    made.filters.update(points=text.points, clip=text.clip)
+    script = folder / f"{page}.js"
+    code = script.read_text(encoding="utf-8") if script.exists() else ""
+    styles = dict.fromkeys((STYLE, folder / f"{page}.css"))
+    made.filters.update(points=text.points, clip=text.clip, t=translate)
     made.globals.update(
-        tell=tell,
-        tell_many=tell_many,
-        told=told,
-        said=in_language,
+        tr=tr,
+        tr_many=tr_many,
+        t=translate,
         number=number,
-        spoken=spoken,
-        style=Markup("".join(path.read_text(encoding="utf-8") for path in (STYLE, *styles))),
+        language=current,
+        style=Markup("".join(path.read_text(encoding="utf-8") for path in styles)),
         script=Markup(code),
         script_digest=base64.b64encode(hashlib.sha256(code.encode()).digest()).decode(),
     )
     return made
+
+
+class BesideTheTemplates(FileSystemBytecodeCache):
+    """Where nothing can be written, templates are compiled each time.
+
+    jinja2 itself sees whether what it finds is of this source and of Python's version; its own
+    version and ours, which sets what compiling depends on, are in the file's name.
+
+    Args:
+        folder: the templates'.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        made_by = f"{version('jinja2')}-{versions.grader()}"
+        cache = cache_from_source(str(folder / f"template_%s_{made_by}.py"))
+        super().__init__(*os.path.split(cache))
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        """Called by jinja2: fill the bucket, if there is something for it."""
+        with suppress(Exception):  # a file that is damaged raises anything
+            super().load_bytecode(bucket)
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        """Called by jinja2: keep what is in the bucket."""
+        if not sys.dont_write_bytecode:
+            with suppress(OSError):
+                Path(self.directory).mkdir(exist_ok=True)
+                super().dump_bytecode(bucket)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from grader.language.telling import in_language
-from grader.scenes.view import Floats, Rest, Track, View
+from grader.recording.view import Floats, Rest, Times, Track, View
+from grader.translations import translate
 
 #: A track has no more samples than this, however long the run.
 _SAMPLES = 1000
@@ -78,20 +77,20 @@ class Film:
     drawn: tuple[str, ...]
 
 
-def film(view: View, run_ticks: int, tick_s: float) -> Film:
+def film(view: View, duration_ns: int) -> Film:
     """Thin a view out to what an animation needs.
 
     Args:
-        run_ticks: how many ticks were recorded, of `tick_s` [s] each.
+        duration_ns: how long was recorded.
     """
-    ticks = _sample_ticks(run_ticks)
+    times_ns = _samples(duration_ns, view.step_ns)
     return Film(
-        np.asarray(ticks * tick_s, dtype=np.float64),
-        tuple(_sampled(track, ticks) for track in view.tracks[:_TRACKS]),
-        tuple(sorted({int(np.searchsorted(ticks, tick)) for tick in view.cleared})),
+        times_ns / 1e9,
+        tuple(_sampled(track, times_ns) for track in view.tracks[:_TRACKS]),
+        tuple(sorted({int(np.searchsorted(times_ns, time_ns)) for time_ns in view.cleared})),
         view.background,
         view.rest,
-        in_language(view.drawn),
+        tuple(map(translate, view.drawn)),
     )
 
 
@@ -108,31 +107,32 @@ def svg_path(x: Floats, y: Floats) -> str:
     return "".join(parts)
 
 
-def _sample_ticks(ticks: int) -> npt.NDArray[np.int64]:
-    """Every so many ticks, and the last one."""
-    step = max(1, -(-ticks // _SAMPLES))
-    samples = np.arange(1, ticks + 1, step, dtype=np.int64)
-    if ticks and samples[-1] != ticks:
-        samples = np.append(samples, ticks)
-    return samples
+def _samples(duration_ns: int, step_ns: int) -> Times:
+    """Every so many steps, and the last one [ns]."""
+    steps = duration_ns // step_ns
+    each = max(1, -(-steps // _SAMPLES))
+    samples = np.arange(1, steps + 1, each, dtype=np.int64)
+    if steps and samples[-1] != steps:
+        samples = np.append(samples, steps)
+    return samples * step_ns
 
 
-def _sampled(track: Track, ticks: npt.NDArray[np.int64]) -> SampledTrack:
-    at = np.searchsorted(track.ticks, ticks)
-    there = np.isin(ticks, track.ticks)
-    x, y, theta = (np.full(len(ticks), np.nan) for _ in range(3))
+def _sampled(track: Track, times_ns: Times) -> SampledTrack:
+    at = np.searchsorted(track.times_ns, times_ns)
+    there = np.isin(times_ns, track.times_ns)
+    x, y, theta = (np.full(len(times_ns), np.nan) for _ in range(3))
     for sampled, values in ((x, track.x), (y, track.y), (theta, track.theta)):
         sampled[there] = values[at[there]]
-    return SampledTrack(track.name, x, y, theta, _stretches(track, ticks))
+    return SampledTrack(track.name, x, y, theta, _stretches(track, times_ns))
 
 
-def _stretches(track: Track, ticks: npt.NDArray[np.int64]) -> tuple[Stretch, ...]:
+def _stretches(track: Track, times_ns: Times) -> tuple[Stretch, ...]:
     """The way by pens; of several changes between two samples the last counts."""
     pen, *later = track.pens
-    changes = {int(np.searchsorted(ticks, change.tick)): change for change in later}
+    changes = {int(np.searchsorted(times_ns, change.time_ns)): change for change in later}
     stretches: list[Stretch] = []
     start = 0
-    for sample, change in [*sorted(changes.items()), (len(ticks) - 1, None)]:
+    for sample, change in [*sorted(changes.items()), (len(times_ns) - 1, None)]:
         # The stroke that leads to the sample of a change has the new colour already.
         end = max(sample - 1, start) if change else sample
         if end > start:

@@ -4,13 +4,12 @@ Each of the two processes has these put into its rclpy; neither side is imported
 
 | module | what it does |
 |---|---|
-| `protocol` | what goes over the link between the two processes |
-| `link` | how that goes through a socket |
+| `protocol` | what goes over the link between the two processes, and where their time begins |
 | `registry` | the readers and writers of a process, and what has arrived |
 | `endpoints`, `actions` | rclpy's publishers, subscriptions, clients, services, actions |
-| `waitsets`, `events` | rclpy's wait sets, timers, guards, events: they wait in virtual time |
+| `waitsets` | rclpy's wait sets, timers, guards, events: they wait in virtual time |
 | `rclpy_clocks` | rclpy's clocks |
 | `contract` | what is assumed of rclpy's inside, and whether it holds |
 | `faults` | whose an exception is: the program's or ours |
-| `times`, `real` | where virtual time begins; the real clock, kept before it is replaced |
+| `real` | the real clock, kept before it is replaced |
 """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 from action_msgs.msg import GoalStatus, GoalStatusArray
@@ -18,9 +19,9 @@ from grader.run.lockstep.endpoints import (
     ros_type,
     serialized,
 )
-from grader.run.lockstep.faults import as_python_does, pass_on
-from grader.run.lockstep.registry import Reader, Writer
-from grader.run.lockstep.times import NEVER
+from grader.run.lockstep.faults import pass_on
+from grader.run.lockstep.protocol import NEVER
+from grader.run.lockstep.registry import Arrived, Reader, Writer
 
 _ActionClient, _ActionServer = _rclpy.ActionClient, _rclpy.ActionServer
 _GoalHandle = _rclpy.ActionGoalHandle
@@ -31,6 +32,10 @@ def install() -> None:
     _rclpy.ActionClient = ActionClient
     _rclpy.ActionServer = ActionServer
     _rclpy.ActionGoalHandle = ActionGoalHandle
+
+
+#: The services of an action by the words of rclpy's methods, and their names below the action's.
+SERVICES = {"goal": "send_goal", "cancel": "cancel_goal", "result": "get_result"}
 
 
 class _Action(Registered):
@@ -69,10 +74,29 @@ class _Action(Registered):
         )
 
 
-def _take(reader: Reader) -> Any:
-    """The oldest message; None if there is none."""
+def _take(reader: Reader, identity: Callable[[Arrived], Any]) -> Any:
+    """The oldest message, behind what tells it from others; (None, None) if there is none."""
     item = reader.pop()
-    return None if item is None else deserialized(item.data, reader.message)
+    if item is None:
+        return None, None
+    return identity(item), deserialized(item.data, reader.message)
+
+
+def _sends_request(service: str) -> Callable[[ActionClient, Any], int]:
+    """Return the method that sends a request of one of an action's services."""
+    method = getattr(_ActionClient, f"send_{service}_request")
+
+    def send(self: ActionClient, request: Any) -> int:
+        self.connect(method, request)
+        writer, reader = self.requests[service], self.responses[service]
+        return endpoints.REGISTRY.ask(writer, reader, serialized(request))
+
+    return send
+
+
+def _takes_response(service: str) -> Callable[[ActionClient, type], Any]:
+    """Return the method that gives the oldest response with its number, or (None, None)."""
+    return lambda self, _: _take(self.responses[service], lambda item: item.number)
 
 
 class ActionClient(_Action, _rclpy.ActionClient):
@@ -85,16 +109,18 @@ class ActionClient(_Action, _rclpy.ActionClient):
         profiles = (goal, result, cancel, feedback, status)
         pass_on(_ActionClient.__init__, self, node, kind, name, *profiles, *more)
         self.prepare(node, kind, name)
-        self.goal = self.writer("request", "send_goal", goal)
-        self.cancel = self.writer("request", "cancel_goal", cancel)
-        self.result = self.writer("request", "get_result", result)
-        self.goals = self.reader("response", "send_goal", goal)
-        self.cancels = self.reader("response", "cancel_goal", cancel)
-        self.results = self.reader("response", "get_result", result)
+        services = dict(zip(SERVICES, (goal, cancel, result), strict=True))
+        self.requests = {s: self.writer("request", SERVICES[s], qos) for s, qos in services.items()}
+        self.responses = {
+            s: self.reader("response", SERVICES[s], qos) for s, qos in services.items()
+        }
         self.feedback = self.reader("topic", "feedback", feedback)
         self.status = self.reader("topic", "status", status)
-        self.readers = [self.feedback, self.status, self.goals, self.cancels, self.results]
-        self.register(node, self.goal, self.cancel, self.result, *self.readers)
+        self.readers = [self.feedback, self.status, *self.responses.values()]
+        self.register(node, *self.requests.values(), *self.readers)
+
+    send_goal_request, send_cancel_request, send_result_request = map(_sends_request, SERVICES)
+    take_goal_response, take_cancel_response, take_result_response = map(_takes_response, SERVICES)
 
     def is_action_server_available(self) -> bool:
         """As in rclpy."""
@@ -102,50 +128,17 @@ class ActionClient(_Action, _rclpy.ActionClient):
             return bool(pass_on(_ActionClient.is_action_server_available, self))
         registry = endpoints.REGISTRY
         registry.before_question()
-        return all(map(registry.count_readers, (self.goal, self.cancel, self.result))) and all(
+        return all(map(registry.count_readers, self.requests.values())) and all(
             map(registry.count_writers, (self.feedback, self.status))
         )
 
-    def send_goal_request(self, request: Any) -> int:
-        """As in rclpy."""
-        endpoints.REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_ActionClient.send_goal_request, self, request)
-        return endpoints.REGISTRY.ask(self.goal, self.goals, serialized(request))
-
-    def send_cancel_request(self, request: Any) -> int:
-        """As in rclpy."""
-        endpoints.REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_ActionClient.send_cancel_request, self, request)
-        return endpoints.REGISTRY.ask(self.cancel, self.cancels, serialized(request))
-
-    def send_result_request(self, request: Any) -> int:
-        """As in rclpy."""
-        endpoints.REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_ActionClient.send_result_request, self, request)
-        return endpoints.REGISTRY.ask(self.result, self.results, serialized(request))
-
-    def take_goal_response(self, _: type) -> Any:
-        """The oldest with its number, or (None, None)."""
-        return _take_response(self.goals)
-
-    def take_cancel_response(self, _: type) -> Any:
-        """The oldest with its number, or (None, None)."""
-        return _take_response(self.cancels)
-
-    def take_result_response(self, _: type) -> Any:
-        """The oldest with its number, or (None, None)."""
-        return _take_response(self.results)
-
     def take_feedback(self, _: type) -> Any:
         """The oldest, or None."""
-        return _take(self.feedback)
+        return _take(self.feedback, id)[1]
 
     def take_status(self, _: type) -> Any:
         """The oldest, or None."""
-        return _take(self.status)
+        return _take(self.status, id)[1]
 
     def add_to_waitset(self, wait_set: Any) -> None:
         """Have a wait set look at our readers."""
@@ -156,11 +149,14 @@ class ActionClient(_Action, _rclpy.ActionClient):
         return tuple(bool(reader.items) for reader in self.readers)
 
 
-def _take_response(reader: Reader) -> Any:
-    item = reader.pop()
-    if item is None:
-        return None, None
-    return item.number, deserialized(item.data, reader.message)
+def _takes_request(service: str) -> Callable[[ActionServer, type], Any]:
+    """Return the method that gives the oldest request behind its header, or (None, None)."""
+    return lambda self, _: _take(self.requests[service], request_id)
+
+
+def _sends_response(service: str) -> Callable[[ActionServer, Any, Any], None]:
+    """Return the method that answers a request."""
+    return lambda self, to, response: self.respond(self.responses[service], to, response)
 
 
 class ActionServer(_Action, _rclpy.ActionServer):
@@ -177,54 +173,27 @@ class ActionServer(_Action, _rclpy.ActionServer):
         rest = (goal, result, cancel, feedback, status, result_timeout, *more)
         pass_on(_ActionServer.__init__, self, node, clock, kind, name, *rest)
         self.prepare(node, kind, name)
-        parts = (("send_goal", goal), ("cancel_goal", cancel), ("get_result", result))
-        self.readers = [self.reader("request", part, c_qos) for part, c_qos in parts]
-        self.answers = [self.writer("response", part, c_qos) for part, c_qos in parts]
+        services = dict(zip(SERVICES, (goal, cancel, result), strict=True))
+        self.requests = {s: self.reader("request", SERVICES[s], qos) for s, qos in services.items()}
+        self.responses = {
+            s: self.writer("response", SERVICES[s], qos) for s, qos in services.items()
+        }
         self.feedback = self.writer("topic", "feedback", feedback)
         self.status = self.writer("topic", "status", status)
-        self.register(node, *self.readers, *self.answers, self.feedback, self.status)
+        both = (*self.requests.values(), *self.responses.values())
+        self.register(node, *both, self.feedback, self.status)
 
-    def take_goal_request(self, _: type) -> Any:
-        """The oldest with its header, or (None, None)."""
-        return _take_request(self.readers[0])
-
-    def take_cancel_request(self, _: type) -> Any:
-        """The oldest with its header, or (None, None)."""
-        return _take_request(self.readers[1])
-
-    def take_result_request(self, _: type) -> Any:
-        """The oldest with its header, or (None, None)."""
-        return _take_request(self.readers[2])
-
-    def send_goal_response(self, to: Any, response: Any) -> None:
-        """As in rclpy."""
-        self._respond(self.answers[0], to, response)
-
-    def send_cancel_response(self, to: Any, response: Any) -> None:
-        """As in rclpy."""
-        self._respond(self.answers[1], to, response)
-
-    def send_result_response(self, to: Any, response: Any) -> None:
-        """As in rclpy."""
-        self._respond(self.answers[2], to, response)
-
-    def _respond(self, writer: Writer, to: Any, response: Any) -> None:
-        if not self.is_valid():
-            as_python_does(_rclpy.RCLError("failed to send response: rclpy is shut down"))
-        endpoints.REGISTRY.respond(writer, to.request, serialized(response))
+    take_goal_request, take_cancel_request, take_result_request = map(_takes_request, SERVICES)
+    send_goal_response, send_cancel_response, send_result_response = map(_sends_response, SERVICES)
 
     def publish_feedback(self, message: Any) -> None:
         """As in rclpy."""
-        endpoints.REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_ActionServer.publish_feedback, self, message)
+        self.connect(_ActionServer.publish_feedback, message)
         endpoints.REGISTRY.publish(self.feedback, serialized(message))
 
     def publish_status(self) -> None:
         """As in rclpy: the states of all goals that have not expired."""
-        endpoints.REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_ActionServer.publish_status, self)
+        self.connect(_ActionServer.publish_status)
         goals = [goal for reference in self._goals if (goal := reference()) is not None]
         states = [
             GoalStatus(goal_info=goal.goal_info, status=int(goal.get_status())) for goal in goals
@@ -249,19 +218,12 @@ class ActionServer(_Action, _rclpy.ActionServer):
 
     def add_to_waitset(self, wait_set: Any) -> None:
         """Have a wait set look at our readers."""
-        wait_set.add_readers(self.readers)
+        wait_set.add_readers([*self.requests.values()])
 
     def is_ready(self, _: Any) -> tuple[bool, ...]:
         """Whether there is a goal, a cancel request, a result request, an expired goal."""
         has_expired = endpoints.REGISTRY.now_ns() > self._first_expiry_ns
-        return (*(bool(reader.items) for reader in self.readers), has_expired)
-
-
-def _take_request(reader: Reader) -> Any:
-    item = reader.pop()
-    if item is None:
-        return None, None
-    return request_id(item), deserialized(item.data, reader.message)
+        return (*(bool(reader.items) for reader in self.requests.values()), has_expired)
 
 
 class ActionGoalHandle(_rclpy.ActionGoalHandle):

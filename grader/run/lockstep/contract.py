@@ -9,8 +9,8 @@ time; a node, without which there is no entity, takes ten times as much, and wou
 | group | who relies on it |
 |---|---|
 | `ENTITIES` | both sides: `endpoints`, `actions`, `waitsets`, `rclpy_clocks` |
-| `PROGRAM` | the submission's side: `install`, `graph`, `waiting`, `chance`, `deadlock` |
-| `EXECUTOR` | `student.executor`, where it does not stand aside |
+| `PROGRAM` | the submission's side: `clock.rclpy_time`, and `observe.stuck` by their names |
+| `EXECUTOR` | `clock.executor`, where it does not stand aside |
 """
 
 from __future__ import annotations
@@ -18,17 +18,18 @@ from __future__ import annotations
 import importlib
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from itertools import chain
+from typing import Any, NamedTuple
 
 from grader import versions
+from grader.message import NOTHING, Message, msg
 
 #: Stands for rclpy's extension module, whatever it is called.
 CPP = "_rclpy"
 
 
-@dataclass(frozen=True)
-class Assumption:
+class Assumption(NamedTuple):
     """Something that must hold.
 
     Attributes:
@@ -41,17 +42,20 @@ class Assumption:
     check: Callable[[], str]
 
 
-def broken(*groups: Iterable[Assumption]) -> str:
-    """What of these (of what both sides need) does not hold, in one line; '' where all does."""
-    for group in groups or (ENTITIES,):
-        for assumption in group:
-            try:
-                fault = assumption.check()
-            except Exception as error:
-                fault = f"{assumption.name}: {error!r}"
-            if fault:
-                return f"virtual time does not fit rclpy {versions.rclpy()}: {fault}"
-    return ""
+def broken(*groups: Iterable[Assumption]) -> Message:
+    """What of these (of what both sides need) does not hold, if anything, in one line."""
+    for name, check in chain.from_iterable(groups or (ENTITIES,)):
+        try:
+            fault = check()
+        except Exception as error:
+            fault = f"{name}: {error!r}"
+        if fault:
+            return msg(
+                "virtual time does not fit rclpy {version}: {fault}",
+                version=versions.rclpy(),
+                fault=fault,
+            )
+    return NOTHING
 
 
 def _module(name: str) -> Any:
@@ -65,53 +69,44 @@ def _module(name: str) -> Any:
 
 def _has(module: str, owner: str, *names: str) -> list[Assumption]:
     """A class, or with '' a module, has attributes."""
+    return [Assumption(f"{owner}.{n}", partial(_has_no, module, owner, n)) for n in names]
 
-    def look(name: str) -> Callable[[], str]:
-        def check() -> str:
-            thing = _module(module)
-            if owner and not hasattr(thing, owner):
-                return f"there is no {module}.{owner}"
-            found = hasattr(getattr(thing, owner) if owner else thing, name)
-            return "" if found else f"{owner or module} has no {name}"
 
-        return check
-
-    return [Assumption(f"{owner}.{name}", look(name)) for name in names]
+def _has_no(module: str, owner: str, name: str) -> str:
+    thing = _module(module)
+    if owner and not hasattr(thing, owner):
+        return f"there is no {module}.{owner}"
+    found = hasattr(getattr(thing, owner) if owner else thing, name)
+    return "" if found else f"{owner or module} has no {name}"
 
 
 def _sets(module: str, owner: str, *names: str) -> list[Assumption]:
     """A class gives its instances attributes when they are made."""
+    return [Assumption(f"{owner}.{n}", partial(_sets_no, module, owner, n)) for n in names]
 
-    def look(name: str) -> Callable[[], str]:
-        def check() -> str:
-            init = getattr(_module(module), owner).__init__
-            return "" if name in init.__code__.co_names else f"{owner} has no {name}"
 
-        return check
-
-    return [Assumption(f"{owner}.{name}", look(name)) for name in names]
+def _sets_no(module: str, owner: str, name: str) -> str:
+    init = getattr(_module(module), owner).__init__
+    return "" if name in init.__code__.co_names else f"{owner} has no {name}"
 
 
 def _takes(owner: str, **counts: int) -> list[Assumption]:
     """Methods of a C++ class take so many arguments; a constructor's further ones are handed on."""
+    return [Assumption(f"{owner}.{n}", partial(_takes_other, owner, n, counts[n])) for n in counts]
 
-    def look(name: str, count: int) -> Callable[[], str]:
-        def check() -> str:
-            kind = getattr(_module(CPP), owner, None)
-            if kind is None:
-                return f"there is no {owner}"
-            method = getattr(kind, name, None)
-            if method is None:
-                return f"{owner} has no {name}"
-            most, least = _arguments(method.__doc__ or "")
-            if least <= count <= most or (name == "__init__" and count <= most):
-                return ""
-            shown = owner if name == "__init__" else f"{owner}.{name}"
-            return f"{shown}() takes {most} arguments instead of {count}"
 
-        return check
-
-    return [Assumption(f"{owner}.{name}", look(name, n)) for name, n in counts.items()]
+def _takes_other(owner: str, name: str, count: int) -> str:
+    kind = getattr(_module(CPP), owner, None)
+    if kind is None:
+        return f"there is no {owner}"
+    method = getattr(kind, name, None)
+    if method is None:
+        return f"{owner} has no {name}"
+    most, least = _arguments(method.__doc__ or "")
+    if least <= count <= most or (name == "__init__" and count <= most):
+        return ""
+    shown = owner if name == "__init__" else f"{owner}.{name}"
+    return f"{shown}() takes {most} arguments instead of {count}"
 
 
 def _arguments(doc: str) -> tuple[int, int]:
@@ -230,7 +225,7 @@ PROGRAM: tuple[Assumption, ...] = (
     *_has("rclpy.action", "ActionClient", "send_goal", "_get_result", "_cancel_goal"),
     *_has("rclpy.node", "Node", "__init__", "handle", "get_node_names_and_namespaces"),
     *_has("rclpy.node", "Node", "count_publishers", "count_subscribers"),
-    # what `waiting` puts in its place
+    # what `clock.rclpy_time` puts in its place
     *_takes("ClockEvent", __init__=0, wait_until_steady=2, wait_until_system=2, wait_until_ros=2),
     *_takes("ClockEvent", set=0, clear=0, is_set=0),
 )
@@ -254,8 +249,3 @@ EXECUTOR: tuple[Assumption, ...] = (
     *_sets("rclpy.event_handler", "EventHandler", "_ready_to_take_data"),
     *_sets("rclpy.guard_condition", "GuardCondition", "_executor_triggered"),
 )
-
-
-def names() -> list[str]:
-    """What all of this is about."""
-    return [assumption.name for group in (ENTITIES, PROGRAM, EXECUTOR) for assumption in group]

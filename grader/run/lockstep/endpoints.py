@@ -7,13 +7,17 @@ events of its quality of service come from it. Used by both sides of the link.
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from typing import Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 
+from grader.message import msg
 from grader.run.lockstep.faults import as_python_does, pass_on
 from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
 
@@ -23,6 +27,9 @@ _StateMachine = _rclpy.LifecycleStateMachine
 _serialize, _deserialize = _rclpy.rclpy_serialize, _rclpy.rclpy_deserialize
 
 REGISTRY: EndpointRegistry
+KINDS = ("msg", "srv", "action")
+#: Interfaces that every node of rclpy's needs.
+EVERY_NODE = ("rcl_interfaces", "type_description_interfaces")
 
 
 def install(registry: EndpointRegistry) -> None:
@@ -90,6 +97,18 @@ class Registered:
             REGISTRY.add(endpoint)
         weakref.finalize(self, REGISTRY.remove, self.endpoints).atexit = False
 
+    def connect(self, method: Callable[..., Any], *message: Any) -> None:
+        """Connect what a message is to reach; where rclpy is down, let its own method say so."""
+        REGISTRY.connect()
+        if not self.is_valid():
+            pass_on(method, self, *message)
+
+    def respond(self, writer: Writer, to: Any, response: Any) -> None:
+        """Send the response to a request."""
+        if not self.is_valid():
+            as_python_does(_rclpy.RCLError("failed to send response: rclpy is shut down"))
+        REGISTRY.respond(writer, to.request, serialized(response))
+
     def destroy_when_not_in_use(self) -> None:
         """As in rclpy."""
         REGISTRY.remove(self.endpoints)
@@ -114,16 +133,12 @@ class Publisher(Registered, _rclpy.Publisher):
 
     def publish(self, message: Any) -> None:
         """As in rclpy."""
-        REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_Publisher.publish, self, message)
+        self.connect(_Publisher.publish, message)
         REGISTRY.publish(self.writer, serialized(message))
 
     def publish_raw(self, message: bytes) -> None:
         """Publish serialized bytes."""
-        REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_Publisher.publish_raw, self, message)
+        self.connect(_Publisher.publish_raw, message)
         REGISTRY.publish(self.writer, message)
 
 
@@ -152,7 +167,7 @@ class Subscription(Registered, _rclpy.Subscription):
 
     def _refuse_filter(self) -> None:
         """We do not filter."""
-        REGISTRY.refuse("subscribes with a content filter")
+        REGISTRY.refuse(msg("subscribes with a content filter"))
 
     def take_message(self, _: type, raw: bool) -> Any:
         """The oldest message in the reader with what is known of it, or None."""
@@ -228,9 +243,7 @@ class Client(Registered, _rclpy.Client):
 
     def send_request(self, request: Any) -> int:
         """As in rclpy."""
-        REGISTRY.connect()
-        if not self.is_valid():
-            pass_on(_Client.send_request, self, request)
+        self.connect(_Client.send_request, request)
         return REGISTRY.ask(self.writer, self.reader, serialized(request))
 
     def take_response(self, _: type) -> Any:
@@ -260,6 +273,24 @@ class Service(Registered, _rclpy.Service):
 
     def service_send_response(self, response: Any, to: Any) -> None:
         """As in rclpy."""
-        if not self.is_valid():
-            as_python_does(_rclpy.RCLError("failed to send response: rclpy is shut down"))
-        REGISTRY.respond(self.writer, to.request, serialized(response))
+        self.respond(self.writer, to, response)
+
+
+# What a fork server of either side imports beforehand ----------------------------------------
+
+
+def import_messages(packages: Iterable[str]) -> None:
+    """Import what there is of these packages' interfaces, and load their type supports."""
+    for package in (*EVERY_NODE, *packages):
+        for kind in KINDS:
+            with suppress(ImportError):
+                _load(f"{package}.{kind}")
+    _rclpy.rclpy_get_rmw_implementation_identifier()  # loads the middleware
+    # rclpy's loggers ask for their caller, which looks up the file of every module, once
+    inspect.getmodule(inspect.currentframe())
+
+
+def _load(module: str) -> None:
+    for value in list(vars(importlib.import_module(module)).values()):
+        if isinstance(value, type) and hasattr(value, "__import_type_support__"):
+            value.__import_type_support__()

@@ -15,22 +15,24 @@ from pathlib import Path
 from types import CodeType, TracebackType
 from typing import Any, TypeVar
 
+from grader.message import Message, msg
+
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 #: The folder of all our code that runs in a submission's process.
 OURS = str(Path(__file__).parents[1])
-#: What starts a submission, in real time too.
-_STARTER = str(Path(OURS) / "student" / "main.py")
+#: What loads a submission's program, in real time too.
+_LOADER = str(Path(OURS) / "student" / "loading.py")
 #: What depends on how much a program has used up, not on whose line is the last.
 _NOBODYS = (RecursionError, MemoryError)
 
 
-def _go_on(_: str) -> None: ...
+def _go_on(_: Message) -> None: ...
 
 
 #: Called with what `whose` says of an exception of ours; in a submission's process it does not
 #: return. The simulator's process has one place that sees all exceptions, and needs no call.
-on_fault: Callable[[str], None] = _go_on
+on_fault: Callable[[Message], None] = _go_on
 
 
 def pass_on(function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
@@ -55,14 +57,14 @@ def whose(error: BaseException) -> str:
         trace = trace.tb_next
     code = trace.tb_frame.f_code
     file = code.co_filename
-    if code in _THE_PROGRAMS or file == _STARTER or not is_ours(file):
+    if code in _THE_PROGRAMS or file == _LOADER or not is_ours(file):
         return ""
     return f"{type(error).__name__} in {Path(file).name}, line {trace.tb_lineno}"
 
 
-def failed(what: str) -> str:
+def failed(what: str) -> Message:
     """The sentence for a result's flags; `what` as from `whose`."""
-    return f"virtual time itself failed ({what})"
+    return msg("virtual time itself failed ({where})", where=what)
 
 
 def report(error: BaseException) -> None:
@@ -97,6 +99,13 @@ def is_ours(filename: str) -> bool:
     return filename.startswith(OURS)
 
 
+def is_loader(filename: str) -> bool:
+    """Whether a file is of Python's, and loads programs."""
+    return filename.startswith(("<frozen runpy", "<frozen importlib")) or filename.endswith(
+        ("/runpy.py", "/importlib/__init__.py")
+    )
+
+
 def hide_our_frames(error: BaseException) -> None:
     """Give an exception, and those that led to it, the tracebacks of a student's desk."""
     seen: list[BaseException] = []
@@ -110,9 +119,10 @@ def hide_our_frames(error: BaseException) -> None:
 
 
 def _without_our_frames(trace: TracebackType | None) -> TracebackType | None:
-    frames = []
+    frames: list[TracebackType] = []
     while trace is not None:
-        if not is_ours(trace.tb_frame.f_code.co_filename):
+        file = trace.tb_frame.f_code.co_filename
+        if not is_ours(file) and (frames or not is_loader(file)):
             frames.append(trace)
         trace = trace.tb_next
     rest: TracebackType | None = None

@@ -10,10 +10,10 @@ The student's process drives, over a SOCK_SEQPACKET socket pair:
 | simulator | `Reply` | this tick is over; here are messages, some of ticks to come |
 | student | `Note` | something about the student's process; not answered |
 
-With the first table the simulator hands out two more things: the end of a second socket pair, on
-which `Mail` goes to the simulator, and a page in which the student's side writes the tick that it
-has reached (`PROGRESS`). The simulator looks at both when it is asked to advance, and when the
-student's process ends or stalls without a word: what that has sent before counts.
+With the first table the simulator hands out the end of a second socket pair, on which `Mail` goes
+to the simulator. The tick that it has reached the student's side writes at the start of a page that
+both have from the grader (`PROGRESS`). The simulator looks at both when it is asked to advance, and
+when the student's process ends or stalls without a word: what that has sent before counts.
 
 Messages travel here and not by DDS, in the bytes that DDS would have carried (CDR): DDS delivers
 when it likes, and a message that it has delivered late would change the run.
@@ -25,27 +25,47 @@ simulator checks the numbers. It can distort its own pace, nothing else.
 from __future__ import annotations
 
 import json
+import mmap
 import re
+import socket
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from enum import IntEnum
 from struct import Struct
 from typing import Any, NamedTuple
+
+from grader.message import NOTHING, Message
 
 #: A tick's length [ns]. As in turtlesim_py.world.arena, whose import would cost a student's
 #: process numpy and Pillow.
 TICK_NS = 16_000_000
 #: More ticks than any run has; "until something happens".
 FOREVER = 1 << 40
+#: The run starts on 15 June 2025 at 15:06:40 UTC, 1000 s after the machine did.
+EPOCH_NS = 1_750_000_000 * 10**9
+BOOT_NS = 1000 * 10**9
+#: No deadline [ns since the start of the run].
+NEVER = 1 << 62
+
+#: The most that is handed to the system at once: a socket takes no longer packet as a whole.
+PIECE_BYTES = 150_000
+#: The longest packet from the simulator: a picture of the window takes 0.75 MB, and some may come
+#: at once.
+LIMIT_BYTES = 64_000_000
+#: Before each piece of a longer packet, and before its last one.
+MORE, LAST = b"+", b"-"
 
 #: The tick that the student's side has reached, at the start of a page that both see: it is known
-#: there when that side ends without a word.
-PROGRESS = Struct("<Q")
+#: there when that side ends without a word. So much of the page is for it: what can be mapped.
+PROGRESS, PROGRESS_BYTES = Struct("<Q"), mmap.PAGESIZE
 
 _HEAD = Struct("<cQIQ?")
 _PARCEL = Struct("<IIQQI")
 _CHANNEL = re.compile(r"[a-z]+ /[\w/]{0,300}", re.ASCII)
 _TOPIC = re.compile(r"/[\w/]{0,300}", re.ASCII)
 _TYPE = re.compile(r"\w{1,100}/\w{1,10}/\w{1,200}", re.ASCII)
+#: So much is taken of each text of a remark [characters].
+_LONGEST_REMARK = 1000
 
 
 class ProtocolError(Exception):
@@ -168,10 +188,10 @@ class Mail:
 
 @dataclass(frozen=True)
 class Note:
-    """Something about the student's process."""
+    """Something about the student's process, with what there is to say of it."""
 
     kind: Kind
-    text: str = ""
+    remark: Message = NOTHING
 
 
 Packet = Table | Interests | Advance | Reply | Mail | Note
@@ -186,8 +206,8 @@ def encode(packet: Packet) -> bytes:
             return _HEAD.pack(b"R", tick, state, foreseen, False) + _parcels(parcels)
         case Mail(parcels):
             return _HEAD.pack(b"M", 0, 0, 0, False) + _parcels(parcels)
-        case Note(kind, text):
-            return _HEAD.pack(b"N", 0, kind, 0, False) + text.encode("utf-8", "replace")[:1000]
+        case Note(kind, remark):
+            return _HEAD.pack(b"N", 0, kind, 0, False) + json.dumps(remark.serialise()).encode()
         case Interests(reads, publishes):
             return b"I" + json.dumps([reads, publishes]).encode()
         case Table(added, removed):
@@ -210,7 +230,7 @@ def decode(data: bytes) -> Packet:
         name, number, other, further, flag = _HEAD.unpack_from(data)
         match name:
             case b"N":
-                return Note(Kind(other), data[_HEAD.size :].decode("utf-8", "replace"))
+                return Note(Kind(other), Message.parse(json.loads(data[_HEAD.size :]), _remarked))
             case b"A":
                 return Advance(number, other, further, flag)
             case b"R":
@@ -220,6 +240,14 @@ def decode(data: bytes) -> Packet:
     except Exception as error:
         raise ProtocolError(f"{data[:32]!r}: {error!r}") from None
     raise ProtocolError(f"{data[:32]!r}: no such packet")
+
+
+def _remarked(text: object) -> str:
+    if not isinstance(text, str):
+        raise ValueError(f"no part of a remark: {text!r:.100}")
+    from grader.text import without_controls  # here: a submission's process has it not in reach
+
+    return without_controls(text[:_LONGEST_REMARK], "?")
 
 
 def _parcels(parcels: Parcels) -> bytes:
@@ -258,3 +286,51 @@ def _interests(data: Any) -> Interests:
         if not _TOPIC.fullmatch(topic) or not _TYPE.fullmatch(kind):
             raise ValueError(f"no topic: {topic!r:.100} {kind!r:.100}")
     return Interests(tuple(reads), tuple((topic, kind) for topic, kind in publishes))
+
+
+# Through a socket: whole packets, however long they are --------------------------------------
+
+
+def pieces(data: bytes) -> Iterator[bytes]:
+    """What is to be sent, one after the other, so that a `PacketReader` reads the packet."""
+    if len(data) <= PIECE_BYTES:
+        yield data
+        return
+    for begin in range(0, len(data), PIECE_BYTES):
+        end = begin + PIECE_BYTES
+        yield (LAST if end >= len(data) else MORE) + data[begin:end]
+
+
+class PacketReader:
+    """Puts pieces together again."""
+
+    def __init__(self, link: socket.socket, limit_bytes: int = LIMIT_BYTES) -> None:
+        self._link = link
+        self._limit_bytes = limit_bytes
+        self._pieces: list[bytes] = []
+        self._length = 0
+
+    def read(self) -> bytes | None:
+        """Receive once: a packet, or b"" when the other side has gone; None: there is more of it.
+
+        Raises:
+            OSError: the other side has gone.
+            ProtocolError: it is longer than any of ours, or in pieces that are none of ours.
+        """
+        data = self._link.recv(PIECE_BYTES + 1)
+        if data[:1] not in (MORE, LAST):
+            if self._pieces and data:
+                raise ProtocolError(f"{data[:32]!r} in the middle of a packet")
+            return data
+        is_last = data[:1] == LAST
+        if not is_last and len(data) != PIECE_BYTES + 1:  # many small ones would fill memory too
+            raise ProtocolError(f"a piece of {len(data)} bytes")
+        self._pieces.append(data[1:])
+        self._length += len(data)
+        if self._length > self._limit_bytes:
+            raise ProtocolError(f"a packet of more than {self._limit_bytes} bytes")
+        if not is_last:
+            return None
+        whole = b"".join(self._pieces)
+        self._pieces, self._length = [], 0
+        return whole

@@ -6,7 +6,7 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
-from grader.run.lockstep.times import BOOT_NS, EPOCH_NS
+from grader.run.lockstep.protocol import BOOT_NS, EPOCH_NS
 
 
 def install(

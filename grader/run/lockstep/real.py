@@ -3,35 +3,17 @@
 Import this first, and `time` for anything else never.
 """
 
+import _thread
 import os
 import sys
-from _thread import allocate_lock, get_ident, start_new_thread
+import time
 from contextlib import suppress
-from time import (
-    asctime,
-    clock_gettime_ns,
-    ctime,
-    gmtime,
-    localtime,
-    monotonic,
-    sleep,
-    strftime,
-)
 
-__all__ = [
-    "allocate_lock",
-    "asctime",
-    "clock_gettime_ns",
-    "ctime",
-    "get_ident",
-    "gmtime",
-    "leave",
-    "localtime",
-    "monotonic",
-    "sleep",
-    "start_new_thread",
-    "strftime",
-]
+allocate_lock, get_ident = _thread.allocate_lock, _thread.get_ident
+start_new_thread = _thread.start_new_thread
+clock_gettime_ns, monotonic, sleep = time.clock_gettime_ns, time.monotonic, time.sleep
+gmtime, localtime, strftime = time.gmtime, time.localtime, time.strftime
+asctime, ctime = time.asctime, time.ctime
 
 
 def leave(code: int) -> None:

@@ -11,9 +11,9 @@ A channel is what in DDS is a topic: "topic /chatter", "request /clear", "respon
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from rclpy.qos import (
     QoSCompatibility,
@@ -23,6 +23,10 @@ from rclpy.qos import (
     QoSReliabilityPolicy,
     qos_check_compatible,
 )
+
+from grader.message import Message
+
+Kind = TypeVar("Kind", bound="Endpoint")
 
 
 @dataclass(eq=False, slots=True)
@@ -45,12 +49,13 @@ class Arrived:
 
 @dataclass(eq=False)
 class Endpoint:
-    """A reader or writer of this process.
+    """A reader or writer of this process, or on the student's side one of the simulator's.
 
     Attributes:
         channel: what it is connected to.
         type: the ROS type, "geometry_msgs/msg/Twist"; of a service, that of the whole.
         qos: its quality of service.
+        number: by which the student's side knows one of the simulator's.
         matches, unfit: how many counterparts it has had in all, here and in the simulator: those
             that DDS connects, and those whose quality of service does not fit.
         matched: how many of the former it has. All three are counted on the student's side.
@@ -59,6 +64,7 @@ class Endpoint:
     channel: str
     type: str
     qos: QoSProfile
+    number: int = 0
     matches: int = 0
     unfit: int = 0
     matched: int = 0
@@ -86,14 +92,12 @@ class Reader(Endpoint):
     Attributes:
         message: the class of its messages.
         awaited: of a client's, how many responses from the other process are still to come.
-        remote: set by the student's side: the simulator's writers that it hears.
-        hears: whether it hears any on a topic.
+        hears: whether it hears the other process's on a topic.
     """
 
     message: Any = None
     items: deque[Arrived] = field(default_factory=deque)
     awaited: int = 0
-    remote: list[Any] = field(default_factory=list)
     hears: bool = False
 
     def __post_init__(self) -> None:
@@ -114,14 +118,14 @@ class Writer(Endpoint):
         is_stream: a topic without an answer, as pose, is no reason to stop ticking.
         history: what late readers get.
         local: the readers of this process that hear it.
-        remote: set by the student's side: the simulator's readers that hear it.
+        remote: the other process's readers that hear it, as far as they are known.
     """
 
     sent: int = 0
     is_stream: bool = False
     history: deque[Arrived] = field(default_factory=deque)
     local: list[Reader] = field(default_factory=list)
-    remote: list[Any] = field(default_factory=list)
+    remote: list[Reader] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         if self.qos.history != QoSHistoryPolicy.KEEP_ALL:
@@ -129,18 +133,25 @@ class Writer(Endpoint):
 
 
 class EndpointRegistry:
-    """All endpoints of this process. The two sides of the link derive from it."""
+    """All endpoints of this process. The two sides of the link derive from it.
+
+    Attributes:
+        others: on the student's side the simulator's endpoints, by their numbers.
+    """
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
         """`now_ns` tells the time that messages are stamped with."""
         self.writers: list[Writer] = []
         self.readers: list[Reader] = []
+        self.others: dict[int, Endpoint] = {}
         #: endpoints were added or removed, and the other side of the link does not know
         self.changed = False
         #: called with what the program does that virtual time cannot follow: "the submission ..."
-        self.refuse: Callable[[str], None] = lambda what: None
+        self.refuse: Callable[[Message], None] = lambda what: None
         self.now_ns = now_ns
         self._is_unpaired = False
+        #: which have ever been on one channel, with the same type
+        self._met: set[tuple[Endpoint, Endpoint]] = set()
 
     # Which there are --------------------------------------------------------------------------
 
@@ -160,29 +171,51 @@ class EndpointRegistry:
                 of_its_kind.remove(endpoint)
                 self.changed = self._is_unpaired = True
 
-    def pair_locally(self) -> None:
-        """Find which endpoints of this process are connected with each other."""
+    def pair(self) -> None:
+        """Find which endpoints are connected with each other; late readers get what is kept."""
         if not self._is_unpaired:
             return
         self._is_unpaired = False
-        readers: dict[str, list[Reader]] = defaultdict(list)
-        for reader in self.readers:
-            readers[reader.channel].append(reader)
-        for writer in self.writers:
+        local, remote = _by_channel(self.readers), _by_channel(_of_kind(Reader, self.others))
+        theirs = _of_kind(Writer, self.others)
+        for writer in (*self.writers, *theirs):
             before = writer.local
-            writer.local = [i for i in readers.get(writer.channel, ()) if compatible(writer, i)]
+            writer.local = [each for each in local[writer.channel] if compatible(writer, each)]
             if writer.is_lasting:
                 for reader in writer.local:
                     if reader not in before and reader.is_lasting:
                         reader.items.extend(writer.history)
+        for writer in self.writers:
+            writer.remote = [each for each in remote[writer.channel] if compatible(writer, each)]
+        heard = {reader for writer in theirs for reader in writer.local}
+        for reader in self.readers:
+            reader.hears = reader in heard and reader.kind == "topic"
+
+    def count_meetings(self) -> None:
+        """Count which endpoints of a topic meet, and have met for the first time."""
+        others = self.others.values()
+        for endpoint in (*self.writers, *self.readers, *others):
+            endpoint.matched = 0
+        hearing = _by_channel([*self.readers, *_of_kind(Reader, self.others)])
+        for writer in (*self.writers, *_of_kind(Writer, self.others)):
+            for reader in hearing[writer.channel]:
+                if writer.type != reader.type:
+                    continue
+                is_new = (writer, reader) not in self._met
+                self._met.add((writer, reader))
+                fits = suits(writer, reader)
+                for endpoint in (writer, reader):
+                    endpoint.matched += fits
+                    endpoint.matches += fits and is_new
+                    endpoint.unfit += is_new and not fits
 
     def connect(self) -> None:
         """Connect what belongs together; before anything is sent."""
-        self.pair_locally()
+        self.pair()
 
     def before_question(self) -> None:
         """The program is about to ask for its counterparts."""
-        self.pair_locally()
+        self.pair()
 
     def count_readers(self, writer: Writer) -> int:
         """How many readers hear a writer."""
@@ -190,14 +223,18 @@ class EndpointRegistry:
 
     def count_writers(self, reader: Reader) -> int:
         """How many writers a reader hears."""
-        return sum(reader in writer.local for writer in self.writers) + len(reader.remote)
+        writers = (*self.writers, *_of_kind(Writer, self.others))
+        return sum(reader in writer.local for writer in writers)
 
     # Messages ---------------------------------------------------------------------------------
 
     def publish(self, writer: Writer, data: bytes) -> None:
         """Send a message to all who read the topic, after `connect`."""
         writer.sent += 1
-        arrived = Arrived(data, self.now_ns(), writer.sent)
+        self.deliver(writer, Arrived(data, self.now_ns(), writer.sent))
+
+    def deliver(self, writer: Writer, arrived: Arrived) -> None:
+        """Have a writer's message arrive in this process."""
         if writer.is_lasting:
             writer.history.append(arrived)
         for reader in writer.local:
@@ -218,6 +255,17 @@ class EndpointRegistry:
         writer.sent += 1
         if isinstance(to.client, Reader):
             to.client.items.append(Arrived(data, self.now_ns(), to.number))
+
+
+def _by_channel(readers: Iterable[Reader]) -> dict[str, list[Reader]]:
+    found: dict[str, list[Reader]] = defaultdict(list)
+    for reader in readers:
+        found[reader.channel].append(reader)
+    return found
+
+
+def _of_kind(kind: type[Kind], endpoints: Mapping[int, Endpoint]) -> list[Kind]:
+    return [each for each in endpoints.values() if isinstance(each, kind)]
 
 
 def compatible(writer: Endpoint, reader: Endpoint) -> bool:

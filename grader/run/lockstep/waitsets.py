@@ -1,33 +1,38 @@
-"""rclpy's wait sets and guard conditions: they look into our readers, and wait in virtual time.
+"""rclpy's wait sets, timers, guards, events: they look into our readers, and wait in virtual time.
 
 Used by both sides of the link; the simulator never waits.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Protocol
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from grader.run.lockstep.events import EventHandle
 from grader.run.lockstep.faults import pass_on
-from grader.run.lockstep.registry import Reader
-from grader.run.lockstep.times import NEVER
+from grader.run.lockstep.protocol import NEVER
+from grader.run.lockstep.registry import Endpoint, Reader
 
-_WaitSet, _GuardCondition, _Timer = _rclpy.WaitSet, _rclpy.GuardCondition, _rclpy.Timer
+_WaitSet, _Timer, _EventHandle = _rclpy.WaitSet, _rclpy.Timer, _rclpy.EventHandle
 
 
-class Waiter(Protocol):
-    """Whoever knows how to wait."""
+class Waiter:
+    """How a process waits. As it stands its wait sets only look: the simulator never waits."""
+
+    def __init__(self, tell_time: Callable[[Any], None]) -> None:
+        """`tell_time` is called with a clock that a timer hangs on."""
+        self.tell_time = tell_time
 
     @property
     def graph_epoch(self) -> int:
         """Counts what changes in the graph: afterwards DDS may have events for us."""
+        return -1
 
     @property
     def is_alone(self) -> bool:
         """Whether the program has but one thread."""
+        return True
 
     def await_dds(self, what: str) -> None:
         """Really wait a little for DDS; where that is in vain, the run cannot be made."""
@@ -43,15 +48,14 @@ class Waiter(Protocol):
 
     def wait_for(self, wait_set: WaitSet, deadline_ns: int) -> None:
         """Wait until something may be ready."""
+        raise AssertionError("the simulator never waits for its node")
 
     def deadline(self, timeout_ns: int) -> int:
         """When a time-out from now ends."""
+        return 0
 
     def poke(self, cause: object) -> None:
         """Something that a wait set may hold has changed."""
-
-    def tell_time(self, clock: Any) -> None:
-        """A timer hangs on this clock."""
 
 
 WAITER: Waiter
@@ -105,6 +109,66 @@ class Timer(_rclpy.Timer):
         """As in rclpy."""
         pass_on(_Timer.change_timer_period, self, period_ns)
         WAITER.poke(self)
+
+
+class MatchedStatus(_rclpy.rmw_matched_status_t):
+    """How many counterparts there are; rclpy's own cannot be set."""
+
+    total_count = 0
+    total_count_change = 0
+    current_count = 0
+    current_count_change = 0
+
+
+class EventHandle(_rclpy.EventHandle):
+    """An event of DDS: counterparts have come or gone, or their quality of service does not fit.
+
+    We know them as soon as they are there, and tell of those that come and go. Of what does not fit
+    DDS tells more than we know: whoever looks waits until it does. Other events tell of real time
+    or of real networks, and never come.
+    """
+
+    #: somebody wants it destroyed
+    is_gone = False
+
+    def __init__(self, parent: Any, kind: Any) -> None:
+        pass_on(_EventHandle.__init__, self, parent, kind)
+        self._endpoint: Endpoint = parent.endpoints[0]
+        self._counts_matches = kind.name.endswith("_MATCHED")
+        #: DDS must tell of it
+        self.is_unfit = bool(kind.name.endswith("_INCOMPATIBLE_QOS"))
+        #: how many there had been and were when the program was told
+        self._told = (0, 0)
+
+    def destroy_when_not_in_use(self) -> None:
+        """As in rclpy; a wait set may still hold it."""
+        self.is_gone = True
+        _EventHandle.destroy_when_not_in_use(self)
+
+    def is_due(self) -> bool:
+        """Whether there is something to tell; DDS may still have to find it."""
+        if self.is_gone:
+            return False
+        if self.is_unfit:
+            return self._endpoint.unfit > self._told[0]
+        return self._counts_matches and self._matches() != self._told
+
+    def _matches(self) -> tuple[int, int]:
+        return self._endpoint.matches, self._endpoint.matched
+
+    def take_event(self) -> Any:
+        """As in rclpy."""
+        if not self._counts_matches:
+            status = pass_on(_EventHandle.take_event, self)
+            if self.is_unfit and status is not None:
+                self._told = (status.total_count, 0)
+            return status
+        status = MatchedStatus.__new__(MatchedStatus)
+        before, self._told = self._told, self._matches()
+        status.total_count, status.current_count = self._told
+        status.total_count_change = self._told[0] - before[0]
+        status.current_count_change = self._told[1] - before[1]
+        return status
 
 
 class WaitSet:

@@ -1,5 +1,4 @@
 """Processes of a run: started, watched, kept apart, and ended so that none is left."""
 
-#: The first argument of a program that is to be a zygote; then the socket's number and the
-#: grader's process id follow.
-ZYGOTE = "--zygote"
+#: The first argument of a program that is to be a fork server; then the socket's number follows.
+FORK_SERVER = "--fork-server"

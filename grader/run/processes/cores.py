@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-#: Where the kernel tells what control groups allow, and in which of them this process is.
+#: Where the kernel shows what control groups allow, and in which of them this process is.
 _CGROUPS, _OWN_GROUPS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
 
 
@@ -17,12 +17,12 @@ def available() -> list[int]:
 
 
 def share() -> float:
-    """So many cores' time a second this process may use; a container may have a part of one."""
+    """How many cores this process may keep busy; a container may have a part of one."""
     return min([float(len(available())), *_quotas()])
 
 
 def _quotas() -> Iterator[float]:
-    """What the control groups that this process is in allow, of version 2 and of 1."""
+    """Yield the quotas of this process's control groups, of version 2 and of 1 [cores]."""
     with suppress(OSError, ValueError, ZeroDivisionError):
         group = _CGROUPS.joinpath(*_own_group().split("/"))
         for folder in (group, *group.parents):

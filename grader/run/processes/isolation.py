@@ -4,32 +4,29 @@ Best is a network namespace that holds nothing but a loopback device: root may m
 inside a user namespace, where the system allows that. Else the run reserves a ROS domain. In both
 cases all goes by UDP over loopback: the shared memory of a process that is killed would stay.
 
-Where the system is not Linux, the name also says what is less out of a submission's reach.
 """
 
 from __future__ import annotations
 
-import errno
 import os
-import select
-import subprocess
-import sys
+import random
+import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from grader import linux
-from grader.errors import NotNow
-from grader.language.phrase import say
-from grader.run.processes import domain, hold
+from grader import limited, linux, scratch
+from grader.errors import GraderFailure, NotNow
 from grader.run.processes.refusal import TRIES, Refusal, insist
 
 #: Fast DDS would use shared memory for discovery range LOCALHOST, whatever its settings say.
 RANGE = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
-#: How long who makes a namespace may take to come up [s].
+#: Domain ids whose ports stay clear of the ephemeral ones, minus the low ones that people use.
+DOMAINS = (*range(40, 102), *range(215, 233))
+#: How long making a namespace may take [s].
 PATIENCE_S = 20.0
 #: Keeps the subnet out where there is no private network.
 ONLY_LOOPBACK = """<?xml version="1.0" encoding="UTF-8"?>
@@ -66,21 +63,13 @@ class Isolation:
     namespaces: Mapping[str, int] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class Namespaces:
-    """Open namespaces: kind -> file descriptor. They live as long as these or their processes."""
-
-    fds: dict[str, int] = field(default_factory=dict)
-
-    def close(self) -> None:
-        """Let them go."""
-        for fd in self.fds.values():
-            os.close(fd)
+#: Open namespaces: kind -> descriptor. They live as long as these or their processes.
+Namespaces = dict[str, int]
 
 
 @contextmanager
 def obtain_isolation(folder: Path) -> Iterator[Isolation]:
-    """The best isolation that this system allows.
+    """Isolate a run as well as this system allows.
 
     Args:
         folder: a place for settings; it must stay as long as the context.
@@ -90,22 +79,40 @@ def obtain_isolation(folder: Path) -> Iterator[Isolation]:
         NotNow: there may be a private network, but not now.
     """
     if namespaces := private_network():
-        try:
+        with ExitStack() as held:
+            for namespace in namespaces.values():
+                held.callback(os.close, namespace)
             env = {**RANGE, "ROS_DOMAIN_ID": "0", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
-            name = "private network"
-            yield Isolation(name, env, namespaces.fds)
-        finally:
-            namespaces.close()
+            yield Isolation("private network", env, namespaces)
         return
     profile = folder / "loopback.xml"
     profile.write_text(ONLY_LOOPBACK, encoding="utf-8")
-    with domain.reserve_domain() as number:
+    with reserve_domain() as number:
         env = {
             **RANGE,
             "ROS_DOMAIN_ID": str(number),
             "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
         }
         yield Isolation(f"ROS domain {number}", env)
+
+
+@contextmanager
+def reserve_domain() -> Iterator[int]:
+    """Hold a domain id that no other grader on this machine holds.
+
+    The lock belongs to the open file, so that it vanishes with the process, however that ends.
+
+    Raises:
+        GraderFailure: all of them are taken, or there is no place for locks.
+    """
+    for domain in random.sample(DOMAINS, len(DOMAINS)):
+        if lock := scratch.take_lock(f"domain-{domain}"):
+            with lock:
+                yield domain
+            return
+    raise GraderFailure(
+        "all {domains} ROS domains are in use by other runs; try again later", domains=len(DOMAINS)
+    )
 
 
 #: Ways that this system has refused for good.
@@ -118,35 +125,31 @@ def private_network() -> Namespaces | None:
     Raises:
         NotNow: what kept it from being made may pass; it was tried `refusal.TRIES` times.
     """
-    found: list[Namespaces] = []
     last: Refusal | None = None
     for way in (_as_root, _as_user):
         if way in _refused:
             continue
-        refusal = insist(partial(_attempt, way, found))
-        if refusal is None:
-            return found[0]
-        if refusal.is_final:
+        made = insist(partial(_attempt, way))
+        if not isinstance(made, Refusal):
+            return made
+        if made.is_final:
             _refused.add(way)
         else:
-            last = refusal
+            last = made
     if last is not None:
         raise NotNow(
-            say(
-                "no network of its own could be made for a run, in {times} tries: {why}",
-                times=TRIES,
-                why=last.why,
-            )
+            "no network of its own could be made for a run, in {times} tries: {why}",
+            times=TRIES,
+            why=last.why,
         )
     return None
 
 
-def _attempt(way: Callable[[], Namespaces], found: list[Namespaces]) -> Refusal | None:
+def _attempt(way: Callable[[], Namespaces]) -> Namespaces | Refusal:
     try:
-        found.append(way())
-    except (OSError, RuntimeError) as error:  # no more threads
+        return way()
+    except (OSError, RuntimeError, limited.LimitHit) as error:  # no more threads, too slow
         return Refusal.of(error)
-    return None
 
 
 def _as_root() -> Namespaces:
@@ -166,42 +169,34 @@ def _as_root() -> Namespaces:
     thread.join()
     if isinstance(found[0], OSError):
         raise found[0]
-    return Namespaces({"net": found[0]})
+    return {"net": found[0]}
 
 
 def _as_user() -> Namespaces:
-    # Only a process with a single thread may make a user namespace, so another one does.
-    command = [sys.executable, "-I", "-S", hold.__file__]
-    with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-    ) as holder:
-        answer = _first_line(holder)
-        if answer != "ready":
-            refusal = Refusal.from_line(answer.removeprefix(hold.REFUSED).strip())
-            raise OSError(refusal.number, refusal.words, refusal.step)
+    # Only a process with a single thread may make a user namespace: a copy of this one has one.
+    limits = limited.WorkLimits(wall_s=PATIENCE_S)
+    with closing(limited.stream(_made_as_user, limits)) as holder:
+        answer = next(holder).decode("utf-8", "replace")
+        if not answer.isdecimal():
+            refusal = Refusal.from_line(answer)
+            raise OSError(refusal.number, str(refusal.words), refusal.step)
         spaces = Namespaces()
-        try:
+        with ExitStack() as opened:
             for kind in ("user", "net"):
-                spaces.fds[kind] = os.open(f"/proc/{holder.pid}/ns/{kind}", os.O_RDONLY)
-        except OSError:
-            spaces.close()
-            raise
+                spaces[kind] = os.open(f"/proc/{answer}/ns/{kind}", os.O_RDONLY)
+                opened.callback(os.close, spaces[kind])
+            opened.pop_all()
     return spaces
 
 
-def _first_line(holder: subprocess.Popen[bytes]) -> str:
-    """What it says; what does not answer in time is ended.
-
-    Raises:
-        OSError: it has not answered.
-    """
-    assert holder.stdout is not None
-    poll = select.poll()
-    poll.register(holder.stdout, select.POLLIN)
-    if not poll.poll(PATIENCE_S * 1000):
-        holder.kill()
-        raise TimeoutError(errno.ETIMEDOUT, os.strerror(errno.ETIMEDOUT), "hold")
-    line = holder.stdout.readline().decode("utf-8", "replace").strip()
-    if not line:
-        raise ChildProcessError(errno.ECHILD, "it ended without a word", "hold")
-    return line
+def _made_as_user() -> Iterator[bytes]:
+    """Make both in a copy of this process, answer its number or why not, and keep them."""
+    try:
+        proc = os.open("/proc/self", os.O_PATH)
+        linux.unshare_user(0, proc, linux.CLONE_NEWNET)
+        linux.raise_loopback()
+    except OSError as error:
+        yield Refusal.of(error).to_line().encode("utf-8", "replace")
+        return
+    yield str(os.getpid()).encode()
+    signal.pause()

@@ -1,4 +1,4 @@
-"""How well a submission's process can be confined here: tried once for each grader process.
+"""The level at which a submission's process can be confined here: tried once per grader process.
 
 What may pass (see `.refusal`) is tried again, lowers no level, and is not remembered.
 
@@ -29,19 +29,15 @@ from typing import Any
 
 from grader import scratch
 from grader.errors import GraderError, GraderFailure, NotNow, NotOffered, UsageError
-from grader.language.phrase import say
-from grader.run.processes import family, isolation, watched
+from grader.message import Text, msg
+from grader.run.limits import rlimits
+from grader.run.processes import isolation
+from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.isolation import Isolation
 from grader.run.processes.refusal import TRIES, Refusal, insist
-from grader.run.processes.sandbox import landlock, view
-from grader.run.processes.sandbox.confinement import (
-    LANDLOCK,
-    LIMITS,
-    NAMESPACE,
-    NAMESPACES,
-    OWN,
-    SAME,
-)
+from grader.run.processes.started_process import NotConfined, SubmissionProcess
+from grader.run.sandbox import filesystem, landlock, view
+from grader.run.sandbox.confinement import LANDLOCK, LIMITS, MAPPED, NAMESPACES, SAME, SEPARATE
 
 #: The best comes first.
 LEVELS = (NAMESPACES, LANDLOCK, LIMITS)
@@ -67,7 +63,7 @@ PATIENCE_S = 20.0
 #: What programs write to that is no file.
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full")
 ADVICE = {
-    NAMESPACES: say(
+    NAMESPACES: msg(
         "Ubuntu 24.04 or later: sudo sysctl "
         "kernel.apparmor_restrict_unprivileged_userns=0, or an AppArmor profile"
         " with `userns,` for this Python. Docker: run the container with "
@@ -76,12 +72,12 @@ ADVICE = {
         "sudo sysctl kernel.unprivileged_userns_clone=1. Elsewhere than on "
         "Linux there is none"
     ),
-    LANDLOCK: say(
+    LANDLOCK: msg(
         "Linux 5.13 or later with `landlock` in its list of security modules "
         "(/sys/kernel/security/lsm), and a container runtime whose seccomp "
         "profile allows it, as those of Docker and podman since 2021 do"
     ),
-    LIMITS: say("Linux with /proc"),
+    LIMITS: msg("Linux with /proc"),
 }
 
 
@@ -91,19 +87,19 @@ class Level:
 
     Attributes:
         level: of `LEVELS`; '' for none.
-        user: how the user is changed; see `.confinement`.
+        user: how the user is changed; see `grader.run.sandbox.confinement`.
         refused: what was tried before in vain: level -> why.
     """
 
     level: str
     user: str = SAME
-    refused: Mapping[str, str] = field(default_factory=dict)
+    refused: Mapping[str, Text] = field(default_factory=dict)
 
     def name(self) -> str:
         """For the result; '' for none."""
         if self.level == LANDLOCK:
-            own = ", own user" if self.user == OWN else ""
-            return f"{LANDLOCK} (ABI {landlock.abi()}{own})"
+            user = ", own user" if self.user == SEPARATE else ""
+            return f"{LANDLOCK} (ABI {landlock.abi()}{user})"
         return self.level
 
     def is_at_least(self, level: str) -> bool:
@@ -112,74 +108,66 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Place:
-    """What is prepared for one process.
+class Confinement:
+    """What is prepared for one process of a submission.
 
     Attributes:
-        order: for `.confinement`; None for none.
+        order: for `grader.run.sandbox.confinement`; None for none.
         env: what its environment variables have to say of it.
+        copy: where it finds the submission, which it may write into.
     """
 
     order: Mapping[str, Any] | None
     env: Mapping[str, str]
+    copy: Path
 
 
-def prepare(level: Level, root: Path, own: Path, folder: Path, *, is_apart: bool) -> Place:
-    """What confines a submission's process in a run.
+def prepare(level: Level, submission: Path, folder: Path, *, is_apart: bool) -> Confinement:
+    """What confines a submission's process in a run, with the copy that this run may write into.
+
+    At `namespaces` the process makes that copy itself, in memory, where it sees nothing else of
+    this path. Elsewhere it lies in the folder of the run.
 
     Args:
-        root: where it starts.
-        own: all of the submission, without symbolic links: what it may write into.
+        submission: all of it, without symbolic links in its path; it is only read.
         folder: that of the run; `tmp` is in it.
         is_apart: whether the run has a network of its own.
     """
-    if not level.level:
-        return Place(None, {})
-    uid, user, written = random.choice(USERS), level.user, "/tmp"
+    uid, user, copy, written = random.choice(USERS), level.user, submission, "/tmp"
     if level.level != NAMESPACES:
-        written = str(folder / "tmp")
-    if user == OWN and not _is_readable(own, anywhere=level.level == NAMESPACES):
-        user = NAMESPACE if level.level == NAMESPACES else SAME
+        copy, written = folder / "submission" / submission.name, str(folder / "tmp")
+        copy.mkdir(parents=True)
+        if user == SEPARATE and not _is_reachable(copy):
+            user = SAME
+    owner = uid if user == SEPARATE else -1
+    if level.level != NAMESPACES:
+        filesystem.copy_tree(str(submission), str(copy), owner)
+    if not level.level:
+        return Confinement(None, {}, copy)
     order = {"level": level.level, "uid": uid, "user": user, "is_apart": is_apart}
+    order["rlimits"] = rlimits(is_alone=user != SAME)
     if level.level == NAMESPACES:
-        owner = uid if user == OWN else -1
-        order |= {"steps": view.steps(own, uid, owner), "folder": str(root)}
+        order["steps"] = view.steps(submission, uid, owner)
     elif level.level == LANDLOCK:
         settings = [str(path) for path in folder.glob("*.xml")]
-        read, listed = view.readable(own)
-        write = [written, str(own), *DEVICES]
+        read, listed = view.readable(copy)
+        write = [written, str(copy), *DEVICES]
         order |= {"read": [*read, *settings], "listed": listed, "write": write}
-        if user == OWN:
-            _open_ways(folder / "tmp")
+        if user == SEPARATE:
             os.chown(written, uid, uid)
-            for place, folders, files in os.walk(own):
-                for name in (".", *folders, *files):
-                    os.chown(Path(place, name), uid, uid, follow_symlinks=False)
-    if level.level == LIMITS:
-        return Place(order, {})
+    else:
+        return Confinement(order, {}, copy)
     env = {"TMPDIR": written, "HOME": written, "ROS_LOG_DIR": f"{written}/log"}
-    return Place(order, env)
+    return Confinement(order, env, copy)
 
 
-def _is_readable(root: Path, *, anywhere: bool) -> bool:
-    """Whether other users may read all of a folder; `anywhere`: if they can get there."""
-    if not anywhere:
-        _open_ways(root)
-        if any(not way.stat().st_mode & stat.S_IXOTH for way in root.parents):
-            return False
-    for place, _, files in os.walk(root):
-        for path, wanted in (Path(place), 0o005), *((Path(place, name), 0o004) for name in files):
-            if path.lstat().st_mode & wanted != wanted:
-                return False
-    return True
-
-
-def _open_ways(path: Path) -> None:
-    """Let other users through our folders to a place in one; they cannot list them."""
+def _is_reachable(path: Path) -> bool:
+    """Whether other users get to a place in our folders; they cannot list those."""
     home = scratch.home()
     for way in path.parents:
         if way == home or way.is_relative_to(home):
             way.chmod(way.stat().st_mode | stat.S_IXOTH)
+    return all(way.stat().st_mode & stat.S_IXOTH for way in path.parents)
 
 
 _lock = threading.Lock()
@@ -199,7 +187,7 @@ def best(isolated: Isolation, level: str = "") -> Level:
     Raises:
         GraderFailure: that is less than what was required.
         NotOffered: there is no such level.
-        NotNow: what there is cannot be told at present.
+        NotNow: what there is cannot be found out at present.
     """
     level = level or _only
     tried = level, bool(isolated.namespaces)
@@ -209,15 +197,13 @@ def best(isolated: Isolation, level: str = "") -> Level:
         found = _found[tried]
     if level and found.level != level:
         raise NotOffered(
-            say(
-                "isolation by {level}, at which this class is graded, is not to be had here: {why}",
-                level=level,
-                why=found.refused.get(level, say("this system has nothing of it")),
-            )
+            "isolation by {level}, at which this class is graded, is not to be had here: {why}",
+            level=level,
+            why=found.refused.get(level, msg("this system has nothing of it")),
         )
     if _least and not found.is_at_least(_least):
         raise GraderFailure(
-            say("isolation by {least} was to be had before, and now is not", least=_least)
+            "isolation by {least} was to be had before, and now is not", least=_least
         )
     return found
 
@@ -247,26 +233,24 @@ def require(level: str) -> None:
     global _least
     there = here()
     if not there.is_at_least(level):
-        missing = there.refused.get(level, say("this system has nothing of it"))
+        missing = there.refused.get(level, msg("this system has nothing of it"))
         what = (
-            say("the best here is {level!r}", level=there.name())
+            msg("the best here is {level!r}", level=there.name())
             if there.level
-            else say("there is none here")
+            else msg("there is none here")
         )
         raise UsageError(
-            say(
-                "isolation by {level} is not to be had: {missing}; {what}. To get it: {advice}.",
-                level=level,
-                missing=missing,
-                what=what,
-                advice=ADVICE[level],
-            )
+            "isolation by {level} is not to be had: {missing}; {what}. To get it: {advice}.",
+            level=level,
+            missing=missing,
+            what=what,
+            advice=ADVICE[level],
         )
     _least = level
 
 
 def _look(isolated: Isolation, wanted: str) -> Level:
-    refused: dict[str, str] = {}
+    refused: dict[str, Text] = {}
     for level in _candidates():
         if wanted in ("", level.level):
             refusal = insist(partial(_try, level, isolated))
@@ -274,13 +258,11 @@ def _look(isolated: Isolation, wanted: str) -> Level:
                 return Level(level.level, level.user, refused)
             if not (refusal.is_final or _is_answer(refusal)):
                 raise NotNow(
-                    say(
-                        "whether isolation by {level} is to be had could not be told in {times} "
-                        "tries: {why}",
-                        level=level.level,
-                        times=TRIES,
-                        why=refusal.why,
-                    )
+                    "whether isolation by {level} is to be had could not be told in {times} "
+                    "tries: {why}",
+                    level=level.level,
+                    times=TRIES,
+                    why=refusal.why,
                 )
             refused.setdefault(level.level, refusal.why)
     return Level("", refused=refused)
@@ -297,29 +279,29 @@ def offered(isolated: Isolation) -> list[Level]:
 
 
 def _candidates() -> Iterator[Level]:
-    """All that may be here, the best first."""
-    own = [OWN] if os.geteuid() == 0 else []
-    yield from (Level(NAMESPACES, user) for user in (*own, NAMESPACE))
-    yield from (Level(LANDLOCK, user) for user in (*own, SAME))
+    """Yield all that may be here, the best first."""
+    separate = [SEPARATE] if os.geteuid() == 0 else []
+    yield from (Level(NAMESPACES, user) for user in (*separate, MAPPED))
+    yield from (Level(LANDLOCK, user) for user in (*separate, SAME))
     yield Level(LIMITS)
 
 
 def _try(level: Level, isolated: Isolation) -> Refusal | None:
-    """Confine a process so; what is refused."""
+    """Confine a process at this level; what was refused, None for nothing."""
     if level.level == LANDLOCK and not landlock.abi():
-        why = say("this kernel has no Landlock, or a container refuses it")
+        why = msg("this kernel has no Landlock, or a container refuses it")
         return Refusal(errno.ENOSYS, "", why)
     is_apart = bool(isolated.namespaces)
     if level.level == NAMESPACES and not is_apart:
-        return Refusal(errno.EPERM, "", say("namespaces of users and networks are refused"))
+        return Refusal(errno.EPERM, "", msg("namespaces of users and networks are refused"))
     try:
         with scratch.make_folder() as folder:
             tried = folder / "tried"
             (folder / "tmp").mkdir()
             tried.mkdir()
-            place = prepare(level, tried, tried, folder, is_apart=is_apart)
-            return _start(place, folder, isolated.namespaces)
-    except watched.NotConfined as error:
+            confinement = prepare(level, tried, folder, is_apart=is_apart)
+            return _start(confinement, folder, isolated.namespaces)
+    except NotConfined as error:
         return error.refusal
     except GraderError as error:
         return Refusal(0, "", error.message)
@@ -327,26 +309,26 @@ def _try(level: Level, isolated: Isolation) -> Refusal | None:
         return Refusal.of(error)
 
 
-def _start(place: Place, folder: Path, namespaces: Mapping[str, int]) -> Refusal | None:
+def _start(confinement: Confinement, folder: Path, namespaces: Mapping[str, int]) -> Refusal | None:
     needed = [os.__file__, str(view.ROOT / view.HOST[0])]
     rclpy, package = importlib.util.find_spec("rclpy"), ""
     if rclpy and rclpy.origin:
         needed.append(rclpy.origin)
         package = str(Path(rclpy.origin).parents[1])
-    written = place.env.get("TMPDIR", str(folder / "tmp"))
+    written = confinement.env.get("TMPDIR", str(folder / "tmp"))
     words = [sys.executable, "-I", "-S", "-c", TRIAL, written, package, *needed]
-    env = {**os.environ, **place.env}
-    process = family.Student(words, env, folder / "tried", (), namespaces, None, place.order)
-    try:
+    env = {**os.environ, **confinement.env}
+    command = ProcessCommand(words, env, confinement.copy, (), namespaces, confinement.order)
+    process = SubmissionProcess(command)
+    with process.ended_at_exit(gently=False):
         ended = process.wait(PATIENCE_S)
-    finally:
-        process.end(gently=False)
     lines = process.output().strip().splitlines()  # whole only after the end
     if ended == 0:
         return None
     if ended is None:
-        return Refusal(errno.ETIMEDOUT, "", say("a trial took {s:g} s", s=PATIENCE_S))
-    told = Refusal.from_line(lines[-1] if lines else say("a trial ended with {code}", code=ended))
+        return Refusal(errno.ETIMEDOUT, "", msg("a trial took {s:g} s", s=PATIENCE_S))
+    silent = Refusal(0, "", msg("a trial ended with {code}", code=ended))
+    told = Refusal.from_line(lines[-1]) if lines else silent
     if ended > 0 and told.number in (0, errno.ENOENT):  # Python itself says so
-        return Refusal(errno.ENOENT, TRIAL_STEP, told.why)
+        return Refusal(errno.ENOENT, TRIAL_STEP, str(told.why))
     return told

@@ -1,8 +1,8 @@
-"""What a system answers where it does not do what a level needs: no for good, or not now.
+"""What a system refuses that a level needs: for good, or for now.
 
 What is refused for good is not asked for again. Anything else (no descriptor is free, no memory, a
-trial that takes too long) may pass: it is tried again, a few times, and then told. It never lowers
-a level.
+trial that takes too long) may pass: it is tried again, a few times, and then reported. It never
+lowers a level.
 """
 
 from __future__ import annotations
@@ -12,7 +12,10 @@ import os
 import time
 from collections.abc import Callable
 from types import FrameType
-from typing import NamedTuple, Self  # no dataclass, no re: a supervisor starts in milliseconds
+from typing import TYPE_CHECKING, NamedTuple, Self, TypeVar
+
+if TYPE_CHECKING:  # no dataclass, no re: a supervisor starts in milliseconds
+    from grader.message import Message
 
 #: The numbers of errors that a system does not take back.
 FINAL = frozenset(
@@ -24,23 +27,25 @@ TRIES = len(PAUSES_S) + 1
 #: How many namespaces of a kind there may be.
 MOST = "/proc/sys/user/max_{kind}_namespaces"
 
+Made = TypeVar("Made")
+
 
 class Refusal(NamedTuple):
     """What was refused.
 
     Attributes:
         number: the system's number of the error; 0 for none.
-        step: what was to be done: "unshare (net)", a path, a function: "privileges.become".
-        words: why, for people.
+        step: what was to be done: "unshare (net)", a path, a function: "confinement._become".
+        words: why, for people; a message where there is no step.
     """
 
     number: int
     step: str
-    words: str
+    words: str | Message
 
     @classmethod
     def of(cls, error: BaseException) -> Self:
-        """What an error tells; where it names no file, its step is the function it comes from."""
+        """Make one of an error; if that names no file, the step is the function it comes from."""
         place = error.__traceback__
         while place is not None and place.tb_next is not None:
             place = place.tb_next
@@ -52,20 +57,20 @@ class Refusal(NamedTuple):
 
     @classmethod
     def from_line(cls, line: str) -> Self:
-        """What `to_line` has written, or anything else."""
-        number, _, told = line.partition(" ")
-        step, colon, words = told.partition(": ")
+        """Parse what `to_line` has written, or anything else."""
+        number, _, rest = line.partition(" ")
+        step, colon, words = rest.partition(": ")
         if colon and number.isascii() and number.isdigit() and len(number) < 5:
             return cls(int(number), step, words)
         return cls(0, "", line)
 
     def to_line(self) -> str:
-        """As another process tells it."""
+        """Serialise it, for another process."""
         step = " ".join(self.step.replace(": ", " ").split())
         return f"{self.number} {step}: {self.words}"
 
     @property
-    def why(self) -> str:
+    def why(self) -> str | Message:
         """For people, in one line."""
         return f"{self.step}: {self.words}" if self.step else self.words
 
@@ -78,12 +83,12 @@ class Refusal(NamedTuple):
         return self.number in FINAL
 
 
-def insist(attempt: Callable[[], Refusal | None]) -> Refusal | None:
-    """Try until it works or is refused for good, `TRIES` times at most; the last refusal."""
+def insist(attempt: Callable[[], Made | Refusal]) -> Made | Refusal:
+    """Return what an attempt makes; try `TRIES` times at most, until it is refused for good."""
     for pause_s in PAUSES_S:
-        refusal = attempt()
-        if refusal is None or refusal.is_final:
-            return refusal
+        answer = attempt()
+        if not isinstance(answer, Refusal) or answer.is_final:
+            return answer
         time.sleep(pause_s)
     return attempt()
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Final
 
-from grader.recording.recording import PublishedTopic
+from grader.message import Message, msg
 from grader.run.lockstep.endpoints import deserialized
 from grader.run.lockstep.protocol import EndpointInfo, Interests, Parcel, Parcels, Table
 from grader.run.lockstep.registry import Arrived, Endpoint, EndpointRegistry, Reader, Writer
-from grader.run.simulator.published_topics import USUAL
 
 #: The longest message that a reader takes [bytes]; DDS has no limit, a parameter of such a length
 #: has no use.
@@ -21,18 +20,24 @@ MOST_OUTGOING = 32_000_000
 #: Different topics of the student's side that are kept for the result.
 MOST_TOPICS = 1_000
 
+_TOO_MUCH = msg("messages on {channel} were too long or too many to be taken")
+
 
 class SimulatorEndpoints(EndpointRegistry):
-    """All of them, with the numbers by which the student's side knows them."""
+    """All of them, with the numbers by which the student's side knows them.
 
-    def __init__(self, now_ns: Callable[[], int], flag: Callable[[str], None]) -> None:
+    Attributes:
+        published: on which topics the student's side has published: topic -> type.
+    """
+
+    def __init__(self, now_ns: Callable[[], int], flag: Callable[[Message], None]) -> None:
         """`flag` keeps remarks for the result."""
         super().__init__(now_ns)
         self._flag = flag
         self.tick = 0
         #: since the last call of `take_outgoing` something was sent that may be waited for
         self.answered = False
-        self._numbers: dict[Endpoint, int] = {}
+        self._last_number = 0
         self._by_number: dict[int, Endpoint] = {}
         self._added: list[EndpointInfo] = []
         self._removed: list[int] = []
@@ -40,24 +45,26 @@ class SimulatorEndpoints(EndpointRegistry):
         self._outgoing_bytes = 0
         self._unread_bytes = 0  # at most: what was taken since is not subtracted
         self._read = frozenset[str]()
-        self._published: dict[str, str] = {}
+        self.published: dict[str, str] = {}
         self._may_have_unread = True
 
     def add(self, endpoint: Endpoint) -> None:
         """Number a new endpoint."""
         super().add(endpoint)
-        number = self._numbers[endpoint] = len(self._numbers) + 1
-        self._by_number[number] = endpoint
+        endpoint.number = self._last_number = self._last_number + 1
+        self._by_number[endpoint.number] = endpoint
         qos = endpoint.qos
         policies = (int(qos.reliability), int(qos.durability), max(1, qos.depth))
         writes = isinstance(endpoint, Writer)
-        self._added.append(EndpointInfo(number, endpoint.channel, endpoint.type, writes, *policies))
+        self._added.append(
+            EndpointInfo(endpoint.number, endpoint.channel, endpoint.type, writes, *policies)
+        )
 
     def remove(self, endpoints: Iterable[Endpoint]) -> None:
         """Strike out endpoints."""
-        gone = [e for e in endpoints if self._by_number.pop(self._numbers[e], None)]
+        gone = [e for e in endpoints if self._by_number.pop(e.number, None)]
         super().remove(gone)
-        self._removed += [self._numbers[endpoint] for endpoint in gone]
+        self._removed += [endpoint.number for endpoint in gone]
 
     def take_table(self) -> Table:
         """What has changed since the last table."""
@@ -81,10 +88,12 @@ class SimulatorEndpoints(EndpointRegistry):
                 types[endpoint.name].add(endpoint.type)
         # as the graph shows it: of several types on a topic, ours too, the first
         for topic, kinds in types.items():
-            if topic in self._published or len(self._published) < MOST_TOPICS:
-                self._published[topic] = min(kinds)
+            if topic in self.published or len(self.published) < MOST_TOPICS:
+                self.published[topic] = min(kinds)
             else:
-                self._flag(f"the node published on more than {MOST_TOPICS} topics")
+                self._flag(
+                    msg("the node published on more than {number} topics", number=MOST_TOPICS)
+                )
 
     def is_read(self, writer: Writer) -> bool:
         """Whether the student's side reads what this writer writes."""
@@ -102,19 +111,7 @@ class SimulatorEndpoints(EndpointRegistry):
             for writer in self.writers
         )
 
-    def published(self) -> tuple[PublishedTopic, ...]:
-        """On which topics the student's side has published, but for those of every node."""
-        return tuple(
-            PublishedTopic(topic, kind)
-            for topic, kind in sorted(self._published.items())
-            if topic not in USUAL
-        )
-
     # Messages ---------------------------------------------------------------------------------
-
-    def number(self, endpoint: Endpoint) -> int:
-        """The number of an endpoint."""
-        return self._numbers[endpoint]
 
     def publish(self, writer: Writer, data: bytes) -> None:
         """To readers in this process at once, to the student's side with the next reply."""
@@ -130,7 +127,7 @@ class SimulatorEndpoints(EndpointRegistry):
             self._send(writer, to.client, to.number, data)
 
     def _send(self, writer: Writer, client: int, number: int, data: bytes) -> None:
-        self._outgoing.append(Parcel(self._numbers[writer], client, number, self.tick, data))
+        self._outgoing.append(Parcel(writer.number, client, number, self.tick, data))
         self._outgoing_bytes += len(data)
         # a reply of more than a few pictures is as if there was something to wait for
         is_answer = not writer.is_stream or self._outgoing_bytes > MOST_OUTGOING
@@ -151,12 +148,12 @@ class SimulatorEndpoints(EndpointRegistry):
             if not isinstance(reader, Reader):
                 continue  # gone meanwhile
             if not self._has_room(len(data)):
-                self._flag(f"messages on {reader.channel} were too long or too many to be taken")
+                self._flag(_TOO_MUCH.given(channel=reader.channel))
                 continue
             try:
                 deserialized(data, reader.message)
             except Exception:  # of rclpy's C++
-                self._flag(f"a message on {reader.channel} could not be read")
+                self._flag(msg("a message on {channel} could not be read", channel=reader.channel))
                 continue
             asked_by = client if reader.kind == "request" else None
             reader.items.append(Arrived(data, self.now_ns(), number, asked_by))

@@ -49,7 +49,7 @@ class Foresight:
         if not told.ticks or self._registry.others_are_read(writers):
             return
         read = [
-            (index, self._registry.number(writer), writer.sent)
+            (index, writer.number, writer.sent)
             for index, writer in enumerate(writers)
             if self._registry.is_read(writer)
         ]

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import fcntl
-import mmap
 import os
 import select
 import socket
 import time
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Literal
 
-from grader import usage
-from grader.run.lockstep.link import PacketReader, pieces
+from grader import linux
+from grader.message import Message, msg
+from grader.run.limits import Patience
 from grader.run.lockstep.protocol import (
     MOST_SENT,
     MOST_SENT_BYTES,
@@ -25,13 +23,14 @@ from grader.run.lockstep.protocol import (
     Mail,
     Note,
     Packet,
+    PacketReader,
     Parcels,
     ProtocolError,
     Table,
     decode,
     encode,
+    pieces,
 )
-from grader.text import without_controls
 
 #: How often it is looked at while it is silent [ms], and while it is not [s].
 LOOK_MS = 250
@@ -47,40 +46,21 @@ MOST_MAIL = 2_000
 LIMIT_BYTES = 8_000_000
 #: The kernel's letter for a process that has a processor, or waits for one.
 WANTS_PROCESSOR = "R"
-ELSEWHERE = "the submission waits for something outside of Python's and ROS's own waiting"
-NONSENSE = "its process sent what ours never sends"
-TOO_MANY = (
-    f"the node sent more than {MOST_SENT} messages, or more than {MOST_SENT_BYTES // 10**9} GB in "
-    "them"
+ELSEWHERE = msg("the submission waits for something outside of Python's and ROS's own waiting")
+NONSENSE = msg("its process sent what ours never sends")
+TOO_MANY = msg(
+    "the node sent more than {number} messages, or more than {most} GB in them",
+    number=MOST_SENT,
+    most=MOST_SENT_BYTES // 10**9,
 )
 
 
-@dataclass(frozen=True)
-class Patience:
-    """How long a submission's process is waited for, in real seconds.
-
-    Processor time is that of the process alone: other load on the machine decides nothing.
-
-    Attributes:
-        stall_cpu_s: it has stalled when it says nothing for so much of its own processor time,
-        start_cpu_s: or for so much while it still imports.
-        asleep_s: it waits for something outside of virtual time when it sleeps for so long,
-        all_asleep_s: or for so long in a whole run, not counting naps.
-        run_cpu_s: so much of its own processor time a whole run may take.
-        simulator_cpu_s: so much the simulator may take for what the submission sends; beside one
-            that only drives it takes about one second.
-    """
-
-    stall_cpu_s: float = 6.0
-    start_cpu_s: float = 20.0
-    asleep_s: float = 6.0
-    all_asleep_s: float = 60.0
-    run_cpu_s: float = 120.0
-    simulator_cpu_s: float = 60.0
-
-
 class Refused(Exception):
-    """The run cannot be made in virtual time; the text completes "because ..."."""
+    """The run cannot be made in virtual time; `why` completes "because ..."."""
+
+    def __init__(self, why: Message) -> None:
+        super().__init__(why)
+        self.why = why
 
 
 class StudentLink:
@@ -95,10 +75,11 @@ class StudentLink:
         excused_cpu_s: processor time of the simulator's that is not the submission's doing [s].
     """
 
-    def __init__(self, link: socket.socket, pid: int, patience: Patience) -> None:
+    def __init__(self, link: socket.socket, page: int, pid: int, patience: Patience) -> None:
+        """Hear process `pid` on this link; in the page it writes how far it has got."""
         self.silence = ""
         self.waits: Literal["", "for ever", "stuck"] = ""
-        self.flags: list[str] = []
+        self.flags: list[Message] = []
         self.excused_cpu_s = 0.0
         link.setblocking(False)
         self._link = link
@@ -112,24 +93,15 @@ class StudentLink:
         self._stall_cpu_s = patience.start_cpu_s
         self._asleep_s = self._seen_cpu_s = 0.0
         self._cpu_before_s = time.process_time()
-        self._progress = os.memfd_create("progress", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
-        os.ftruncate(self._progress, mmap.PAGESIZE)
-        # nobody changes its size: a process could fill the memory of the machine with it
-        seals = fcntl.F_SEAL_SEAL | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW
-        fcntl.fcntl(self._progress, fcntl.F_ADD_SEALS, seals)
+        self._page = page
 
     def introduce(self, table: Table) -> None:
-        """Say the first word, and hand out what `mail` and `reached` read."""
+        """Say the first word, and hand out what `mail` reads."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         ours.setblocking(False)
-        self._mailbox, self._mail = ours, PacketReader(ours, LIMIT_BYTES)
+        self.mailbox, self._mail = ours, PacketReader(ours, LIMIT_BYTES)
         with suppress(OSError), theirs:
-            socket.send_fds(self._link, [encode(table)], [self._progress, theirs.fileno()])
-
-    def close(self) -> None:
-        """Give back what `introduce` has opened; the link is its owner's."""
-        os.close(self._progress)
-        self._mailbox.close()
+            socket.send_fds(self._link, [encode(table)], [theirs.fileno()])
 
     def mail(self) -> Iterator[Parcels]:
         """What the submission has sent since the last call, by packets; also when it is dead."""
@@ -151,7 +123,7 @@ class StudentLink:
 
     def reached(self) -> int:
         """The tick that the submission's process says that it has reached; also when it is dead."""
-        return int(PROGRESS.unpack(os.pread(self._progress, PROGRESS.size, 0))[0])
+        return int(PROGRESS.unpack(os.pread(self._page, PROGRESS.size, 0))[0])
 
     def send(self, packet: Packet) -> None:
         """Say something; that nobody is there is noticed when receiving.
@@ -174,7 +146,7 @@ class StudentLink:
         try:
             self._wait(self._may_send)
         except Refused:
-            self.break_off("its process does not read what it has asked for")
+            self.break_off(msg("its process does not read what it has asked for"))
 
     def receive(self) -> Interests | Advance | None:
         """The next request; None when there will be no other: see `silence`.
@@ -205,33 +177,32 @@ class StudentLink:
                 case Interests() | Advance():
                     return packet
                 case _:
-                    self.break_off("its process sent what only a simulator says")
+                    self.break_off(msg("its process sent what only a simulator says"))
         return None
 
-    def flag(self, text: str) -> None:
+    def flag(self, remark: Message) -> None:
         """Remark something, once."""
-        if text not in self.flags and len(self.flags) < MOST_FLAGS:
-            self.flags.append(text)
+        if remark not in self.flags and len(self.flags) < MOST_FLAGS:
+            self.flags.append(remark)
 
     def has_started(self) -> None:
         """It has asked for time, so it does not import any more."""
         self._stall_cpu_s = self._patience.stall_cpu_s
 
     def _hear(self, note: Note) -> None:
-        text = without_controls(note.text[:200], "?")
         match note.kind:
             case Kind.STUCK:
                 self.waits = "stuck"
             case Kind.WAITING:
                 self.waits = self.waits or "for ever"
             case Kind.UNSUPPORTED:
-                raise Refused(f"the submission {text}")
+                raise Refused(msg("the submission {does}", does=note.remark))
             case Kind.FAILED:
-                raise Refused(text)
+                raise Refused(note.remark)
             case Kind.FLOODING:
                 self.break_off(TOO_MANY)
 
-    def break_off(self, why: str) -> None:
+    def break_off(self, why: Message) -> None:
         """Hear nothing more of it, for it does what no process of ours does; `why` is a flag."""
         self.silence = "broken"
         self.flags.append(why)  # it decides the run, however many there are
@@ -241,13 +212,13 @@ class StudentLink:
         began = time.monotonic()
         if poll.poll(LOOK_MS):
             if time.monotonic() - began > SHORT_S:
-                self._count_sleep(usage.look(self._pid), began)
+                self._count_sleep(linux.process_stat(self._pid), began)
             return not self._is_slow()
-        used_s = last_used_s = usage.look(self._pid).cpu_s
+        used_s = last_used_s = linux.process_stat(self._pid).cpu_s
         asleep_since = before = now = time.monotonic()
         patience = self._patience
         while not poll.poll(LOOK_MS):
-            seen, now = usage.look(self._pid), time.monotonic()
+            seen, now = linux.process_stat(self._pid), time.monotonic()
             self._count_sleep(seen, before)
             before = now
             if seen.has_ended and not poll.poll(0):  # a descendant holds the link
@@ -266,7 +237,7 @@ class StudentLink:
                 raise Refused(ELSEWHERE)
         return not self._is_slow()
 
-    def _count_sleep(self, seen: usage.Usage, since_s: float) -> None:
+    def _count_sleep(self, seen: linux.ProcessStat, since_s: float) -> None:
         """Add up for how long it wanted no processor, however often it woke for a moment."""
         used_s, self._seen_cpu_s = seen.cpu_s - self._seen_cpu_s, seen.cpu_s
         if seen.state != WANTS_PROCESSOR:
@@ -278,7 +249,7 @@ class StudentLink:
         now = time.monotonic()
         if now > self._look_at_s:
             self._look_at_s = now + CPU_LOOK_S
-            if usage.look(self._pid).cpu_s > self._patience.run_cpu_s:
+            if linux.process_stat(self._pid).cpu_s > self._patience.run_cpu_s:
                 self.silence = "slow"
             elif self._asleep_s > self._patience.all_asleep_s:
                 raise Refused(ELSEWHERE)

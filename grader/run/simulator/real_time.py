@@ -1,11 +1,11 @@
 """The simulator's process in a run in real time: a scene that the wall clock moves.
 
-    python -m grader.run.simulator.real_time LINE FILE PLAN FIRST_NODE_S SHOWN
+    python -m grader.run.simulator.real_time CONTROL FILE PLAN FIRST_NODE_S SHOWN
 
-It speaks JSON lines with the grader over LINE (`grader.run.processes.line`): out go `ready`,
+It speaks JSON lines with the grader over CONTROL, a socket: out go `ready`,
 `progress` about once a second, and `done` when the recording lies in FILE; in come `start` when the
-submission's process is started, and `exited` when it has ended. PLAN is a `grader.run.plan.Plan`,
-SHOWN what `grader.run.audience` asks for, or ''.
+submission's process is started, and `exited` when it has ended. PLAN is a
+`grader.run.handover.Plan`, SHOWN what `grader.run.simulator_process` asks for, or ''.
 The clock of the run starts when the submission has its first node, has ended, or has had
 FIRST_NODE_S for it [s]. If the grader goes away, so does the simulator.
 """
@@ -18,24 +18,51 @@ import socket
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 
+from grader.message import Message, msg
 from grader.run import handover
-from grader.run.plan import Plan
-from grader.run.processes.line import take_up
-from grader.run.simulator import precautions
-from grader.run.simulator.published_topics import EVENTS, PublishedTopics
-from grader.run.simulator.telling import Telling
+from grader.run.handover import Plan
+from grader.run.simulator.process import Telling, say, take_precautions
 from grader.scenes import load_scene
-from grader.scenes.scene import Hooks, Reason
+from grader.scenes.scene import STEP_NS, Hooks, Reason
+from turtlesim_py.ros import program
 
 #: How often the graph is looked at for what the submission publishes, and progress is told [ticks].
 LOOK_TICKS = 63
 #: So many times as long as the run's ticks may last they may take, and so much longer [s].
 SLOWEST, OVERTIME_S = 2.0, 10.0
-OVERTIME = "the run was ended: the simulator was kept from ticking at its pace"
+OVERTIME = msg("the run was ended: the simulator was kept from ticking at its pace")
+#: What every node publishes.
+EVENTS = "/parameter_events"
+#: So many topics of the graph are looked at; each takes a while, in the middle of a run.
+MOST_TOPICS = 500
+
+
+class PublishedTopics:
+    """On which topics the submission publishes, by the graph: the usual mistake is a wrong name.
+
+    Attributes:
+        types: topic -> type.
+    """
+
+    def __init__(self, node: Any) -> None:
+        """Look through a node of the scene, whose own publishers do not count."""
+        self.types: dict[str, str] = {}
+        self._node = node
+
+    def look(self) -> None:
+        """Note what the graph shows now."""
+        node = self._node
+        own = dict(
+            node.get_publisher_names_and_types_by_node(node.get_name(), node.get_namespace())
+        )
+        for topic, types in node.get_topic_names_and_types()[:MOST_TOPICS]:
+            if node.count_publishers(topic) > (topic in own):
+                self.types[topic] = types[0]
 
 
 class GradedSimulator:
@@ -48,14 +75,14 @@ class GradedSimulator:
         self._first_node_s = first_node_s
         self._file = file
         self._scene = load_scene(plan.scene)
-        self._telling = Telling.of(shown, self._scene.tick_ns)
+        self._telling = Telling.of(shown, STEP_NS)
         hooks = Hooks(tell=None if self._telling is None else self._telling.tell)
         self._simulation = self._scene.simulate(
             plan.limits, plan.start, hooks, plan.interfaces, plan.setting
         )
         self._topics = PublishedTopics(self._simulation.node)
         self._limits = plan.limits
-        self._flags: list[str] = []
+        self._flags: list[Message] = []
         self._running = False
         self._end_at_s = math.inf
         self._start_at_s = math.inf
@@ -78,12 +105,12 @@ class GradedSimulator:
                 reason = reason or self._overtime()
             return not reason
 
-        self._simulation.follow_wall_clock(tick)
+        program.follow_wall_clock(tick)
         if self._telling is not None:
             self._telling.close()
         self._topics.look()
-        handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.found())
-        flags = [*self._simulation.flags, *self._flags]
+        handover.leave(self._file, self._scene, self._simulation.trace(), self._topics.types)
+        flags = [f.serialise() for f in (*self._simulation.flags, *self._flags)]
         self._say("done", reason=reason, flags=flags)
 
     def _start(self) -> None:
@@ -96,7 +123,7 @@ class GradedSimulator:
         self._ticks += 1
         if self._ticks % LOOK_TICKS == 1:
             self._topics.look()
-            self._say("progress", seconds=round(self._simulation.recorded_s, 1))
+            self._say("progress", seconds=round(self._simulation.ticks * STEP_NS / 1e9, 1))
 
     def _overtime(self) -> Reason:
         """Ticks may come late, but not without end."""
@@ -117,7 +144,7 @@ class GradedSimulator:
 
     def _say(self, what: str, **more: str | float | list[str]) -> None:
         self._link.setblocking(True)
-        self._link.sendall(json.dumps({"say": what, **more}).encode() + b"\n")
+        say(self._link, what, **more)
         self._link.setblocking(False)
 
     def _hear(self) -> None:
@@ -140,8 +167,8 @@ class GradedSimulator:
 
 def main(argv: list[str]) -> int:
     """Run one graded simulation; the grader reads the exit code."""
-    precautions.take()
-    link = take_up(argv[0])
+    take_precautions()
+    link = socket.socket(fileno=int(argv[0]))
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     plan, first_node_s = Plan.from_json(argv[2]), float(argv[3])
     GradedSimulator(link, Path(argv[1]), plan, first_node_s, argv[4]).run()

@@ -1,32 +1,37 @@
 """Starts the simulator of a run in virtual time; where that cannot work, says so and ends.
 
     python -m grader.run.simulator.virtual_main ...
-    python -m grader.run.simulator.virtual_main --zygote SOCKET NEEDED
+    python -m grader.run.simulator.virtual_main --fork-server SOCKET NEEDED
 
 The arguments are those of `grader.run.simulator.virtual_time`. Whatever fails in this process
 fails here: the grader then runs the submission in real time, and the result says why. Should that
 fail as well, it is the grader's failure.
 
-As a zygote it imports packages of messages and scenes (NEEDED: a JSON list of two lists of names),
-and forks for each order; a child goes on with the arguments of the first form.
+As a fork server it imports packages of messages (NEEDED: a JSON list of names) and all scenes that
+are installed, and forks for each order; a child goes on with the arguments of the first form.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import socket
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
-from grader.run.processes import ZYGOTE
+from grader import extensions
+from grader.message import Message, msg
+from grader.run.processes import FORK_SERVER
+from grader.run.simulator.process import say
 
 
 def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
-    if argv[0] == ZYGOTE:
-        argv = become_one_of_many(argv[1:])
+    if argv[0] == FORK_SERVER:
+        argv = serve_runs(argv[1:])
     try:
         from grader.run.lockstep import contract
 
@@ -37,11 +42,11 @@ def main(argv: list[str]) -> int:
         return virtual_time.main(argv)
     except Exception as error:
         traceback.print_exc()
-        return _refuse(argv, f"virtual time itself failed ({_where(error)})")
+        return _refuse(argv, msg("virtual time itself failed ({where})", where=_where(error)))
 
 
-def become_one_of_many(words: Sequence[str]) -> list[str]:
-    """Be a zygote; returns in each child, with the arguments that it would have been started with.
+def serve_runs(words: Sequence[str]) -> list[str]:
+    """Be a fork server; returns in each child, with the arguments of a start of its own.
 
     Args:
         words: the number of the socket, and what to import.
@@ -50,17 +55,17 @@ def become_one_of_many(words: Sequence[str]) -> list[str]:
 
     if contract.broken():
         sys.exit(1)  # the run says so, when it has started from nothing
-    from grader.run.lockstep import preloading
-    from grader.run.processes import forking
+    from grader.run.lockstep import endpoints
+    from grader.run.processes import fork_server_main
     from grader.run.simulator import virtual_time  # noqa: F401
     from grader.scenes import load_scene
 
     number, needed = words
-    packages, scenes = json.loads(needed)
-    preloading.import_messages(packages)
-    for name in scenes:
-        load_scene(name).preload()
-    command = forking.serve(number, ())
+    endpoints.import_messages(json.loads(needed))
+    for name in extensions.points(extensions.SCENES):
+        with suppress(Exception):  # whatever a scene raises, its own runs say so
+            load_scene(name).preload()
+    command = fork_server_main.serve(number, ())
     return command[command.index("-m") + 2 :]
 
 
@@ -69,9 +74,9 @@ def _where(error: Exception) -> str:
     return f"{type(error).__name__} in {Path(frame.filename).name}, line {frame.lineno}"
 
 
-def _refuse(argv: list[str], why: str) -> int:
-    message = {"say": "refused", "reason": why}
-    os.write(int(argv[0]), json.dumps(message).encode() + b"\n")
+def _refuse(argv: list[str], why: Message) -> int:
+    with socket.socket(fileno=int(argv[0])) as grader:
+        say(grader, "refused", reason=why.serialise())
     return 0
 
 

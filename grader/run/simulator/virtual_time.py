@@ -1,10 +1,11 @@
 """The simulator's process in a run in virtual time: it ticks when the submission's process asks.
 
-    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PID CORE PATIENCE SHOWN
+    python -m grader.run.simulator.virtual_main FD FILE PLAN LINK PAGE PID CORE PATIENCE SHOWN
 
 The first three as in `grader.run.simulator.real_time`; LINK is the socket to the submission's
-process PID, CORE the processor core that both are to share (-1: any), PATIENCE a
-`grader.run.simulator.link.Patience` as JSON, SHOWN what `grader.run.audience` asks for, or ''.
+process PID, PAGE a descriptor of the page in which that says how far it has got, CORE the processor
+core that both are to share (-1: any), PATIENCE a `grader.run.limits.Patience` as JSON,
+SHOWN what `grader.run.simulator_process` asks for, or ''.
 
 What the submission has sent comes with its request for time, what is answered and published goes
 with the reply (`grader.run.lockstep.protocol`). What happens in a tick is the node's own business,
@@ -26,25 +27,25 @@ import rclpy
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 
+from grader.message import msg
 from grader.run import handover
+from grader.run.handover import Plan
+from grader.run.limits import Patience
 from grader.run.lockstep import actions, endpoints, rclpy_clocks, waitsets
-from grader.run.lockstep.protocol import TICK_NS, Advance, Interests, Reply, State
-from grader.run.lockstep.times import EPOCH_NS
-from grader.run.plan import Plan
+from grader.run.lockstep.protocol import EPOCH_NS, TICK_NS, Advance, Interests, Reply, State
 from grader.run.processes import cores
-from grader.run.simulator import precautions
 from grader.run.simulator.endpoints import SimulatorEndpoints
 from grader.run.simulator.foresight import Foresight
-from grader.run.simulator.link import Patience, Refused, StudentLink
-from grader.run.simulator.telling import Telling
+from grader.run.simulator.link import Refused, StudentLink
+from grader.run.simulator.process import Telling, say, take_precautions
 from grader.scenes import load_scene
-from grader.scenes.scene import Hooks, Reason
+from grader.scenes.scene import STEP_NS, Hooks, Reason
 
 #: So many new objects are searched for garbage: what a run records stays to its end.
 GARBAGE = 100_000
 #: So many requests of a run may let no time pass; most runs have none of these.
 MOST_VAIN = 100_000
-VAIN = f"its process made more than {MOST_VAIN} requests that let no time pass"
+VAIN = msg("its process made more than {number} requests that let no time pass", number=MOST_VAIN)
 
 
 class Lockstep:
@@ -67,13 +68,13 @@ class Lockstep:
         self._share_core = share_core
         self.now_ns = 0
         self._clocks = rclpy_clocks.install(_rclpy, lambda: self.now_ns, lambda: None)
-        waitsets.install(_NoWaiting(self._clocks))
+        waitsets.install(waitsets.Waiter(self._clocks.tell))
         self._registry = SimulatorEndpoints(lambda: EPOCH_NS + self.now_ns, link.flag)
         endpoints.install(self._registry)
         actions.install()
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
         self._scene = load_scene(plan.scene)
-        assert self._scene.tick_ns == TICK_NS
+        assert STEP_NS == TICK_NS
         self._telling = Telling.of(shown, TICK_NS)
         tell = None if self._telling is None else self._telling.tell
         hooks = Hooks(has_unread=self._registry.has_unread, tell=tell)
@@ -123,7 +124,7 @@ class Lockstep:
             "waits": self._link.waits,
             "was_at_rest": self._was_at_rest,
             "reached_s": min(self._link.reached(), self._tick) * TICK_NS / 1e9,
-            "flags": [*self._link.flags, *self._simulation.flags],
+            "flags": [f.serialise() for f in (*self._link.flags, *self._simulation.flags)],
             "marks": self._marks,
         }
 
@@ -137,8 +138,7 @@ class Lockstep:
 
     def save(self, file: Path) -> None:
         """Write the recording where the grader finds it."""
-        topics = self._registry.published()
-        handover.leave(file, self._scene, self._simulation.trace(), topics)
+        handover.leave(file, self._scene, self._simulation.trace(), self._registry.published)
 
     def _next_request(self) -> Advance | None:
         """The next `Advance`, after all that comes before it."""
@@ -207,55 +207,26 @@ class Lockstep:
             self._reason = self._simulation.tick(EPOCH_NS + self.now_ns)
 
 
-class _NoWaiting:
-    """The simulator's wait sets only look."""
-
-    #: never quiet, never asked: warnings of others' quality of service would go nowhere
-    graph_epoch = -1
-    is_alone = True
-
-    def __init__(self, clocks: rclpy_clocks.RclpyClocks) -> None:
-        self.tell_time = clocks.tell
-
-    def await_dds(self, what: str) -> None: ...
-
-    def look_first(self) -> None: ...
-
-    def found_work(self) -> None: ...
-
-    def found_nothing(self) -> None: ...
-
-    def wait_for(self, wait_set: Any, deadline_ns: int) -> None:
-        raise AssertionError("the simulator never waits for its node")
-
-    def deadline(self, timeout_ns: int) -> int:
-        return 0
-
-    def poke(self, cause: object) -> None: ...
-
-
 def main(argv: list[str]) -> int:
     """Run one simulation in lockstep; the grader reads the exit code."""
-    precautions.take()
+    take_precautions()
     control = socket.socket(fileno=int(argv[0]))
     theirs = socket.socket(fileno=int(argv[3]))
-    student, core = int(argv[4]), int(argv[5])
-    link = StudentLink(theirs, student, Patience(**json.loads(argv[6])))
-
-    def answer(what: str, **more: Any) -> None:
-        control.sendall(json.dumps({"say": what, **more}).encode() + b"\n")
+    page, student, core = map(int, argv[4:7])
+    link = StudentLink(theirs, page, student, Patience(**json.loads(argv[7])))
 
     def share_core() -> None:
         # for both, from here: a submission's process may not say where threads run
         cores.pin(core, os.getpid(), student)
 
-    lockstep = Lockstep(link, Plan.from_json(argv[2]), share_core, lambda: answer("met"), argv[7])
+    plan = Plan.from_json(argv[2])
+    lockstep = Lockstep(link, plan, share_core, lambda: say(control, "met"), argv[8])
     gc.freeze()
     gc.set_threshold(GARBAGE)
     try:
         ending = lockstep.run()
         lockstep.save(Path(argv[1]))
-        answer("done", **ending)
+        say(control, "done", **ending)
     except Refused as refusal:
-        answer("refused", reason=str(refusal))
+        say(control, "refused", reason=refusal.why.serialise())
     return 0

@@ -1,74 +1,130 @@
-"""The submission's process: run what was handed in, and nothing of ours.
+"""Starts a submission in real time: its program, or several programs of it.
 
     python main.py AWAITED EVIDENCE ROOT module:function
     python main.py AWAITED EVIDENCE ROOT path/to/script.py [function]
+    python main.py AWAITED EVIDENCE ROOT PROGRAMS
 
 AWAITED is a JSON list of two lists: topics and services that have to be connected when the
-submission gets them; see `Introduced`. EVIDENCE is a pipe to the grader (`telling`), -1 for none.
+submission gets them; see `Introduced`. EVIDENCE is the page of its account, -1 for none. PROGRAMS
+is a JSON list of [name, module:function, arguments], as a launch file starts them: each becomes a
+process of its own, without an account, which several must not write.
 
-Started by path, not with -m, and of the grader it imports only what looks on (`looking`), so that
-the submission finds the interpreter as it would at a student's desk. ROOT comes first on the import
-path; our packages of the same names as the submission's are out of reach, whatever is installed.
+Started by path, not with -m, and of the grader it imports only what loads and observes a program,
+so that the submission finds the interpreter as it would at a student's desk. ROOT comes first on
+the import path.
 """
 
-import functools
-import importlib
-import importlib.machinery
-import importlib.util
-import json
-import re
-import runpy
 import sys
-import time
-import traceback
-import types
-from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path[0] = str(Path(__file__).resolve().parents[3])
+
+import atexit
+import functools
+import json
+import os
+import signal
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
-#: Installed packages that a submission must never pick up in place of its own.
-OURS = ("turtlesim_challenge", "turtlesim_py", "grader")
-#: How a line begins that declares the encoding of a file (PEP 263).
-ENCODING = re.compile(rb"[ \t\f]*#.*?coding[:=][ \t]*[-\w.]+")
+from grader.run.observe import hooks
+from grader.run.observe.witness import Witness
+from grader.run.student import loading
 
 
-class OnlyFromSubmission:
-    """An import hook: modules of these names come from the submission or not at all."""
-
-    def __init__(self, root: str) -> None:
-        self._root = root
-
-    def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
-        """Find a top-level module of ours below the submission's root only."""
-        if name not in OURS:
-            return None
-        spec = importlib.machinery.PathFinder.find_spec(name, [self._root])
-        if spec is None:
-            raise ModuleNotFoundError(f"No module named {name!r} in the submission", name=name)
-        return spec
+def main() -> None:
+    """Start one program, or several, and leave with the exit code."""
+    _, awaited, page, root, target, *more = sys.argv
+    if target.startswith("["):
+        sys.exit(start_all(awaited, root, json.loads(target)))
+    sys.exit(start(awaited, int(page), root, target, more[0] if more else None))
 
 
-class AfterImport:
-    """An import hook: when one of these modules has been loaded, each of its calls is made."""
+def start(
+    awaited: str, page: int, root: str, target: str, function: str | None, words: Sequence[str] = ()
+) -> int:
+    """Run a program to its end; return its exit code.
 
-    def __init__(self, calls: Mapping[str, Sequence[Callable[[types.ModuleType], None]]]) -> None:
-        self._calls = calls
+    Args:
+        words: its arguments.
+    """
+    now_s, started_s = time.monotonic, time.monotonic()
+    witness = Witness(page, root, lambda: now_s() - started_s, hooks.is_met)
+    hooks.install_in_threads(witness)
+    time.sleep = hooks.timed(witness, time.sleep)
+    introduced = Introduced(*json.loads(awaited))
+    code: int | None = None
 
-    def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
-        """Load as usual, then call."""
-        if name not in self._calls:
-            return None
-        spec = importlib.machinery.PathFinder.find_spec(name, path)
-        if spec is not None and spec.loader is not None:
-            load = spec.loader.exec_module
+    # registered first, so called last: when all threads have ended that Python waits for
+    @atexit.register
+    def at_end() -> None:
+        if code is not None:
+            witness.ending.returned(code)
 
-            def exec_module(module: types.ModuleType) -> None:
-                load(module)
-                for call in self._calls[name]:
-                    call(module)
+    loading.hide_the_grader(root, target, words)
+    sys.meta_path.insert(
+        0,
+        loading.AfterImport(
+            {
+                "rclpy.publisher": [loading.accept_numbers],
+                "rclpy.node": [introduced.patch, lambda _: hooks.install_in_real_time(witness)],
+                "rclpy.action.client": [lambda _: hooks.install_actions(witness)],
+                "rclpy.experimental.events_executor": [
+                    lambda module: hooks.install_in_events_executor(witness, module)
+                ],
+            }
+        ),
+    )
+    code = loading.call(root, target, function, witness.ending.raised)
+    return code
 
-            spec.loader.exec_module = exec_module  # type: ignore[method-assign]
-        return spec
+
+# Several programs -----------------------------------------------------------------------------
+
+
+def start_all(awaited: str, root: str, programs: Sequence[tuple[str, str, list[str]]]) -> int:
+    """Start several programs, and wait for all; return the exit code of the first that failed."""
+    names = {}
+    for name, target, words in programs:
+        pid = os.fork()
+        if pid == 0:
+            sys.exit(start(awaited, -1, root, target, None, words))
+        names[pid] = name
+    _ignore_questions()
+    try:
+        code = _wait(names)
+    except KeyboardInterrupt:
+        code = 130
+    if code < 0:
+        signal.signal(-code, signal.SIG_DFL)
+        os.kill(os.getpid(), -code)
+    return code
+
+
+def _ignore_questions() -> None:
+    """Ignore the signals that ask a program where it is: this is none."""
+    for number in (signal.SIGUSR1, signal.SIGUSR2, *range(signal.SIGRTMIN, signal.SIGRTMAX + 1)):
+        with suppress(OSError, ValueError):
+            signal.signal(number, signal.SIG_IGN)
+
+
+def _wait(names: dict[int, str]) -> int:
+    """Wait until all have ended; return the exit code of the first that failed, else 0."""
+    code = 0
+    while names:
+        pid, status = os.wait()
+        name = names.pop(pid, None)
+        ended = os.waitstatus_to_exitcode(status)
+        if name is not None and ended:
+            print(f"{name} has ended with exit code {ended}", file=sys.stderr, flush=True)
+            code = code or ended
+    return code
+
+
+# Connections ----------------------------------------------------------------------------------
 
 
 class Introduced:
@@ -113,9 +169,9 @@ class Introduced:
     ) -> None:
         names, endings = known
         if name in names:
-            self.sure_patience_s -= _wait(is_connected, self.sure_patience_s)
+            self.sure_patience_s -= _wait_for(is_connected, self.sure_patience_s)
         elif _ending(name) in endings:
-            self.patience_s -= _wait(is_connected, self.patience_s)
+            self.patience_s -= _wait_for(is_connected, self.patience_s)
 
 
 def _with_endings(names: list[str]) -> tuple[set[str], set[str]]:
@@ -126,8 +182,8 @@ def _ending(name: str) -> str:
     return name.rpartition("/")[2]
 
 
-def _wait(is_connected: Callable[[], bool], patience_s: float) -> float:
-    """Wait for a connection; how long that took [s]."""
+def _wait_for(is_connected: Callable[[], bool], patience_s: float) -> float:
+    """Wait for a connection; return how long that took [s]."""
     began = time.monotonic()
     is_new = not is_connected()
     while is_new and time.monotonic() < began + patience_s:
@@ -135,134 +191,6 @@ def _wait(is_connected: Callable[[], bool], patience_s: float) -> float:
         # ROS tells of a service a moment before a request would reach it, so not too short
         time.sleep(0.02)
     return time.monotonic() - began
-
-
-def run(root: str, target: str, function: str | None) -> object:
-    """Start what was handed in; returns what its function returned."""
-    if target.endswith(".py"):
-        must_be_text(target)
-        if function is None:
-            runpy.run_path(target, run_name="__main__")
-            return None
-        name = Path(target).stem
-        spec = importlib.util.spec_from_file_location(name, target)
-        assert spec is not None and spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module
-        spec.loader.exec_module(module)
-    else:
-        name, _, function = target.partition(":")
-        module = importlib.import_module(name)
-        check_origin(module, root)
-    start: Any = functools.reduce(getattr, str(function).split("."), module)
-    return start()
-
-
-def must_be_text(file: str) -> None:
-    """Refuse what `python3 FILE` refuses, and `runpy` passes over or does not place.
-
-    Raises:
-        SyntaxError: bytes that are no UTF-8 and no declared encoding either, or null bytes.
-    """
-    data = Path(file).read_bytes()
-    try:
-        at, why = data.index(0), "source code cannot contain null bytes"
-    except ValueError:
-        try:
-            data.decode()
-            return
-        except UnicodeDecodeError as error:
-            if any(ENCODING.match(line) for line in data.splitlines()[:2]):
-                return  # the compiler goes by it
-            at = error.start
-            why = f"Non-UTF-8 code starting with '\\x{data[at]:02x}', but no encoding declared"
-    line = data.count(b"\n", 0, at) + 1
-    raise SyntaxError(f"{why}; save the file as UTF-8", (file, line, None, None))
-
-
-def check_origin(module: types.ModuleType, root: str) -> None:
-    """The module must be the submission's, not one of the same name that was there before.
-
-    Raises:
-        ImportError: it is not; the text says what to do.
-    """
-    file = getattr(module, "__file__", None)
-    if file is None or not Path(file).resolve().is_relative_to(Path(root).resolve()):
-        raise ImportError(
-            f"{module.__name__!r} is also the name of a module of Python's or ROS's own "
-            f"({file or 'built in'}); call yours something else"
-        )
-
-
-def call(
-    root: str,
-    target: str,
-    function: str | None,
-    on_error: Callable[[BaseException], None] = lambda error: None,
-) -> int:
-    """Run what was handed in to its end; its exit code. Tracebacks go without our own lines.
-
-    `on_error`: told of an exception that nobody has caught, before its traceback is printed; also
-        of one that Python prints nothing of.
-    """
-    try:
-        code = run(root, target, function)
-    except KeyboardInterrupt as interrupt:
-        on_error(interrupt)
-        return 130
-    except SystemExit as leaving:
-        on_error(leaving)
-        code = leaving.code
-        if isinstance(code, str):
-            print(code, file=sys.stderr)
-            return 1
-    except BaseException as error:
-        on_error(error)
-        traceback.print_exception(_without_our_frames(error))
-        return 1
-    return code if isinstance(code, int) else 0
-
-
-def forget_ourselves(root: str, target: str, arguments: Sequence[str] = ()) -> None:
-    """Have the interpreter look as it would at a student's desk."""
-    name = Path(target).name if target.endswith(".py") else target.partition(":")[0]
-    sys.argv = [name, *arguments]
-    sys.path[0] = root
-    sys.meta_path.insert(0, OnlyFromSubmission(root))
-    for name in [name for name in sys.modules if name.partition(".")[0] in OURS]:
-        del sys.modules[name]
-
-
-def main(arguments: Sequence[str] = ()) -> None:
-    """Prepare the interpreter, run, and leave with the exit code.
-
-    Args:
-        arguments: of the submission's program.
-    """
-    _, awaited, page, root, target, *more = sys.argv
-    sys.path[0] = str(Path(__file__).resolve().parents[3])
-    from grader.run.student.looking import Looking
-
-    looking = Looking(int(page), root)
-    forget_ourselves(root, target, arguments)
-    introduced = Introduced(*json.loads(awaited))
-    calls = {name: [look] for name, look in looking.calls.items()}
-    calls["rclpy.node"].insert(0, introduced.patch)
-    sys.meta_path.insert(0, AfterImport(calls))
-    code = call(root, target, more[0] if more else None, looking.raised)
-    looking.returns(code)
-    sys.exit(code)
-
-
-def _without_our_frames(error: BaseException) -> BaseException:
-    trace = error.__traceback__
-    hidden = (__file__, runpy.__file__, importlib.__file__, "<frozen runpy>")
-    while trace is not None and (
-        trace.tb_frame.f_code.co_filename in hidden
-        or trace.tb_frame.f_code.co_filename.startswith("<frozen importlib")
-    ):
-        trace = trace.tb_next
-    return error.with_traceback(trace)
 
 
 if __name__ == "__main__":

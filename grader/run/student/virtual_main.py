@@ -1,19 +1,21 @@
-"""The submission's process in virtual time: replace what tells time, run what was handed in.
+"""Starts a submission in virtual time: replaces what tells time, observes, runs its program.
 
     python virtual_main.py FD EVIDENCE SCENE ROOT module:function
     python virtual_main.py FD EVIDENCE SCENE ROOT path/to/script.py [function]
-    python virtual_main.py --zygote SOCKET MESSAGES
+    python virtual_main.py --fork-server SOCKET MESSAGES
 
-FD is the link to the simulator, EVIDENCE a pipe to the grader (`telling`), SCENE a JSON list of the
-simulator's nodes, with names and namespaces, and of whether two stamps have to be told apart.
+FD is the link to the simulator, EVIDENCE the page of the submission's account, SCENE a JSON list of
+the simulator's nodes, with names and namespaces, and of whether two stamps have to be told apart.
 Started by path, like `grader.run.student.main`, whose rules for what a submission may import are
 the same. Everything of ours is imported before the submission is, and then forgotten by the import
 system.
 
-As a zygote it does the same up to where the link comes in, imports what nearly every submission
-needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with the
-arguments of the first two forms, and looks to a submission as if it had been started with them.
+As a fork server it does the same up to where the link comes in, imports what nearly every
+submission needs (MESSAGES: a JSON list of packages), and forks for each order; a child goes on with
+the arguments of the first two forms, and looks to a submission as if it had been started with them.
 """
+
+from __future__ import annotations
 
 import sys
 from pathlib import Path
@@ -26,131 +28,166 @@ import random  # noqa: E402
 import socket  # noqa: E402
 from collections.abc import Callable, Sequence  # noqa: E402
 from contextlib import suppress  # noqa: E402
+from typing import TYPE_CHECKING, Any  # noqa: E402
 
+from grader.message import NOTHING, Message, msg  # noqa: E402
+from grader.run.clock import surroundings, system_calls, threads  # noqa: E402
+from grader.run.clock.scheduler import Scheduler  # noqa: E402
 from grader.run.lockstep import contract, faults, real  # noqa: E402
 from grader.run.lockstep.protocol import Kind, Note, encode  # noqa: E402
-from grader.run.processes import ZYGOTE  # noqa: E402
-from grader.run.student import (  # noqa: E402
-    chance,
-    clocks,
-    deadlock,
-    refusal,
-    signals,
-    sockets,
-    telling,
-    threads,
-)
+from grader.run.observe import hooks  # noqa: E402
+from grader.run.observe.witness import Witness  # noqa: E402
+from grader.run.processes import FORK_SERVER  # noqa: E402
+from grader.run.student import loading  # noqa: E402
 
-# ours, in the order in which they must take hold: threads and time before anything uses them
-from grader.run.student import main as student_main  # noqa: E402
-from grader.run.student.scheduler import Scheduler  # noqa: E402
+if TYPE_CHECKING:  # which imports rclpy
+    from grader.run.clock.link import SimulatorLink
 
 
 def main() -> None:
     """Run one submission; does not return."""
     words = sys.argv
-    is_zygote = words[1] == ZYGOTE
+    is_server = words[1] == FORK_SERVER
     scheduler = Scheduler()
     fault, state = prepare(scheduler)
-    if is_zygote:
+    if is_server:
         if fault:
-            sys.exit(fault)  # the run says so, when it has started from nothing
+            sys.exit(str(fault))  # the run says so, when it has started from nothing
         words = become_one_of_many(scheduler, state, words[2:])
     _, fd, page, introduction, root, target, *more = words
     connection = socket.socket(fileno=int(fd))
-    teller = telling.Teller(int(page), root, lambda: scheduler.now_ns / 1e9)
+    witness = Witness(int(page), root, lambda: scheduler.now_ns / 1e9, is_met)
 
-    def give_up(kind: Kind, what: str) -> None:
+    def give_up(kind: Kind, what: Message) -> None:
         with suppress(OSError):  # the simulator is gone
             connection.send(encode(Note(kind, what)))
         real.leave(0)
 
-    def refuse(what: str) -> None:
+    def refuse(what: Message) -> None:
         give_up(Kind.UNSUPPORTED, what)
 
     faults.on_fault = lambda what: give_up(Kind.FAILED, what)
     if fault:
         give_up(Kind.FAILED, fault)
     try:
-        chance.replace_surroundings()
-        signals.install(scheduler, refuse)
-        from grader.run.student import install as inside_rclpy
-
-        nodes, tells_apart = json.loads(introduction)
-        known = [(name, namespace) for name, namespace in nodes]
-        link, witness = inside_rclpy.install(scheduler, known, refuse, teller, tells_apart)
-        link.take_up(connection)
-    except refusal.Unsupported as lack:
-        give_up(Kind.FAILED, f"virtual time does not work here: {lack}")
+        surroundings.replace_user_and_devices()
+        system_calls.replace_signals(scheduler, refuse)
+        link = install(scheduler, connection, int(page), refuse, witness, introduction)
     except Exception as error:
-        give_up(Kind.FAILED, faults.failed(faults.whose(error) or repr(error)))
+        give_up(Kind.FAILED, broken(error))
 
     connect = faults.guarded(link.connect)
 
     def on_error(error: BaseException) -> None:
         """An exception has ended the main thread."""
         faults.report(error)
-        if stuck := deadlock.find_refused(error, scheduler.now_ns):
-            print(stuck.text, file=sys.stderr, flush=True)
-            witness.stuck(stuck.kind, stuck.lines)
-            link.note(Kind.STUCK)
-            while True:
-                scheduler.block()
         connect()  # so that it is known who has the other ends
-        witness.raised(error)
-        faults.hide_our_frames(error)
+        witness.ending.raised(error)
 
-    refusal.watch(refuse)
-    student_main.forget_ourselves(root, target)
-    code = student_main.call(root, target, more[0] if more else None, on_error)
+    system_calls.refuse_processes(refuse)
+    loading.hide_the_grader(root, target)
+    code = loading.call(root, target, more[0] if more else None, on_error)
     threads.join_all()
     connect()
-    witness.returned(code)
+    witness.ending.returned(code)
     atexit._run_exitfuncs()
     faults.guarded(link.synchronise)()
     real.leave(code)
 
 
-def prepare(scheduler: Scheduler) -> tuple[str, Callable[[], object]]:
-    """Replace all that needs no link; what is wrong, or '', and what tells the state of chance."""
+def prepare(scheduler: Scheduler) -> tuple[Message, Callable[[], object]]:
+    """Replace all that needs no link.
+
+    Returns: what is wrong, if anything, and what returns the state of chance.
+    """
     state: Callable[[], object] = object
     try:
         # before rclpy is imported, which uses all of it
-        clocks.install(scheduler)
+        surroundings.replace_clocks(scheduler)
         threads.install(scheduler)
-        state = chance.install()
-        sockets.install(scheduler)
-        if broken := contract.broken(contract.ENTITIES, contract.PROGRAM):
-            return broken, state
-        from grader.run.student import install as inside_rclpy
+        state = surroundings.seed_chance()
+        system_calls.replace_select(scheduler)
+        if lack := contract.broken(contract.ENTITIES, contract.PROGRAM):
+            return lack, state
+        from grader.run.clock import rclpy_time
 
-        inside_rclpy.prepare()
-    except refusal.Unsupported as lack:
-        return f"virtual time does not work here: {lack}", state
+        rclpy_time.prepare()
     except Exception as error:
-        return faults.failed(faults.whose(error) or repr(error)), state
-    return "", state
+        return broken(error), state
+    return NOTHING, state
+
+
+def install(
+    scheduler: Scheduler,
+    connection: socket.socket,
+    page: int,
+    refuse: Callable[[Message], None],
+    witness: Witness,
+    introduction: str,
+) -> SimulatorLink:
+    """Put rclpy into virtual time, and then have a witness observe it; return the link."""
+    import rclpy.publisher
+
+    from grader.run.clock import rclpy_time
+    from grader.run.clock.link import SimulatorLink
+
+    link = SimulatorLink(scheduler, connection, page, refuse)
+    main = scheduler.main.ident
+
+    def on_deadlock() -> None:
+        is_stuck = witness.ending.deadlocked([each.ident for each in scheduler.runners], main)
+        link.note(Kind.STUCK if is_stuck else Kind.WAITING)
+
+    nodes, compares_stamps = json.loads(introduction)
+    known = [(name, namespace) for name, namespace in nodes]
+    rclpy_time.install(
+        scheduler, link, known, compares_stamps=compares_stamps, on_deadlock=on_deadlock
+    )
+    link.on_over = lambda: witness.ending.over(main)
+    scheduler.on_waited = witness.waited
+    loading.accept_numbers(rclpy.publisher)
+    hooks.install_in_threads(witness)
+    hooks.install(witness)
+    hooks.install_actions(witness)
+    return link
+
+
+def is_met(kind: str, entity: Any) -> Callable[[], bool]:
+    """Return what tells of an end whether anybody has had the other one.
+
+    The entity itself is not to live longer for it.
+    """
+    handle = entity._client_handle if kind == "action_client" else entity.handle
+    endpoint = handle.endpoints[0]
+    return lambda: endpoint.matches > 0
+
+
+def broken(error: Exception) -> Message:
+    """Return why virtual time does not work here."""
+    if isinstance(error, system_calls.Unsupported):
+        return msg("virtual time does not work here: {lack}", lack=str(error))
+    return faults.failed(faults.whose(error) or repr(error))
 
 
 def become_one_of_many(
     scheduler: Scheduler, state: Callable[[], object], words: Sequence[str]
 ) -> list[str]:
-    """Be a zygote; returns in each child, with the arguments that it would have been started with.
+    """Be a fork server; returns in each child, with the arguments of a start of its own.
 
     Args:
-        state: tells whether anything has drawn random numbers.
+        state: returns another value when anything has drawn random numbers.
         words: the number of the socket, and which packages' messages to import.
     """
     number, packages = words
     before, loaded = (state(), vars(scheduler).copy()), _loaded()
-    from grader.run.lockstep import preloading
-    from grader.run.processes import forking
+    from grader.run.lockstep import endpoints
+    from grader.run.processes import fork_server_main
 
-    preloading.import_messages(json.loads(packages))
+    endpoints.import_messages(json.loads(packages))
     if (state(), vars(scheduler)) != before:
         sys.exit("what is imported beforehand draws random numbers, or takes time")
     drawn = random.getstate()
-    command = forking.serve(number, _loaded() - loaded)
+    command = fork_server_main.serve(number, _loaded() - loaded)
     random.setstate(drawn)  # Python has drawn others for each fork
     sys.argv = command[1:]
     return sys.argv
@@ -159,7 +196,7 @@ def become_one_of_many(
 def _loaded() -> set[str]:
     """The top-level modules that are loaded, but for those that a submission may not have."""
     found = {name.partition(".")[0] for name in sys.modules}
-    return found - set(student_main.OURS)
+    return found - set(loading.OURS)
 
 
 if __name__ == "__main__":

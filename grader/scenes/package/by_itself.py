@@ -2,11 +2,29 @@
 
 from __future__ import annotations
 
-from grader.language.phrase import joined, say
-from grader.scenes.package.trace import Launch, Node, PackageTrace
+from grader.message import NOTHING, Message, joined, msg, plain_text
+from grader.scenes.package.said import said
+from grader.scenes.package.trace import LaunchedNode, LaunchFile, PackageTrace
 
 
-def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[str]:
+def not_read(trace: PackageTrace, module: str, function: str) -> list[Message]:
+    """A sentence on each launch file that may start more of the package, and cannot be read."""
+    scripts = trace.setup.scripts if trace.setup else ()
+    name = next((s.name for s in scripts if (s.module, s.function) == (module, function)), "")
+    return [
+        msg(
+            "{file} was not run, and what it starts cannot be read ({unread}): "
+            "judged is {program} alone",
+            file=launch.file,
+            unread=said(launch.problem),
+            program=name,
+        )
+        for launch in trace.launches
+        if name and launch.problem is not None
+    ]
+
+
+def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[Message]:
     """A sentence on each launch file that starts more of the package, or starts it otherwise.
 
     Args:
@@ -25,8 +43,8 @@ def unlike_launched(trace: PackageTrace, module: str, function: str) -> list[str
     return found
 
 
-def _sentence(launch: Launch, started: str, why: str) -> str:
-    return say(
+def _sentence(launch: LaunchFile, started: str, why: Message) -> Message:
+    return msg(
         "{file} was evaluated and not run: {program} was started by itself, without {what}",
         file=launch.file,
         program=started,
@@ -34,21 +52,21 @@ def _sentence(launch: Launch, started: str, why: str) -> str:
     )
 
 
-def _why(own: list[Node], started: str) -> str:
+def _why(own: list[LaunchedNode], started: str) -> Message:
     others = sorted({node.executable for node in own} - {started})
     if others:
-        return ", ".join(others)
-    return next(filter(None, map(_given, own)), "")
+        return plain_text(", ".join(others))
+    return next(filter(None, map(_given, own)), NOTHING)
 
 
-def _given(node: Node) -> str:
+def _given(node: LaunchedNode) -> Message:
     """What a launch file gives a program that makes a difference; '' for nothing."""
     parameters = [each.name for each in node.parameters if each.name != "use_sim_time"]
     parts = {
-        say("its namespace"): bool(node.namespace.strip("/")),
-        say("its remappings"): bool(node.remappings),
-        say("its arguments"): bool(node.arguments),
-        say("its parameters ({names})", names=", ".join(parameters)[:200]): bool(parameters),
+        msg("its namespace"): bool(node.namespace.strip("/")),
+        msg("its remappings"): bool(node.remappings),
+        msg("its arguments"): bool(node.arguments),
+        msg("its parameters ({names})", names=", ".join(parameters)[:200]): bool(parameters),
     }
     given = [part for part, is_given in parts.items() if is_given]
-    return joined(given, say(" and ")) if given else ""
+    return joined(given, msg(" and ")) if given else NOTHING

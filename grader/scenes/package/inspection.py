@@ -10,7 +10,7 @@ import json
 from dataclasses import dataclass, field
 
 from grader.scenes.package import trace
-from grader.scenes.package.trace import PackageTrace, Problem
+from grader.scenes.package.trace import Obstacle, PackageTrace
 from grader.strict_json import to_json
 
 
@@ -58,7 +58,7 @@ class SetUp:
 
     folder: str
     told: Told
-    problem: Problem | None
+    problem: Obstacle | None
 
 
 @dataclass(frozen=True)

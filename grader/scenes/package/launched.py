@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grader import text
-from grader.language.phrase import joined, say, say_many
-from grader.scenes.package.said import phrase_of
-from grader.scenes.package.trace import PREFIX, Lacking, Launch, Node, PackageTrace, Skipped
-from grader.scenes.view import Cell, Table
+from grader.message import NOTHING, Message, Text, joined, msg, msg_many
+from grader.recording.view import Cell, Table
+from grader.scenes.package.trace import (
+    PREFIX,
+    Lacking,
+    LaunchedNode,
+    LaunchFile,
+    PackageTrace,
+    Skipped,
+)
 
 HEADINGS = (
-    *(say("Package"), say("Program"), say("Name")),
-    *(say("Parameters and arguments"), say("Said in")),
+    *(msg("Package"), msg("Program"), msg("Name")),
+    *(msg("Parameters and arguments"), msg("Said in")),
 )
 #: A page has no more launch files, rows and lines of a cell.
 _MOST_TABLES, _MOST_ROWS, _MOST_LINES = 12, 60, 12
@@ -24,22 +30,22 @@ def tables(trace: PackageTrace) -> tuple[Table, ...]:
     return tuple(_table(trace, launch) for launch in trace.launches[:_MOST_TABLES])
 
 
-def _table(trace: PackageTrace, launch: Launch) -> Table:
+def _table(trace: PackageTrace, launch: LaunchFile) -> Table:
     rows = [_node(trace, launch, node) for node in launch.nodes]
     rows += [
-        _row("", "", "", (say("the program {name}", name=_clip(each)),), launch.file)
+        _row("", "", "", (msg("the program {name}", name=_clip(each)),), launch.file)
         for each in launch.processes
     ]
     for each in launch.includes:
-        told = (say("includes {file}", file=_clip(each.file)), *each.arguments)
+        told: tuple[Text, ...] = (msg("includes {file}", file=_clip(each.file)), *each.arguments)
         rows.append(_row(each.package, "", "", told, launch.file))
     rows += [_skipped(each) for each in launch.skipped]
     rows += [_lacking(each) for each in launch.lacking if each.source or not _is_told(launch, each)]
-    title = say("What {file} would start", file=_clip(launch.file))
+    title = msg("What {file} would start", file=_clip(launch.file))
     return Table(title, HEADINGS, tuple(rows[:_MOST_ROWS]), _note(launch, len(rows)))
 
 
-def _is_told(launch: Launch, lacking: Lacking) -> bool:
+def _is_told(launch: LaunchFile, lacking: Lacking) -> bool:
     """Whether a node's row says that it is missing."""
     for node in launch.nodes:
         names = {"package": node.package, "executable": f"{node.package} {node.executable}"}
@@ -51,42 +57,42 @@ def _is_told(launch: Launch, lacking: Lacking) -> bool:
     return False
 
 
-def _note(launch: Launch, rows: int) -> str:
+def _note(launch: LaunchFile, rows: int) -> Message:
     said = []
     if launch.problem is not None:
-        where = say(
+        where = msg(
             " ({file}, line {line})", file=_clip(launch.problem.file), line=launch.problem.line
         )
         said.append(
-            say(
+            msg(
                 "It ends with {error}{place}.",
-                error=_clip(phrase_of(launch.problem.text)),
+                error=launch.problem.text.map_texts(_clip),
                 place=where if launch.problem.line else "",
             )
         )
     elif not rows:
-        said.append(say("It starts nothing."))
+        said.append(msg("It starts nothing."))
     if launch.declared:
         said.append(
-            say("Arguments: {names}, at their defaults.", names=_clip(", ".join(launch.declared)))
+            msg("Arguments: {names}, at their defaults.", names=_clip(", ".join(launch.declared)))
         )
     if rows > _MOST_ROWS:
-        said.append(say("{count} more rows are not shown.", count=rows - _MOST_ROWS))
-    return joined(said, " ") if said else ""
+        said.append(msg("{count} more rows are not shown.", count=rows - _MOST_ROWS))
+    return joined(said, " ") if said else NOTHING
 
 
-def _node(trace: PackageTrace, launch: Launch, node: Node) -> tuple[Cell, ...]:
-    told: list[str] = [
-        say("{name} = {value}", name=_clip(each.name), value=_value(trace, each.value, each.text))
+def _node(trace: PackageTrace, launch: LaunchFile, node: LaunchedNode) -> tuple[Cell, ...]:
+    told: list[Text] = [
+        msg("{name} = {value}", name=_clip(each.name), value=_value(trace, each.value, each.text))
         for each in node.parameters
     ]
     if node.arguments:
         told.append(" ".join(node.arguments))
-    told += [say("remaps {names}", names=_clip(each)) for each in node.remappings]
+    told += [msg("remaps {names}", names=_clip(each)) for each in node.remappings]
     if node.condition:
-        told.append(say("{condition}: it is so by default", condition=_clip(node.condition)))
+        told.append(msg("{condition}: it is so by default", condition=_clip(node.condition)))
     if node.later:
-        told.append(say("later, when something else happens"))
+        told.append(msg("later, when something else happens"))
     missing = {(each.kind, each.name) for each in launch.lacking}
     package, executable = node.package, node.executable
     named = "/".join(filter(None, (node.namespace.strip("/"), node.name)))
@@ -99,55 +105,58 @@ def _node(trace: PackageTrace, launch: Launch, node: Node) -> tuple[Cell, ...]:
     )
 
 
-def _names(told: Sequence[str], file: str) -> bool:
-    return any(file in each for each in told)
+def _names(told: Sequence[Text], file: str) -> bool:
+    return any(file in str(each) for each in told)
 
 
 def _skipped(each: Skipped) -> tuple[Cell, ...]:
-    condition = _clip(each.condition) or say("its condition")
-    told = say("not started: {condition} is not so by default", condition=condition)
+    condition = _clip(each.condition) or msg("its condition")
+    told = msg("not started: {condition} is not so by default", condition=condition)
     return _row(each.package, each.executable, "", (told,), _place(each.file, each.line))
 
 
 def _lacking(each: Lacking) -> tuple[Cell, ...]:
     name = _clip(each.name)
-    told = {
-        "file": say("the file {name}", name=name),
-        "package": say("the package {name}", name=name),
-        "executable": say("the executable {name}", name=name),
-    }.get(each.kind, f"the {each.kind} {name}")
-    there = say("the package has {source}, not there", source=_clip(each.source))
+    told: Text = {
+        "file": msg("the file {name}", name=name),
+        "package": msg("the package {name}", name=name),
+        "executable": msg("the executable {name}", name=name),
+    }.get(each.kind) or f"the {each.kind} {name}"
+    there = msg("the package has {source}, not there", source=_clip(each.source))
     lines = (told, there) if each.source else (told,)
     return (Cell(("",)),) * 3 + (Cell(_lines(lines), True), Cell((_clip(each.by),)))
 
 
 def _row(
-    package: str, program: str, name: str, told: tuple[str, ...], where: str
+    package: str, program: str, name: str, told: tuple[Text, ...], where: Text
 ) -> tuple[Cell, ...]:
     words = (_clip(each) for each in (package, program, name))
-    return (*(Cell((each,)) for each in words), Cell(_lines(told)), Cell((_clip(where),)))
+    return (*(Cell((each,)) for each in words), Cell(_lines(told)), Cell((_clipped(where),)))
 
 
-def _value(trace: PackageTrace, value: str, number: int) -> str:
+def _value(trace: PackageTrace, value: str, number: int) -> Text:
     if number < 0:
         return value
     said = trace.texts[number]
     if not said.strip():
-        return say("an empty text")
-    return say_many("a text of {n:,} character", "a text of {n:,} characters", len(said))
+        return msg("an empty text")
+    return msg_many("a text of {n:,} character", "a text of {n:,} characters", len(said))
 
 
-def _lines(told: list[str] | tuple[str, ...]) -> tuple[str, ...]:
+def _lines(told: Sequence[Text]) -> tuple[Text, ...]:
     more = (
-        (say("and {count} more", count=len(told) - _MOST_LINES),) if len(told) > _MOST_LINES else ()
+        (msg("and {count} more", count=len(told) - _MOST_LINES),) if len(told) > _MOST_LINES else ()
     )
-    return (*map(_clip, told[:_MOST_LINES]), *more)
+    return (*map(_clipped, told[:_MOST_LINES]), *more)
 
 
-def _place(file: str, line: int) -> str:
-    return say("{file}, line {line}", file=_clip(file), line=line) if line else _clip(file)
+def _place(file: str, line: int) -> Text:
+    return msg("{file}, line {line}", file=_clip(file), line=line) if line else _clip(file)
 
 
 def _clip(said: str) -> str:
-    made = text.clip(text.one_line(text.plain(said.replace(f"{PREFIX}/", ""))), _LONGEST)
-    return said if made == said else made  # itself: a phrase stays one
+    return text.clip(text.one_line(text.plain(said.replace(f"{PREFIX}/", ""))), _LONGEST)
+
+
+def _clipped(said: Text) -> Text:
+    return said.map_texts(_clip) if isinstance(said, Message) else _clip(said)

@@ -1,68 +1,44 @@
-"""The scene `package`: nothing runs beside the submission, which is looked at and not started."""
+"""A package that is examined: nothing of it is started, no clock runs.
+
+Its trace is the one message of a bag: a std_msgs/String with its JSON, at tick 0.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final, NoReturn
+from typing import Any, ClassVar, Final
 
-import numpy as np
+from grader import extensions
+from grader.message import Message, msg
+from grader.recording.cdr import string, string_of
+from grader.recording.channel import Channel
+from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
+from grader.recording.view import Pictures, View
+from grader.scenes.package import launched
+from grader.scenes.package.trace import PackageTrace, decode, encode
+from grader.translations import tr
 
-from grader.language.phrase import say
-from grader.language.telling import tell
-from grader.scenes.channel import Channel
-from grader.scenes.package import described, messages, view
-from grader.scenes.package.trace import PackageTrace
-from grader.scenes.scene import (
-    Behaviour,
-    Endpoint,
-    Hooks,
-    Introduction,
-    Limits,
-    Message,
-    Scene,
-    Simulation,
-    Start,
-    Trace,
-)
-from grader.scenes.view import Pictures, View
-
-_NOTHING = "nothing runs in the scene 'package'"
+_TOPIC: Final = "/package"
+_TYPE: Final = "std_msgs/msg/String"
 
 
-class Package:
-    """See `grader.scenes.scene.Scene`; it has no nodes, no clock and no place to start."""
+class PackageSubject(Subject):
+    """What an exercise names as `scene: package`."""
 
-    name: Final = "package"
-    examiner: Final = "grader/scenes/package/examining/main.py"
-    tick_ns: Final = 1
-    introduction: Final = Introduction((), (), ())
-    thing: Final = "package"
-    plane: Final = view.PLANE
-    the_thing: Final = say("the package")
-    window_is_plane: Final = False
-    finished: Final = say("the package was looked at")
-    farthest_start_m: Final = 0.0
-
-    def wrong_setting(self, setting: str) -> str:
-        """Nothing is set up."""
-        return say("package takes none") if setting else ""
-
-    def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
-        """None: a package is looked at once, and its variations are in that."""
-        return []
-
-    def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
-        """It has no choice."""
-        return ""
-
-    def adapted(self, text: str, ros_distro: str) -> str:
-        """The same for every release."""
-        return text
+    name = PACKAGE_SCENE
+    thing = msg("package")
+    the_thing = msg("the package")
+    outcomes: ClassVar = {
+        "finished": msg("the package was looked at"),
+        "time limit": msg("looking at the package did not come to an end"),
+        "crashed": msg("the package ended the process that looked at it"),
+        "killed": msg("the package ended the process that looked at it"),
+    }
 
     def how_to_try(self, program: str, package: str) -> str:
         """With ROS: build it, launch it, look."""
         named = package or "my_robot_description"
-        return tell(
+        return tr(
             "With ROS 2, in a workspace that holds the package in `src`:\n\n"
             "    colcon build --packages-select {package}\n"
             "    source install/setup.bash\n"
@@ -73,62 +49,93 @@ class Package:
             package=named,
         )
 
-    def preload(self) -> None:
-        """Nothing is needed: there is no simulator."""
-
-    def simulate(
-        self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
-    ) -> Simulation:
-        """There is none."""
-        _refuse()
-
     def untouched(self, start: Start | None) -> Trace:
         """What is left where nobody could look."""
         return PackageTrace()
 
     def message_definitions(self) -> Mapping[str, str]:
         """That of the one message that holds the trace."""
-        return messages.DEFINITIONS
+        return {_TYPE: "string data\n"}
 
     def bag_topics(self, made: Trace) -> Iterable[tuple[str, str]]:
         """The one."""
-        return [(messages.TOPIC, messages.TYPE)]
+        return [(_TOPIC, _TYPE)]
 
-    def to_messages(self, made: Trace) -> list[Message]:
+    def to_messages(self, made: Trace) -> list[BagMessage]:
         """The trace as a text, in JSON."""
-        return messages.to_messages(PackageTrace.of(made))
+        data = string(self.encode(made).decode("ascii"))
+        return [BagMessage(0, _TOPIC, _TYPE, data)]
 
-    def from_channels(self, channels: Sequence[Channel], ticks: int) -> Trace:
-        """The trace of the one message."""
-        return messages.from_channels(channels)
+    def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
+        """The trace of the one message.
 
-    def scenario(self, made: Trace) -> dict[str, Any]:
-        """Nothing that could be replayed."""
-        return {}
+        Raises:
+            ValueError: there is another.
+        """
+        found = [(each.topic, each.msgtype, each.times_ns.tolist()) for each in channels]
+        if found != [(_TOPIC, _TYPE, [0])]:
+            raise ValueError(f"expected one message on {_TOPIC}, found {found!r:.80}")
+        return self.decode(string_of(next(channels[0].messages())).encode("ascii"))
 
-    def behaviour(self, made: Trace) -> Behaviour:
-        """None: a package that is looked at does nothing; its files are compared."""
-        return Behaviour((), np.empty((0, 2)))
+    def encode(self, made: Trace) -> bytes:
+        """The trace in JSON."""
+        return encode(PackageTrace.of(made))
 
-    def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
-        """None."""
-        return ()
+    def decode(self, data: bytes) -> Trace:
+        """The trace that bytes mean."""
+        return decode(data)
 
     def pictures(self, made: Trace) -> Pictures:
         """The robot."""
-        return Pictures(described.window(PackageTrace.of(made)))
+        return Pictures(_described().window(PackageTrace.of(made)))
 
     def view(self, made: Trace) -> View:
         """The robot and the launch files; nothing over time."""
-        return view.view(PackageTrace.of(made))
+        trace = PackageTrace.of(made)
+        robot = _described()
+        parts = [part for part in (robot.solid(trace), robot.links(trace)) if part is not None]
+        return View(drawn=(robot.words(trace),), parts=(*parts, *launched.tables(trace)))
 
-    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[str]:
+    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
         """Which package was looked at, and what of it could not be."""
-        return view.remarks(PackageTrace.of(made))
+        trace = PackageTrace.of(made)
+        if trace.setup is None:
+            return []
+        found = [
+            msg(
+                "{file} could not be evaluated: {why}",
+                file=launch.file,
+                why=launch.problem.text,
+            )
+            for launch in trace.launches
+            if launch.problem is not None and launch.problem.kind == "unknown"
+        ]
+        found += [
+            msg("{file}: {remark}", file=launch.file, remark=remark)
+            for launch in trace.launches
+            for remark in launch.remarks
+        ]
+        if trace.others:
+            beside = ", ".join(trace.others[:10])
+            found.append(
+                msg(
+                    "judged was the package {name}; beside it lie {others}",
+                    name=trace.setup.name,
+                    others=beside,
+                )
+            )
+        return found
+
+    def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
+        """Packages that nobody would hand in."""
+        from grader.scenes.package.oddities import odd_traces
+
+        return odd_traces()
 
 
-def _refuse() -> NoReturn:
-    raise NotImplementedError(_NOTHING)
+def _described() -> Any:
+    """What shows the robot that a package describes: an extension's, as robots are."""
+    return extensions.load(extensions.INSPECTIONS, "robot_description")
 
 
-SCENE: Scene = Package()
+PACKAGE: Final = PackageSubject()

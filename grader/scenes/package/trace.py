@@ -12,6 +12,7 @@ import json
 from dataclasses import dataclass
 from typing import Annotated, Self
 
+from grader.message import Message
 from grader.strict_json import STRANGERS, Made, from_json, to_json
 
 #: A description may have so many characters; all of a trace so many bytes.
@@ -28,7 +29,7 @@ ROS, EMPTY = "/opt/ros/jazzy", "/somewhere"
 
 
 @dataclass(frozen=True)
-class Problem:
+class Obstacle:
     """Something that ended an evaluation.
 
     Attributes:
@@ -40,17 +41,17 @@ class Problem:
     """
 
     kind: str
-    text: str
+    text: Message
     file: str = ""
     line: int = 0
 
 
 @dataclass(frozen=True)
-class Script:
+class InstalledScript:
     """A console script.
 
     Attributes:
-        fault: why it could not be started, as what follows its name; '' where it could.
+        fault: why it could not be started, as what follows its name; nothing where it could.
         source: the file that it starts; '' for none.
         says: whether that file speaks of joint states.
     """
@@ -58,7 +59,7 @@ class Script:
     name: str
     module: str
     function: str
-    fault: str
+    fault: Message
     source: str
     says: bool
 
@@ -92,7 +93,7 @@ class Setup:
         told: the name that the set-up gives, setup() or project(); '' where it gives none.
         folder: where it lies in what was handed in; '' for its top.
         build_type: "ament_python", "ament_cmake", ...; '' where none is told.
-        manifest: what is wrong with package.xml; '' for nothing.
+        manifest: what is wrong with package.xml, if anything.
         depends: all packages that it names as dependencies, of whatever kind; with those of the
             packages beside it, where these have the launch files and it has none.
         problem: what ended its setup.py; None where it came to its end.
@@ -109,12 +110,12 @@ class Setup:
     told: str
     folder: str
     build_type: str
-    manifest: str
+    manifest: Message
     depends: tuple[str, ...]
-    problem: Problem | None
+    problem: Obstacle | None
     absent: tuple[str, ...]
     folders: tuple[str, ...]
-    scripts: tuple[Script, ...]
+    scripts: tuple[InstalledScript, ...]
     scripts_folder: str
     installed: tuple[str, ...]
     sources: tuple[str, ...]
@@ -138,7 +139,7 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Node:
+class LaunchedNode:
     """A node that a launch file starts.
 
     Attributes:
@@ -162,7 +163,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Skipped:
-    """A node that a launch file does not start with its default arguments; see `Node`."""
+    """A node that a launch file does not start with its default arguments; see `LaunchedNode`."""
 
     package: str
     executable: str
@@ -181,7 +182,7 @@ class Include:
 
 
 @dataclass(frozen=True)
-class Launch:
+class LaunchFile:
     """A launch file, evaluated.
 
     Attributes:
@@ -197,20 +198,20 @@ class Launch:
     """
 
     file: str
-    problem: Problem | None
-    nodes: tuple[Node, ...]
+    problem: Obstacle | None
+    nodes: tuple[LaunchedNode, ...]
     processes: tuple[str, ...]
     includes: tuple[Include, ...]
     declared: tuple[str, ...]
     packages: tuple[str, ...]
     lacking: tuple[Lacking, ...]
-    remarks: tuple[str, ...]
+    remarks: tuple[Message, ...]
     moved: str
     skipped: tuple[Skipped, ...] = ()
 
 
 @dataclass(frozen=True)
-class Mesh:
+class NamedMesh:
     """A file that a description names.
 
     Attributes:
@@ -248,8 +249,8 @@ class Description:
     by: str
     is_launched: bool
     source: str
-    problem: Problem | None
-    meshes: tuple[Mesh, ...]
+    problem: Obstacle | None
+    meshes: tuple[NamedMesh, ...]
     is_xml: bool
 
 
@@ -284,7 +285,7 @@ class PackageTrace:
 
     setup: Setup | None = None
     others: tuple[str, ...] = ()
-    launches: tuple[Launch, ...] = ()
+    launches: tuple[LaunchFile, ...] = ()
     descriptions: tuple[Description, ...] = ()
     varied: tuple[Varied, ...] = ()
     texts: Annotated[tuple[str, ...], STRANGERS._replace(characters=LONGEST_TEXT)] = ()
@@ -302,18 +303,19 @@ class PackageTrace:
         return trace
 
     @property
+    def duration_ns(self) -> int:
+        """No time passes."""
+        return 0
+
+    @property
     def ticks(self) -> int:
         """None: there is no clock."""
         return 0
 
-    @property
-    def simulated_s(self) -> float:
-        """No time passes."""
-        return 0.0
-
     def sha256(self) -> str:
         """A hash of all of it; equal hashes mean equal findings."""
-        return hashlib.sha256(encode(self)).hexdigest()
+        told = to_json(self, STRANGERS._replace(write=str))  # sentences in English
+        return hashlib.sha256(json.dumps(told, sort_keys=True).encode("ascii")).hexdigest()
 
 
 def encode(trace: PackageTrace) -> bytes:

@@ -6,6 +6,8 @@ small, whatever comes; the node beside which nobody is graded has none of them.
 
 from __future__ import annotations
 
+from grader.message import Message, msg
+
 #: Turtles at a time: each publishes in every tick, and has a way in the recording.
 MOST_TURTLES = 32
 #: Turtles in a run, those of `reset` too: each takes fifteen endpoints of DDS.
@@ -25,11 +27,22 @@ MOST_PICTURES = 100
 LONGEST_NAME = 300
 #: Parameters that decide how a run is judged, or where files are written.
 FIXED = {
-    "use_sim_time": "the run has a clock of its own",
-    "canvas_folder": "the run has a folder of its own",
+    "use_sim_time": msg("the parameter use_sim_time cannot be set: the run has a clock of its own"),
+    "canvas_folder": msg(
+        "the parameter canvas_folder cannot be set: the run has a folder of its own"
+    ),
 }
 #: More different remarks than this are not kept.
 MOST_FLAGS = 20
+_NOT_ALL = msg(
+    "what the node sent after its first {number} messages was not taken", number=MOST_EVENTS
+)
+_MANY_AT_A_TIME = msg(
+    "more than {number} turtles at a time: the others were refused", number=MOST_TURTLES
+)
+_MANY_IN_A_RUN = msg(
+    "more than {number} turtles in a run: the others were refused", number=MOST_HATCHED
+)
 
 
 class Allowance:
@@ -42,15 +55,15 @@ class Allowance:
 
     def __init__(self) -> None:
         self.hatched = self.events = self.logs = self.pictures = 0
-        self._flags: dict[str, None] = {}
+        self._flags: dict[Message, None] = {}
 
     @property
-    def flags(self) -> tuple[str, ...]:
+    def flags(self) -> tuple[Message, ...]:
         """For the result: what the submission asked for and did not get."""
         return tuple(self._flags)
 
-    def refuse(self, what: str) -> None:
-        """Something was refused; the text stands for itself in a result."""
+    def refuse(self, what: Message) -> None:
+        """Something was refused; the message stands for itself in a result."""
         if len(self._flags) < MOST_FLAGS:
             self._flags[what] = None
 
@@ -59,7 +72,7 @@ class Allowance:
         """Whether nothing more is to be served."""
         if self.events < MOST_EVENTS:
             return False
-        self.refuse(f"what the node sent after its first {MOST_EVENTS} messages was not taken")
+        self.refuse(_NOT_ALL)
         return True
 
     def may_log(self) -> bool:
@@ -67,7 +80,9 @@ class Allowance:
         self.logs += 1
         if self.logs <= MOST_LOGS:
             return True
-        self.refuse(f"of the simulator's log the first {MOST_LOGS} lines were kept")
+        self.refuse(
+            msg("of the simulator's log the first {number} lines were kept", number=MOST_LOGS)
+        )
         return False
 
     def may_save(self) -> bool:
@@ -75,16 +90,15 @@ class Allowance:
         self.pictures += 1
         if self.pictures <= MOST_PICTURES:
             return True
-        self.refuse(f"save_canvas wrote {MOST_PICTURES} pictures and no more")
+        self.refuse(msg("save_canvas wrote {number} pictures and no more", number=MOST_PICTURES))
         return False
 
     def why_not_hatch(self, turtles: int) -> str:
         """Why there may not be another turtle beside so many; '' where there may."""
-        why = ""
         if turtles >= MOST_TURTLES:
-            why = f"more than {MOST_TURTLES} turtles at a time"
-        elif self.hatched >= MOST_HATCHED:
-            why = f"more than {MOST_HATCHED} turtles in a run"
-        if why:
-            self.refuse(f"{why}: the others were refused")
-        return why
+            self.refuse(_MANY_AT_A_TIME)
+            return f"more than {MOST_TURTLES} turtles at a time"
+        if self.hatched >= MOST_HATCHED:
+            self.refuse(_MANY_IN_A_RUN)
+            return f"more than {MOST_HATCHED} turtles in a run"
+        return ""

@@ -1,14 +1,24 @@
-"""Drives an arena without ROS: a function takes a submission's place, tick by tick."""
+"""Drives an arena without ROS: a function takes a submission's place, tick by tick.
+
+Among such functions are odd ones, which checks have to survive.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections import defaultdict
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Final
 
-from grader.scenes.scene import Reason, Start
-from grader.scenes.turtlesim.recorder import Recorder
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace
+from grader.recording.subject import Start, Trace
+from grader.scenes.scene import Reason
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, Log, TurtleTrace
+from turtlesim_py.world import picture
 from turtlesim_py.world.arena import Arena
-from turtlesim_py.world.turtle import Pose
+from turtlesim_py.world.events import Event, LogLine, Notice, from_json, to_json
+from turtlesim_py.world.trajectory import Trajectory
+from turtlesim_py.world.turtle import Pose, Reading
 
 #: (tick, latest pose or None, arena) -> nothing; called before each tick, as callbacks would be.
 Controller = Callable[[int, Pose | None, Arena], None]
@@ -52,3 +62,138 @@ def twist(arena: Arena, speed: float, turn: float = 1.0) -> None:
 def pen(arena: Arena, color: tuple[int, int, int], width: int = 3) -> None:
     """Call turtle1's set_pen: the colour (r, g, b), each 0-255, and the width [px]."""
     arena.set_pen(FIRST_TURTLE, *color, width, 0)
+
+
+class Recorder:
+    """Listens to an arena; `take` belongs after each of its ticks."""
+
+    def __init__(self, arena: Arena, most_logs: float = math.inf) -> None:
+        """Of the lines of the log, the first `most_logs` are kept."""
+        self.ticks = 0
+        self._most_logs = most_logs
+        self._arena = arena
+        self._events: list[Event] = []
+        self._logs: list[Log] = []
+        self._readings: dict[str, list[tuple[int, Reading]]] = defaultdict(list)
+        arena.listeners.append(self._listen)
+
+    def take(self, readings: dict[str, Reading]) -> None:
+        """Record what every turtle has published in this tick."""
+        self.ticks += 1
+        for name, reading in readings.items():
+            self._readings[name].append((self.ticks, reading))
+
+    def trace(self) -> TurtleTrace:
+        """Everything up to now."""
+        arena = self._arena
+        return TurtleTrace(
+            ticks=self.ticks,
+            # through JSON: an event is the same whether it was recorded or read from a bag
+            events=tuple(from_json(to_json(event)) for event in self._events),
+            trajectories={
+                name: Trajectory.of_readings(readings) for name, readings in self._readings.items()
+            },
+            logs=tuple(self._logs),
+            canvas=arena.canvas.rgba(),
+            window=picture.render(arena.canvas, arena.background, arena.sprites()),
+        )
+
+    def _listen(self, notice: Notice) -> None:
+        tick = self.ticks + 1
+        if isinstance(notice, Event):
+            self._events.append(replace(notice, tick=tick))
+        elif isinstance(notice, LogLine) and len(self._logs) < self._most_logs:
+            self._logs.append(Log(tick, notice.severity, "turtlesim", notice.text))
+
+
+# What odd nodes draw -----------------------------------------------------------------------------
+
+TICKS = 700
+#: When the odd thing happens.
+WHEN = 300
+
+
+def _round(tick: int, arena: Arena) -> None:
+    """Drive round, with a colour, as long as there is a turtle to drive."""
+    if FIRST_TURTLE not in arena.turtles:
+        return
+    if tick % 30 == 1:
+        twist(arena, 1.0 + tick / TICKS)
+    if tick % 100 == 2:
+        pen(arena, (tick % 256, 0, 0))
+
+
+def _with(odd: Callable[[Arena], object]) -> Controller:
+    """A drive with something odd in the middle of it."""
+
+    def controller(tick: int, pose: Pose | None, arena: Arena) -> None:
+        if tick == WHEN:
+            odd(arena)
+        _round(tick, arena)
+
+    return controller
+
+
+def _again(speed: float, turn: float) -> Controller:
+    """The same command about twice a second."""
+
+    def controller(tick: int, pose: Pose | None, arena: Arena) -> None:
+        if tick % 30 == 1:
+            twist(arena, speed, turn)
+
+    return controller
+
+
+def _is_replaced(arena: Arena) -> None:
+    arena.kill(FIRST_TURTLE)
+    arena.spawn(2.0, 2.0, 1.0, FIRST_TURTLE)
+
+
+def _killed_at_once(tick: int, pose: Pose | None, arena: Arena) -> None:
+    if tick == 1:
+        twist(arena, 1.0)
+        arena.kill(FIRST_TURTLE)
+
+
+def _wipes(arena: Arena) -> None:
+    arena.clear()
+    arena.set_pen(FIRST_TURTLE, 0, 0, 0, 0, 1)
+
+
+def _adds_another(arena: Arena) -> None:
+    arena.spawn(3.0, 3.0, 0.0, "turtle2")
+    arena.command("turtle2", (2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def _one_step(tick: int, pose: Pose | None, arena: Arena) -> None:
+    if tick == 1:
+        twist(arena, 1.0, 0.0)
+    elif tick == 2:
+        twist(arena, 0.0, 0.0)
+
+
+#: What the node does -> what drives.
+ODDITIES: Final[Mapping[str, Controller]] = {
+    "does nothing": lambda tick, pose, arena: None,
+    "makes one step": _one_step,
+    "only turns": _again(0.0, 2.0),
+    "drives into a wall": _again(4.0, 0.0),
+    "sends what is no number": _with(lambda arena: twist(arena, math.nan, math.inf)),
+    "never sends a number": lambda tick, pose, arena: twist(arena, math.inf, math.nan),
+    "kills its turtle": _with(lambda arena: arena.kill(FIRST_TURTLE)),
+    "kills its turtle at once": _killed_at_once,
+    "replaces its turtle": _with(_is_replaced),
+    "jumps": _with(lambda arena: arena.teleport_absolute(FIRST_TURTLE, 50.0, -50.0, 9.0)),
+    "starts anew": _with(Arena.reset),
+    "wipes the drawing and lifts the pen": _with(_wipes),
+    "rotates to a heading": _with(lambda arena: arena.rotate_absolute(FIRST_TURTLE, -3.0, "goal")),
+    "adds another turtle": _with(_adds_another),
+}
+
+
+def odd_traces(start: Start | None) -> Mapping[str, Trace]:
+    """The trace of each, from a start."""
+    return {
+        f"a node that {what}": drive(controller, TICKS, start)[0]
+        for what, controller in ODDITIES.items()
+    }

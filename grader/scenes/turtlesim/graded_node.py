@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -18,6 +18,7 @@ from rcl_interfaces.srv import (
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
+from grader.message import msg
 from grader.scenes.scene import Forecast, Hooks
 from grader.scenes.turtlesim.allowance import (
     FIXED,
@@ -30,9 +31,9 @@ from grader.scenes.turtlesim.allowance import (
 from grader.scenes.turtlesim.trace import SPRITE
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.ros.turtle_endpoints import pose_bytes
+from turtlesim_py.scenario import apply
 from turtlesim_py.world.arena import TICK_NS
-from turtlesim_py.world.events import Event
-from turtlesim_py.world.notices import LogLine, Notice
+from turtlesim_py.world.events import Event, LogLine, Notice
 from turtlesim_py.world.turtle import Pose, Reading
 
 #: How often the node is served although nothing has come [ticks]: goals expire.
@@ -75,6 +76,13 @@ class GradedNode(TurtlesimNode):
             self._set_time(now_ns)
             return now_ns
         return super().serve(now_ns)
+
+    def play(self, script: Iterable[Event], now_ns: int | None) -> None:
+        """Do what a script says for the tick to come."""
+        self._set_time(self._now_ns() if now_ns is None else now_ns)
+        for event in script:
+            apply(self.arena, event)
+        self._sync_endpoints()
 
     def foresee(self, most: int, is_certain: Callable[[dict[str, Pose]], bool]) -> Forecast:
         """The poses of the next ticks, as far as nothing but driving happens.
@@ -121,7 +129,9 @@ class GradedNode(TurtlesimNode):
 
     def _on_entries(self, serve: Callable[..., Any], where: str, request: Any, answer: Any) -> Any:
         if len(getattr(request, where)) > MOST_ENTRIES:
-            self.allowance.refuse(f"requests for more than {MOST_ENTRIES} parameters were refused")
+            self.allowance.refuse(
+                msg("requests for more than {number} parameters were refused", number=MOST_ENTRIES)
+            )
             return answer
         return serve(request, answer)
 
@@ -139,9 +149,8 @@ class GradedNode(TurtlesimNode):
             if name not in FIXED or value == (now := self.get_parameter(name).value):
                 continue
             if type(value) is type(now):  # else there is a better reason
-                why = f"the parameter {name} cannot be set: {FIXED[name]}"
-                self.allowance.refuse(why)
-                return SetParametersResult(successful=False, reason=why)
+                self.allowance.refuse(FIXED[name])
+                return SetParametersResult(successful=False, reason=str(FIXED[name]))
         return super().set_parameters_atomically(parameter_list)
 
     def _on_spawn(self, request: Any, response: Any) -> Any:
@@ -170,12 +179,17 @@ class GradedNode(TurtlesimNode):
         """Whether not too many are known."""
         if sum(each.action.known for each in self._endpoints.values()) < MOST_GOALS:
             return True
-        self.allowance.refuse(f"more than {MOST_GOALS} rotation goals in ten seconds were refused")
+        self.allowance.refuse(
+            msg("more than {number} rotation goals in ten seconds were refused", number=MOST_GOALS)
+        )
         return False
 
     def on_failure(self, what: str, error: Exception) -> None:
         """As always; and the result tells it, for nothing should fail."""
-        self.allowance.refuse(f"the simulator could not serve {what}: {type(error).__name__}")
+        name = type(error).__name__
+        self.allowance.refuse(
+            msg("the simulator could not serve {what}: {error}", what=what, error=name)
+        )
         super().on_failure(what, error)
 
     def _on_notice(self, notice: Notice) -> None:

@@ -1,4 +1,4 @@
-"""Which package a submission takes turtlesim's messages from, and texts for the other one.
+"""What turtlesim's node has by name and type, and which package its messages come from.
 
 ROS 2 has them in `turtlesim` up to Jazzy, in `turtlesim_msgs` from Kilted on
 (`turtlesim_py.ros.interfaces`); one node serves one of them.
@@ -7,9 +7,11 @@ ROS 2 has them in `turtlesim` up to Jazzy, in `turtlesim_msgs` from Kilted on
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from grader.errors import SubmissionError
+from grader.recording.subject import Endpoint
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros.interfaces import NAMES, NEWER, OLDER, installed, of_release, usual
 
 #: The package's name where Python imports it and where a package.xml depends on it.
@@ -42,3 +44,40 @@ def choose(surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
 def adapted(text: str, ros_distro: str) -> str:
     """A Python file or a package.xml with the package that a ROS 2 release has."""
     return _NAMED.sub(of_release(ros_distro), text)
+
+
+#: Of so many turtles; nobody mistakes a name for one of more.
+_MOST_TURTLES = 20
+
+
+def endpoints_of(trace: TurtleTrace, interfaces: str) -> Sequence[Endpoint]:
+    """Those of the turtles, the first turtle's first, then the node's.
+
+    Args:
+        interfaces: the package whose messages the run had; '' for the usual one.
+    """
+    package = interfaces or OLDER
+    others = [turtle for turtle in trace.trajectories if turtle != FIRST_TURTLE]
+    found = []
+    for turtle in (FIRST_TURTLE, *others[: _MOST_TURTLES - 1]):
+        found += [
+            Endpoint("subscription", f"/{turtle}/cmd_vel", "geometry_msgs/msg/Twist"),
+            Endpoint("publisher", f"/{turtle}/pose", f"{package}/msg/Pose"),
+            Endpoint("publisher", f"/{turtle}/color_sensor", f"{package}/msg/Color"),
+            Endpoint("service", f"/{turtle}/set_pen", f"{package}/srv/SetPen"),
+            *(
+                Endpoint("service", f"/{turtle}/{name}", f"{package}/srv/{kind}")
+                for name, kind in (
+                    ("teleport_absolute", "TeleportAbsolute"),
+                    ("teleport_relative", "TeleportRelative"),
+                )
+            ),
+            Endpoint("action", f"/{turtle}/rotate_absolute", f"{package}/action/RotateAbsolute"),
+        ]
+    return [
+        *found,
+        Endpoint("service", "/clear", "std_srvs/srv/Empty"),
+        Endpoint("service", "/reset", "std_srvs/srv/Empty"),
+        Endpoint("service", "/spawn", f"{package}/srv/Spawn"),
+        Endpoint("service", "/kill", f"{package}/srv/Kill"),
+    ]

@@ -21,11 +21,11 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from grader.scenes.cdr import MARK, Reader, Writer, string, string_of
-from grader.scenes.channel import Channel
-from grader.scenes.scene import Message
-from grader.scenes.turtlesim import bounds
-from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace
+from grader.recording.cdr import MARK, CdrReader, CdrWriter, string, string_of
+from grader.recording.channel import Channel
+from grader.recording.subject import BagMessage
+from grader.recording.view import Times
+from grader.scenes.turtlesim.trace import Log, Pixels, TurtleTrace, check
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import CmdVel, Event, EventError, from_json, to_json
 from turtlesim_py.world.trajectory import Trajectory
@@ -75,30 +75,30 @@ def topics(turtle: str) -> dict[str, str]:
 # A trace to messages --------------------------------------------------------------------------
 
 
-def to_messages(trace: TurtleTrace) -> list[Message]:
-    """All messages by tick; within a tick inputs, logs, readings, and pictures last."""
+def to_messages(trace: TurtleTrace) -> list[BagMessage]:
+    """All messages by time; within a tick inputs, logs, readings, and pictures last."""
     logs = (
-        Message(tick, LOGS, LOG, _log(tick, severity, name, text))
+        BagMessage(tick * TICK_NS, LOGS, LOG, _log(tick, severity, name, text))
         for tick, severity, name, text in trace.logs
     )
     readings = (_readings(name, way) for name, way in trace.trajectories.items())
     end = trace.ticks
     pictures = (
-        Message(end, topic, IMAGE, _image(pixels, ENCODINGS[topic], end))
+        BagMessage(end * TICK_NS, topic, IMAGE, _image(pixels, ENCODINGS[topic], end))
         for topic, pixels in ((PATH, trace.canvas), (WINDOW, trace.window))
     )
     found = chain(map(_input, trace.events), logs, *readings, pictures)
-    return sorted(found, key=lambda message: message.tick)
+    return sorted(found, key=lambda message: message.time_ns)
 
 
-def _readings(turtle: str, way: Trajectory) -> Iterator[Message]:
+def _readings(turtle: str, way: Trajectory) -> Iterator[BagMessage]:
     """All but a few messages of a bag are these: packed by columns, not one by one."""
     pose_topic, color_topic = topics(turtle)
     rows = way.rows()
     poses, colors = _cdr(rows[:, 1:6], _POSE_CDR), _cdr(rows[:, 6:9], _COLOR_CDR)
     for tick, pose, color in zip(way.ticks.tolist(), poses, colors, strict=True):
-        yield Message(tick, pose_topic, POSE, pose)
-        yield Message(tick, color_topic, COLOR, color)
+        yield BagMessage(tick * TICK_NS, pose_topic, POSE, pose)
+        yield BagMessage(tick * TICK_NS, color_topic, COLOR, color)
 
 
 def _cdr(columns: npt.NDArray[np.float64], layout: np.dtype[np.void]) -> list[bytes]:
@@ -110,17 +110,17 @@ def _cdr(columns: npt.NDArray[np.float64], layout: np.dtype[np.void]) -> list[by
     return [data[begin : begin + size] for begin in range(0, len(data), size)]
 
 
-def _input(event: Event) -> Message:
+def _input(event: Event) -> BagMessage:
     """A velocity command as a Twist, all else as JSON."""
     if isinstance(event, CmdVel):
         fields = np.array([[*event.linear, *event.angular]])
         (twist,) = _cdr(fields, _TWIST_CDR)
-        return Message(event.tick, f"/{event.turtle}/cmd_vel", TWIST, twist)
-    return Message(event.tick, EVENTS, STRING, string(json.dumps(to_json(event))))
+        return BagMessage(event.tick * TICK_NS, f"/{event.turtle}/cmd_vel", TWIST, twist)
+    return BagMessage(event.tick * TICK_NS, EVENTS, STRING, string(json.dumps(to_json(event))))
 
 
 def _log(tick: int, severity: str, name: str, text: str) -> bytes:
-    made = Writer()
+    made = CdrWriter()
     _stamp(made, tick)
     made.number("B", LEVELS[severity])
     for each in (name, text, "", ""):  # no file, no function
@@ -131,7 +131,7 @@ def _log(tick: int, severity: str, name: str, text: str) -> bytes:
 
 def _image(pixels: Pixels, encoding: str, tick: int) -> bytes:
     height, width, channels = pixels.shape
-    made = Writer()
+    made = CdrWriter()
     _stamp(made, tick)
     made.text("")
     made.number("I", height)
@@ -143,7 +143,7 @@ def _image(pixels: Pixels, encoding: str, tick: int) -> bytes:
     return made.message()
 
 
-def _stamp(made: Writer, tick: int) -> None:
+def _stamp(made: CdrWriter, tick: int) -> None:
     seconds, nanoseconds = divmod(tick * TICK_NS, 1_000_000_000)
     made.number("i", seconds)
     made.number("I", nanoseconds)
@@ -189,12 +189,16 @@ def from_channels(channels: Sequence[Channel], ticks: int) -> TurtleTrace:
         canvas=_picture(by_topic[PATH]),
         window=_picture(by_topic[WINDOW]),
     )
-    bounds.check(trace)
+    check(trace)
     return trace
 
 
 def _in_order(found: list[tuple[int, Value]]) -> tuple[Value, ...]:
     return tuple(value for _, value in sorted(found, key=lambda each: each[0]))
+
+
+def _ticks(channel: Channel) -> Times:
+    return channel.times_ns // TICK_NS
 
 
 def _rows(channel: Channel, msgtype: str, layout: np.dtype[np.void]) -> npt.NDArray[Any]:
@@ -210,7 +214,7 @@ def _rows(channel: Channel, msgtype: str, layout: np.dtype[np.void]) -> npt.NDAr
 def _commands(channel: Channel) -> Iterator[CmdVel]:
     turtle = channel.topic.removeprefix("/").removesuffix("/cmd_vel")
     rows = _rows(channel, TWIST, _TWIST_CDR)
-    for tick, (x, y, z, *turn) in zip(channel.ticks.tolist(), rows.tolist(), strict=True):
+    for tick, (x, y, z, *turn) in zip(_ticks(channel).tolist(), rows.tolist(), strict=True):
         yield CmdVel(tick=tick, turtle=turtle, linear=(x, y, z), angular=tuple(turn))
 
 
@@ -220,8 +224,8 @@ def _inputs(channel: Channel) -> Iterator[Event]:
 
 
 def _logs(channel: Channel) -> Iterator[Log]:
-    for tick, data in zip(channel.ticks.tolist(), channel.messages(), strict=True):
-        read = Reader(data)
+    for tick, data in zip(_ticks(channel).tolist(), channel.messages(), strict=True):
+        read = CdrReader(data)
         read.stamp_ns()
         severity, name, text = SEVERITIES[read.number("B")], read.text(), read.text()
         read.text(), read.text(), read.number("I")
@@ -237,17 +241,17 @@ def _object(text: str) -> dict[str, Any]:
 
 
 def _trajectory(poses: Channel, colors: Channel) -> Trajectory:
-    if not np.array_equal(poses.ticks, colors.ticks):
+    if not np.array_equal(poses.times_ns, colors.times_ns):
         raise ValueError(f"{len(poses)} poses and {len(colors)} colours do not belong together")
     found = _rows(poses, POSE, _POSE_CDR), _rows(colors, COLOR, _COLOR_CDR)
-    return Trajectory.of_rows(np.column_stack((poses.ticks, *found)).astype(np.float64))
+    return Trajectory.of_rows(np.column_stack((_ticks(poses), *found)).astype(np.float64))
 
 
 def _picture(channel: Channel) -> Pixels:
     if channel.msgtype != IMAGE or len(channel) != 1:
         found = f"{len(channel)} of {channel.msgtype}"
         raise ValueError(f"{channel.topic}: expected one {IMAGE}, found {found}")
-    read = Reader(next(channel.messages()))
+    read = CdrReader(next(channel.messages()))
     read.stamp_ns(), read.text()
     height, width, encoding = read.number("I"), read.number("I"), read.text()
     read.number("B"), read.number("I")

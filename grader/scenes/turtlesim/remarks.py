@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from grader.language.phrase import say, say_many
+from grader.message import Message, msg, msg_many
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
 from turtlesim_py.ros.interfaces import NEWER, OLDER
 from turtlesim_py.world.events import (
@@ -20,13 +20,13 @@ from turtlesim_py.world.events import (
 from turtlesim_py.world.turtle import TICK_S
 
 #: Calls that change the arena other than by driving, and what they do.
-_INTERVENTIONS: dict[type[Event], str] = {
-    TeleportAbsolute: say("it moves a turtle without driving"),
-    TeleportRelative: say("it moves a turtle without driving"),
-    Spawn: say("it adds a turtle"),
-    Kill: say("it removes a turtle"),
-    Reset: say("it starts the arena anew"),
-    Clear: say("it wipes the drawing"),
+_INTERVENTIONS: dict[type[Event], Message] = {
+    TeleportAbsolute: msg("it moves a turtle without driving"),
+    TeleportRelative: msg("it moves a turtle without driving"),
+    Spawn: msg("it adds a turtle"),
+    Kill: msg("it removes a turtle"),
+    Reset: msg("it starts the arena anew"),
+    Clear: msg("it wipes the drawing"),
 }
 _POSE = f"/{FIRST_TURTLE}/pose"
 
@@ -35,17 +35,17 @@ def _draws_with_0(event: SetPen) -> bool:
     return event.width == 0 and not event.off
 
 
-def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER) -> list[str]:
+def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDER) -> list[Message]:
     """One sentence a thing.
 
     Args:
         published: the topics that the submission published on.
         interfaces: the package whose messages it was given.
     """
-    found: list[str] = []
+    found: list[Message] = []
     if interfaces == NEWER:
         found.append(
-            say(
+            msg(
                 "The node was run with the messages of {newer}: ROS 2 has them from Kilted on, "
                 "in Jazzy they are those of {older}.",
                 newer=NEWER,
@@ -56,7 +56,7 @@ def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDE
         calls = [event for event in trace.events if isinstance(event, kind)]
         if calls:
             found.append(
-                say_many(
+                msg_many(
                     "The node called {call} once, first at {first_s:.2f} s: {effect}.",
                     "The node called {call} {n} times, first at {first_s:.2f} s: {effect}.",
                     len(calls),
@@ -68,7 +68,7 @@ def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDE
     thin = [event for event in trace.events if isinstance(event, SetPen) and _draws_with_0(event)]
     if thin:
         found.append(
-            say(
+            msg(
                 "The pen's width is 0, first at {first_s:.2f} s: that draws like width "
                 "1; what lifts the pen is off = 1.",
                 first_s=thin[0].tick * TICK_S,
@@ -76,7 +76,7 @@ def remarks(trace: TurtleTrace, published: Sequence[str], interfaces: str = OLDE
         )
     if _POSE in published:
         found.append(
-            say(
+            msg(
                 "The node published on {topic} itself. Judged is where the turtle really was.",
                 topic=_POSE,
             )

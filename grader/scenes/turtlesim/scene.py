@@ -2,52 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final
+import math
+import random
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import PurePath
+from typing import Any, ClassVar, Final
 
-from grader.language.phrase import say
-from grader.scenes.channel import Channel
-from grader.scenes.scene import (
-    Behaviour,
-    Endpoint,
-    Hooks,
-    Introduction,
-    Limits,
-    Message,
-    Scene,
-    Simulation,
-    Start,
-    Trace,
-)
-from grader.scenes.turtlesim import (
-    behaviour,
-    endpoints,
-    interfaces,
-    remarks,
-    starts,
-    trying,
-    view,
-)
-from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace
-from grader.scenes.view import Pictures, View
-from turtlesim_py.world import sprites
+from grader.message import Message, msg
+from grader.recording.channel import Channel
+from grader.recording.playback import Playback
+from grader.recording.subject import BagMessage, Behaviour, Endpoint, Start, Trace
+from grader.recording.view import Pictures, View
+from grader.scenes.live import LivePage
+from grader.scenes.scene import Hooks, Introduction, Limits, Scene, Simulation, command_by_hand
+from grader.scenes.turtlesim import interfaces, remarks, view
+from grader.scenes.turtlesim.interfaces import endpoints_of
+from grader.scenes.turtlesim.trace import FIRST_TURTLE, SPRITE, TurtleTrace, behaviour
+from grader.translations import tr
+from turtlesim_py.world import picture
 from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.events import to_json
+from turtlesim_py.world.turtle import SIZE_M
 
 _TURTLE = f"/{FIRST_TURTLE}"
 
 
-class Turtlesim:
-    """See `grader.scenes.scene.Scene`; here each of its parts finds its module.
+class Turtlesim(Scene):
+    """Here each part of a scene finds its module.
 
     The modules that need ROS or rosbags are imported where they are used: judging a recording needs
     no ROS, and running a submission no bags.
     """
 
-    name: Final = "turtlesim"
-    examiner: Final = ""
-    tick_ns: Final = TICK_NS
-    introduction: Final = Introduction(
+    name = "turtlesim"
+    introduction = Introduction(
         nodes=(("turtlesim", "/"),),
         topics=(f"{_TURTLE}/cmd_vel",),
         services=(
@@ -55,20 +44,31 @@ class Turtlesim:
             *(f"{_TURTLE}/teleport_absolute", f"{_TURTLE}/teleport_relative"),
         ),
     )
-    thing: Final = say("turtle")
-    finished: Final = say("the turtle came to rest")
-    plane: Final = view.PLANE
-    window_is_plane: Final = True
-    the_thing: Final = say("the turtle")
-    farthest_start_m: Final = starts.FARTHEST_M
+    thing = msg("turtle")
+    outcomes: ClassVar = {"finished": msg("the turtle came to rest")}
+    plane = view.PLANE
+    window_is_plane = True
+    the_thing = msg("the turtle")
+    #: from the centre to half a metre before a wall; rounded, because authors read it
+    farthest_start_m = round(SIZE_M / 2 - 0.5, 2)
 
-    def wrong_setting(self, setting: str) -> str:
-        """An arena is always the same."""
-        return say("turtlesim takes none") if setting else ""
+    def wrong_setting(self, setting: str) -> Message:
+        """Whether it is a scenario."""
+        from grader.scenes.turtlesim import setting as scenarios
+
+        return scenarios.wrong(setting)
 
     def starts(self, count: int, seed: int, nearest_m: float, farthest_m: float) -> list[Start]:
-        """Places round the centre of the window."""
-        return starts.starts(count, seed, nearest_m, farthest_m)
+        """Places at a distance from the centre of the window; the same for the same seed."""
+        chance = random.Random(seed)
+        found = []
+        for _ in range(count):
+            distance = chance.uniform(nearest_m, farthest_m)
+            angle = chance.uniform(-math.pi, math.pi)
+            x, y = (SIZE_M / 2 + distance * f(angle) for f in (math.cos, math.sin))
+            theta = chance.uniform(-math.pi, math.pi)
+            found.append(Start(round(x, 3), round(y, 3), round(theta, 3)))
+        return found
 
     def interfaces_for(self, surely: Mapping[str, str], perhaps: Mapping[str, str]) -> str:
         """One of the two packages that turtlesim's messages come from."""
@@ -80,13 +80,13 @@ class Turtlesim:
 
     def how_to_try(self, program: str, package: str) -> str:
         """With ros2 and without."""
-        return trying.how_to_try(program, package)
+        return _how_to_try(program, package)
 
     def preload(self) -> None:
         """Import the node, decode the picture of the turtle."""
         from grader.scenes.turtlesim import graded_node, simulation  # noqa: F401
 
-        sprites.sprite(SPRITE)
+        picture.sprite(SPRITE)
 
     def simulate(
         self, limits: Limits, start: Start | None, hooks: Hooks, interfaces: str, setting: str
@@ -94,7 +94,7 @@ class Turtlesim:
         """Make the node and the recorder; ROS is up."""
         from grader.scenes.turtlesim.simulation import TurtlesimSimulation
 
-        return TurtlesimSimulation(limits, start, hooks, interfaces)
+        return TurtlesimSimulation(limits, start, hooks, interfaces, setting)
 
     def untouched(self, start: Start | None) -> Trace:
         """No tick, an empty canvas, and the turtle where it began."""
@@ -115,17 +115,17 @@ class Turtlesim:
         for turtle in TurtleTrace.of(made).trajectories:
             yield from messages.topics(turtle).items()
 
-    def to_messages(self, made: Trace) -> list[Message]:
-        """A trace as messages, by tick."""
+    def to_messages(self, made: Trace) -> list[BagMessage]:
+        """A trace as messages, by time."""
         from grader.scenes.turtlesim import messages
 
         return messages.to_messages(TurtleTrace.of(made))
 
-    def from_channels(self, channels: Sequence[Channel], ticks: int) -> Trace:
+    def from_channels(self, channels: Sequence[Channel], duration_ns: int) -> Trace:
         """The trace of a bag's channels; see `grader.scenes.turtlesim.messages`."""
         from grader.scenes.turtlesim import messages
 
-        return messages.from_channels(channels, ticks)
+        return messages.from_channels(channels, duration_ns // TICK_NS)
 
     def scenario(self, made: Trace) -> dict[str, Any]:
         """The inputs, for `python -m turtlesim_py.scenario`."""
@@ -135,11 +135,11 @@ class Turtlesim:
 
     def behaviour(self, made: Trace) -> Behaviour:
         """Commands, pens, jumps, and the way of the first turtle."""
-        return behaviour.behaviour(TurtleTrace.of(made))
+        return behaviour(TurtleTrace.of(made))
 
     def endpoints(self, made: Trace, interfaces: str) -> Sequence[Endpoint]:
         """Those of the node and of each turtle."""
-        return endpoints.endpoints(TurtleTrace.of(made), interfaces)
+        return endpoints_of(TurtleTrace.of(made), interfaces)
 
     def pictures(self, made: Trace) -> Pictures:
         """The original's window, and the path alone."""
@@ -150,9 +150,87 @@ class Turtlesim:
         """Ways, pens and curves."""
         return view.view(TurtleTrace.of(made))
 
-    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[str]:
+    @property
+    def player(self) -> Callable[[Playback], str]:
+        """The page that plays runs."""
+        from grader.scenes.turtlesim.player.page import render
+
+        return render
+
+    def live_page(self, port: int) -> LivePage:
+        """The simulator's own page, for looking only."""
+        from grader.scenes.turtlesim.live import TurtlesimPage
+
+        return TurtlesimPage(port)
+
+    def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
+        """What odd nodes draw."""
+        from grader.scenes.turtlesim.driving import odd_traces
+
+        return odd_traces(start)
+
+    def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
         """What was done to the arena other than by driving, and for which ROS that was."""
         return remarks.remarks(TurtleTrace.of(made), published, interfaces)
 
 
-SCENE: Scene = Turtlesim()
+_BESIDE = """\
+    turtlesim
+    {command}
+"""
+_WITH_ROS2 = """\
+    colcon build && . install/setup.bash
+    ros2 run turtlesim_py turtlesim
+    ros2 run {package} {name}
+"""
+
+
+def _how_to_try(program: str, package: str) -> str:
+    """How a student runs a node beside turtlesim by hand, and sees the turtle."""
+    name = PurePath(program).stem
+    parts = [
+        tr("In one terminal the simulator, in another your node:"),
+        _BESIDE.format(command=command_by_hand(program, package)),
+    ]
+    if package:
+        parts += [
+            tr("The same with `ros2`, in a workspace that has this folder in its `src`:"),
+            _WITH_ROS2.format(package=package, name=name),
+        ]
+    parts += [tr("To see the turtle:"), "\n".join(_seen())]
+    return "\n\n".join(part.strip("\n") for part in parts) + "\n"
+
+
+def _seen() -> Iterator[str]:
+    """What shows the turtle, a point of a list each."""
+    points = (
+        tr(
+            "Every grading leaves `report.html`: the picture, the way, an animation, the speeds "
+            "over time. It needs nothing but a browser."
+        ),
+        tr(
+            "`turtlesim` prints the address of a page, on which the turtle draws while your node "
+            "drives it. `grader run` with `--live` shows a grading there, and `grader view` plays "
+            "it again, tick by tick, with the line of your code behind each command."
+        ),
+        tr(
+            "`turtlesim_node` is the same without a page. With `ros2`, `ros2 run rqt_image_view "
+            "rqt_image_view /turtlesim/image` shows the picture, and `ros2 service call "
+            "/turtlesim/save_canvas std_srvs/srv/Trigger` writes it as a PNG file."
+        ),
+        tr(
+            "On a desktop with ROS 2, `ros2 run turtlesim turtlesim_node` opens the original's "
+            "window; your node drives that turtle as well."
+        ),
+    )
+    for point in points:
+        yield textwrap.fill(
+            f"- {point}",
+            100,
+            subsequent_indent="  ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+
+
+SCENE: Final = Turtlesim()

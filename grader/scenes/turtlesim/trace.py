@@ -1,21 +1,34 @@
-"""What a run of turtlesim leaves: where each turtle was, what came in, what the pens drew."""
+"""What a run of turtlesim leaves: where each turtle was, what came in, what the pens drew.
+
+A recording may come from anywhere: poses and velocities can be any numbers, also none, because a
+student's node sends what it likes. Ticks, pens, names and pictures cannot, and are checked.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from grader.scenes.scene import Trace
+from grader.recording.subject import Behaviour, Command, Trace, until_lost
 from turtlesim_py.world import events as inputs
-from turtlesim_py.world.events import Event, SomeEvent
+from turtlesim_py.world.arena import TICK_NS
+from turtlesim_py.world.canvas import SIZE_PX
+from turtlesim_py.world.events import (
+    Cancel,
+    CmdVel,
+    Event,
+    RotateAbsolute,
+    SetParameter,
+    SetPen,
+    SomeEvent,
+)
 from turtlesim_py.world.trajectory import Trajectory
-from turtlesim_py.world.turtle import TICK_S
 
 Pixels = npt.NDArray[np.uint8]
 Value = TypeVar("Value", int, str)
@@ -66,9 +79,9 @@ class TurtleTrace:
         return trace
 
     @property
-    def simulated_s(self) -> float:
-        """How long was recorded [s]."""
-        return round(self.ticks * TICK_S, 3)
+    def duration_ns(self) -> int:
+        """How long was recorded [ns]."""
+        return self.ticks * TICK_NS
 
     def of_kind(self, kind: type[SomeEvent], turtle: str = FIRST_TURTLE) -> list[SomeEvent]:
         """The inputs of one kind, in order; of a kind that names a turtle, those to this one."""
@@ -88,3 +101,75 @@ class TurtleTrace:
             digest.update(self.trajectories[name].rows().tobytes())
         digest.update(json.dumps([inputs.to_json(event) for event in self.events]).encode())
         return digest.hexdigest()
+
+
+def stands_still(command: CmdVel) -> bool:
+    """Whether a velocity command says to stand still."""
+    return not command.linear[0] and not command.angular[2]
+
+
+def check(trace: TurtleTrace) -> None:
+    """Refuse what the recorder never writes.
+
+    Raises:
+        ValueError: something in it cannot have been recorded; the text says what.
+    """
+    for event in trace.events:
+        _check_event(event, trace.ticks)
+    for name, way in trace.trajectories.items():
+        _check_way(name, way, trace.ticks)
+    for log in trace.logs:
+        _check_tick("a log line", log.tick, trace.ticks)
+    for name, pixels, channels in (("path", trace.canvas, 4), ("window", trace.window, 3)):
+        height, width = trace.canvas.shape[:2]
+        right = (height, width, channels)
+        if pixels.shape != right or pixels.dtype != np.uint8 or max(height, width) > SIZE_PX:
+            raise ValueError(f"the picture {name} is {pixels.dtype} of the shape {pixels.shape}")
+
+
+def _check_event(event: Event, ticks: int) -> None:
+    _check_tick(event.op, event.tick, ticks)
+    if isinstance(event, SetPen):
+        for name in ("r", "g", "b", "width", "off"):
+            if not 0 <= getattr(event, name) <= 255:
+                raise ValueError(f"set_pen: {name} is {getattr(event, name)!r:.40}")
+    if isinstance(event, SetParameter) and not isinstance(event.value, bool | int | float | str):
+        raise ValueError(f"param: a value is a {type(event.value).__name__}")
+    if isinstance(event, RotateAbsolute | Cancel) and not isinstance(event.id, str | int | float):
+        raise ValueError(f"{event.op}: an id is a {type(event.id).__name__}")
+
+
+def _check_tick(what: str, tick: int, ticks: int) -> None:
+    # what comes after the last tick would have taken effect in the next one
+    if not 0 <= tick <= ticks + 1:
+        raise ValueError(f"{what} at tick {tick!r:.40} of {ticks}")
+
+
+def _check_way(name: str, way: Trajectory, ticks: int) -> None:
+    if not len(way):
+        return
+    if way.ticks[0] < 1 or way.ticks[-1] > ticks or (np.diff(way.ticks) <= 0).any():
+        raise ValueError(f"the ticks of {name!r:.40} are not in order, or not of this run")
+
+
+def behaviour(trace: TurtleTrace) -> Behaviour:
+    """Every input to the arena, and turtle1's way up to where it was nowhere.
+
+    A velocity command counts by what the node takes from it: ahead, sideways, turning.
+    """
+    way = trace.trajectory()
+    path = until_lost(np.column_stack((way.x, way.y)))
+    return Behaviour(tuple(map(_command, trace.events)), path)
+
+
+def _command(event: Event) -> Command:
+    turtle = getattr(event, "turtle", FIRST_TURTLE)
+    name = event.op if turtle == FIRST_TURTLE else f"{event.op} of another"
+    return Command(event.tick * TICK_NS, name, _values(event))
+
+
+def _values(event: Event) -> tuple[float, ...]:
+    if isinstance(event, CmdVel):
+        return (event.linear[0], event.linear[1], event.angular[2])
+    every = (getattr(event, field.name) for field in fields(event) if field.name != "tick")
+    return tuple(float(value) for value in every if isinstance(value, int | float))

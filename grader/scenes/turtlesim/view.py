@@ -8,10 +8,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grader.language.phrase import say
+from grader.message import NOTHING, Message, msg
+from grader.recording.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
 from grader.scenes.turtlesim import words
 from grader.scenes.turtlesim.trace import FIRST_TURTLE, TurtleTrace
-from grader.scenes.view import Call, Curve, Floats, PenChange, Plane, Rest, Track, View
+from turtlesim_py.world.arena import TICK_NS
 from turtlesim_py.world.canvas import SIZE_PX, Pen
 from turtlesim_py.world.events import Clear, CmdVel, Event, Reset, SetPen
 from turtlesim_py.world.trajectory import Trajectory
@@ -26,9 +27,10 @@ def view(trace: TurtleTrace) -> View:
     first = FIRST_TURTLE if FIRST_TURTLE in names else next(iter(names), None)
     names.sort(key=lambda name: (name != first, name))
     background = _background(trace)
-    cleared = [event.tick for event in trace.events if isinstance(event, Clear | Reset)]
+    cleared = [event.tick * TICK_NS for event in trace.events if isinstance(event, Clear | Reset)]
     return View(
         tracks=tuple(_track(trace, name) for name in names),
+        step_ns=TICK_NS,
         cleared=tuple(cleared),
         background=background,
         rest=None if first is None else _rest(trace.trajectories[first]),
@@ -45,12 +47,12 @@ def _track(trace: TurtleTrace, name: str) -> Track:
     for event in trace.of_kind(SetPen, name):
         last = pens[-1]
         if event.off:
-            pens.append(PenChange(event.tick, last.color, last.width, drawn=False))
+            pens.append(PenChange(event.tick * TICK_NS, last.color, last.width, drawn=False))
         else:
             color = _hex(event.r, event.g, event.b)
-            pens.append(PenChange(event.tick, color, event.width))
+            pens.append(PenChange(event.tick * TICK_NS, color, event.width))
     x, y = way.x * METER_PX, (SIZE_M - way.y) * METER_PX
-    return Track(name, way.ticks, x, y, way.theta, tuple(pens))
+    return Track(name, way.ticks * TICK_NS, x, y, way.theta, tuple(pens))
 
 
 def _rest(way: Trajectory) -> Rest | None:
@@ -66,14 +68,14 @@ def _rest(way: Trajectory) -> Rest | None:
 
 def _curves(trace: TurtleTrace, name: str) -> tuple[Curve, ...]:
     way = trace.trajectories[name]
-    ticks = way.ticks.astype(np.float64)
+    times_ns = way.ticks * TICK_NS
     distance = np.hypot(way.x - SIZE_M / 2, way.y - SIZE_M / 2)
-    every_tick = np.arange(1, trace.ticks + 1, dtype=np.float64)
+    every_tick = np.arange(1, trace.ticks + 1, dtype=np.int64) * TICK_NS
     return (
-        Curve(say("Distance from the centre of the window"), "m", ticks, distance),
-        Curve(say("Speed"), "m/s", ticks, way.linear),
-        Curve(say("Angular velocity"), "rad/s", ticks, way.angular),
-        Curve(say("Rate of velocity commands"), "Hz", every_tick, _rate(trace, name)),
+        Curve(msg("Distance from the centre of the window"), "m", times_ns, distance),
+        Curve(msg("Speed"), "m/s", times_ns, way.linear),
+        Curve(msg("Angular velocity"), "rad/s", times_ns, way.angular),
+        Curve(msg("Rate of velocity commands"), "Hz", every_tick, _rate(trace, name)),
     )
 
 
@@ -92,14 +94,14 @@ def _rate(trace: TurtleTrace, name: str) -> Floats:
 def _call(event: Event, trace: TurtleTrace) -> Call:
     color = _hex(event.r, event.g, event.b) if isinstance(event, SetPen) else ""
     way = trace.trajectories.get(getattr(event, "turtle", ""))
-    where = "" if way is None else _where(way, event.tick)
-    return Call(event.op, event.tick, color, words.asked_for(event), where)
+    where = NOTHING if way is None else _where(way, event.tick)
+    return Call(event.op, event.tick * TICK_NS, color, words.asked_for(event), where)
 
 
-def _where(way: Trajectory, tick: int) -> str:
+def _where(way: Trajectory, tick: int) -> Message:
     """In which part of the window it was in a tick, or the last time before it."""
     row = int(np.searchsorted(way.ticks, tick, side="right")) - 1
-    return words.quarter(float(way.x[row]), float(way.y[row])) if row >= 0 else ""
+    return words.quarter(float(way.x[row]), float(way.y[row])) if row >= 0 else NOTHING
 
 
 def _background(trace: TurtleTrace) -> str:

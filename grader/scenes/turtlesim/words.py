@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grader import text
-from grader.language.phrase import joined, say, say_many
+from grader.message import NOTHING, Message, as_message, joined, msg, msg_many, plain_text
 from grader.scenes.turtlesim.trace import FIRST_TURTLE
 from turtlesim_py.world.events import (
     Event,
@@ -31,84 +31,84 @@ from turtlesim_py.world.turtle import SIZE_M
 Pixels = npt.NDArray[np.uint8]
 
 QUADRANTS = {
-    1: say("top right (quadrant I)"),
-    2: say("top left (quadrant II)"),
-    3: say("bottom left (quadrant III)"),
-    4: say("bottom right (quadrant IV)"),
+    1: msg("top right (quadrant I)"),
+    2: msg("top left (quadrant II)"),
+    3: msg("bottom left (quadrant III)"),
+    4: msg("bottom right (quadrant IV)"),
 }
 #: Up to which hue [degrees] a colour is called so.
 _HUES = (
-    (15, say("red")),
-    (45, say("orange")),
-    (70, say("yellow")),
-    (165, say("green")),
-    (200, say("cyan")),
-    (260, say("blue")),
-    (290, say("purple")),
-    (320, say("magenta")),
-    (345, say("pink")),
-    (360, say("red")),
+    (15, msg("red")),
+    (45, msg("orange")),
+    (70, msg("yellow")),
+    (165, msg("green")),
+    (200, msg("cyan")),
+    (260, msg("blue")),
+    (290, msg("purple")),
+    (320, msg("magenta")),
+    (345, msg("pink")),
+    (360, msg("red")),
 )
 #: A text that a submission has chosen is not shown beyond this.
 _NAME_LIMIT = 80
 
 
 @lru_cache(1024)
-def color(r: int, g: int, b: int) -> str:
+def color(r: int, g: int, b: int) -> Message:
     """A colour, each part 0-255: 'red (255, 0, 0)'."""
-    return say("{name} ({r}, {g}, {b})", name=_named(r, g, b), r=r, g=g, b=b)
+    return msg("{name} ({r}, {g}, {b})", name=_named(r, g, b), r=r, g=g, b=b)
 
 
-def _named(r: int, g: int, b: int) -> str:
+def _named(r: int, g: int, b: int) -> Message:
     hue, saturation, value = colorsys.rgb_to_hsv(r / 255, g / 255, b / 255)
     if value < 0.2:
-        return say("black")
+        return msg("black")
     if saturation < 0.12:
-        return say("white") if value > 0.9 else say("grey")
+        return msg("white") if value > 0.9 else msg("grey")
     name = next(name for most, name in _HUES if 360 * hue <= most)
     if value < 0.6:
-        return say("dark {color}", color=name)
-    return say("light {color}", color=name) if saturation < 0.5 else name
+        return msg("dark {color}", color=name)
+    return msg("light {color}", color=name) if saturation < 0.5 else name
 
 
-def quarter(x: float, y: float) -> str:
+def quarter(x: float, y: float) -> Message:
     """The quarter of the window that a place [m] lies in; '' for one that is not a number."""
     if not (math.isfinite(x) and math.isfinite(y)):
-        return ""
+        return NOTHING
     right, top = x >= SIZE_M / 2, y >= SIZE_M / 2
     return QUADRANTS[(1 if right else 2) if top else (4 if right else 3)]
 
 
-def asked_for(event: Event) -> str:
+def asked_for(event: Event) -> Message:
     """What an input asked for; '' where its name says all."""
     turtle = getattr(event, "turtle", FIRST_TURTLE)
     said = _asked_for(event)
     return said if turtle == FIRST_TURTLE else joined([_own(turtle), ": ", said])
 
 
-def _asked_for(event: Event) -> str:
+def _asked_for(event: Event) -> Message:
     match event:
         case SetPen():
-            return say("the pen off") if event.off else _pen(event)
+            return msg("the pen off") if event.off else _pen(event)
         case TeleportAbsolute():
             place, heading = text.place(event.x, event.y), _degrees(event.theta)
-            return say("to {place}, heading {heading}", place=place, heading=heading)
+            return msg("to {place}, heading {heading}", place=place, heading=heading)
         case TeleportRelative():
             turn = _degrees(event.angular)
-            return say("a turn by {turn}, then {way:g} m ahead", turn=turn, way=event.linear)
+            return msg("a turn by {turn}, then {way:g} m ahead", turn=turn, way=event.linear)
         case RotateAbsolute():
-            return say("to heading {heading}", heading=_degrees(event.theta))
+            return msg("to heading {heading}", heading=_degrees(event.theta))
         case Spawn():
-            name = _own(event.name) or say("a name of its choice")
+            name = as_message(_own(event.name)) or msg("a name of its choice")
             return joined([name, text.place(event.x, event.y)], ", ")
         case Kill():
-            return _own(event.name)
+            return plain_text(_own(event.name))
         case SetParameter():
-            return f"{_own(event.name)} = {_own(str(event.value))}"
-    return ""
+            return plain_text(f"{_own(event.name)} = {_own(str(event.value))}")
+    return NOTHING
 
 
-def _pen(event: SetPen) -> str:
+def _pen(event: SetPen) -> Message:
     return joined([color(event.r, event.g, event.b), f"{event.width} px"], ", ")
 
 
@@ -120,7 +120,7 @@ def _own(name: str) -> str:
     return text.clip(text.one_line(text.plain(name)), _NAME_LIMIT)
 
 
-def drawn(canvas: Pixels, background: str) -> tuple[str, ...]:
+def drawn(canvas: Pixels, background: str) -> tuple[Message, ...]:
     """What shows of the ink in each quarter of a canvas (height, width, 4), quadrant by quadrant.
 
     Args:
@@ -130,7 +130,7 @@ def drawn(canvas: Pixels, background: str) -> tuple[str, ...]:
     top, bottom, left, right = slice(height), slice(height, None), slice(width), slice(width, None)
     parts = {1: (top, right), 2: (top, left), 3: (bottom, left), 4: (bottom, right)}
     return tuple(
-        say(
+        msg(
             "{quarter}: {ink}",
             quarter=QUADRANTS[quadrant],
             ink=_ink(canvas[rows, columns], background),
@@ -139,21 +139,21 @@ def drawn(canvas: Pixels, background: str) -> tuple[str, ...]:
     )
 
 
-def _ink(part: Pixels, background: str) -> str:
+def _ink(part: Pixels, background: str) -> Message:
     ink = part[part[..., 3] > 0][:, :3]
     packed = ink.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)
     packed = packed[packed != int(background[1:], 16)]
     if not len(packed):
-        return say("nothing drawn")
+        return msg("nothing drawn")
     colors, counts = np.unique(packed, return_counts=True)
     most = int(np.argmax(counts))
     name = color(*int(colors[most]).to_bytes(3, "big"))
-    pixels = say_many("{n:,} pixel", "{n:,} pixels", len(packed))
+    pixels = msg_many("{n:,} pixel", "{n:,} pixels", len(packed))
     if len(colors) == 1:
-        return say("all {color}, {pixels}", color=name, pixels=pixels)
+        return msg("all {color}, {pixels}", color=name, pixels=pixels)
     if 2 * counts[most] > len(packed):
-        return say("mostly {color}, {pixels}", color=name, pixels=pixels)
-    return say(
+        return msg("mostly {color}, {pixels}", color=name, pixels=pixels)
+    return msg(
         "{pixels} of {colors:,} colours, most often {color}",
         pixels=pixels,
         colors=len(colors),

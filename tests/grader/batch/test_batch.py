@@ -240,7 +240,7 @@ def test_what_a_worker_cannot_confine_as_the_class_is_not_graded_and_told_why(
     code, messages = batch(*words)
     assert code == 3, messages
     assert scores(graded) == {**before, "erin": ("failed", None)}
-    assert Entry.read(graded / "submissions" / "erin").message == why
+    assert str(Entry.read(graded / "submissions" / "erin").message) == why
     assert why in (graded / "index.html").read_text("utf-8")
     monkeypatch.undo()
     code, messages = batch(*words, "--again", "failed")

@@ -3,22 +3,22 @@
 from datetime import UTC, datetime
 from pathlib import Path
 
-from grader.batch.entry import SUBMISSIONS, Entry, entries
-from grader.batch.hand_in import HandIn, Person
+from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person, entries
+from grader.message import msg
 
 ZOE = HandIn(
     "zoe.mueller",
     (Person("4711", "Zoë Müller", {"Email": "zoe@example.org"}), Person("4712")),
     attempt=2,
     at=datetime(2026, 11, 1, 12, tzinfo=UTC),
-    problem="The folder is empty.",
+    problem=msg("The folder is empty."),
 )
 
 
 def test_an_entry_comes_back_as_it_was(tmp_path: Path) -> None:
     folder = tmp_path / SUBMISSIONS / ZOE.id
     folder.mkdir(parents=True)
-    entry = Entry(ZOE, "unusable", 100.0, key="ab", message="There is nothing.", folder=folder)
+    entry = Entry(ZOE, "unusable", 100.0, key="ab", message=msg("There is nothing."), folder=folder)
     entry.put()
     assert entries(tmp_path) == [entry]
     assert (entry.score, ZOE.name) == (0.0, "Zoë Müller, 4712")

@@ -14,22 +14,20 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from grader.batch import grade, pool, worker
-from grader.batch import store as store_module
+from grader.batch import grade, pool
 from grader.batch.class_file import ClassFile
-from grader.batch.entry import Entry, entries
-from grader.batch.find.joining import NOTHING
-from grader.batch.hand_in import HandIn, Person
-from grader.batch.regrade import applying, html, judging, shown, table
+from grader.batch.entry import Entry, HandIn, Person, entries
+from grader.batch.find.joining import NOT_HANDED_IN
+from grader.batch.pool import Answer, Task
+from grader.batch.regrade import judging, shown
 from grader.batch.regrade.changes import Regrade, compared, is_of_words
-from grader.batch.store import RECORDING, RUN, STUDENTS, Store
-from grader.batch.task import Answer, Task
+from grader.batch.store import RECORDING, RUN, STUDENTS, UNFINISHED, Store
 from grader.cli import regrading
 from grader.errors import ExerciseError, UsageError
 from grader.exercise.loading import load_exercise
 from grader.judging import judge, save_recordings
-from grader.recording.provenance import Provenance
-from grader.recording.recording import Recordings
+from grader.message import NOTHING, Message, msg
+from grader.recording.recording import Provenance, Recordings
 from tests.grader.driving import RED, Spiral, drive
 from tests.tiers import others_are_more
 
@@ -109,7 +107,7 @@ CLASS = {
 }
 
 
-def hand_in(name: str, problem: str = "") -> HandIn:
+def hand_in(name: str, problem: Message = NOTHING) -> HandIn:
     return HandIn(name, (Person(f"{name}-1", NAMES.get(name, name.title())),), problem=problem)
 
 
@@ -128,8 +126,9 @@ def whole(runs, original, tmp_path_factory) -> Path:
             grade.make(task)
             store.put(key, place)
         place = store.new_place()
-        grade.nothing(hand_in("nobody", NOTHING), exercise, place / STUDENTS / "nobody")
-        grade.failed(hand_in("unlucky"), exercise, place / STUDENTS / "unlucky", "A disk was full.")
+        grade.nothing(hand_in("nobody", NOT_HANDED_IN), exercise, place / STUDENTS / "nobody")
+        why = msg("A disk was full.")
+        grade.failed(hand_in("unlucky"), exercise, place / STUDENTS / "unlucky", why)
         store.put("", place)
     (out / "gradebook.csv").write_text("as it was\n")
     return out
@@ -143,7 +142,7 @@ def out(whole, tmp_path) -> Path:
 def work(tasks, jobs, patience_s):
     """The workers' work in this process, for tests of what comes of it."""
     for task in tasks:
-        yield task, worker.done(task)
+        yield task, grade.done(task)
 
 
 @pytest.fixture
@@ -200,7 +199,7 @@ def test_which_check_and_why_is_told_of_each(found):
     by_check = {each.check: each for each in far.differences}
     stop = by_check["edge_stop"]
     assert (stop.before.status, stop.after.status, stop.points) == ("passed", "failed", -25)
-    assert stop.why == stop.after.rationale
+    assert stop.why == str(stop.after.rationale)
     assert "1 m or less is near" in stop.why
     assert by_check["pen_per_quadrant"].points == 10
     assert by_check["pen_per_quadrant"].why.startswith("It is worth 30 points, not 20.")
@@ -249,7 +248,7 @@ def test_who_only_reads_other_words_does_not_count_as_changed(whole, tmp_path, i
 def test_what_is_deducted_from_a_score_counts_as_well(out, monkeypatch):
     """As where another date is due."""
     (entry,) = (entry for entry in entries(out) if entry.id == "right")
-    later = replace(entry, message="two days late")
+    later = replace(entry, message=msg("two days late"))
     score = property(lambda self: self.result.score - (20 if self.message else 5))
     monkeypatch.setattr(Entry, "score", score)
     change = compared(entry, later)
@@ -281,24 +280,24 @@ def test_a_recording_that_cannot_be_read_is_told_and_no_other_is_touched_by_it(
     found = judging.regrade(out, changed, 1)
     (failure,) = found.failures
     assert failure.entry.id == "far"
-    assert "is damaged: it is cut off or was changed" in failure.why
+    assert "is damaged: it is cut off or was changed" in str(failure.why)
     assert scores(found).keys() == {"right", "twin", "red"}
     said = io.StringIO()
     shown.show(found, Console(file=said, width=200))
     assert "Not judged again, and left as it is: far: " in said.getvalue()
-    assert "not judged again: " in table.render(found)
+    assert "not judged again: " in shown.table(found)
 
 
 def test_a_worker_that_dies_is_told_for_its_own_recording(whole, changed, monkeypatch):
     dies = (
-        "import os, sys; sys.path.insert(0, sys.argv[1]); from grader.batch import worker; "
-        "done = worker.done; "
-        "worker.done = lambda task: os._exit(9) if task.key[0] == 'c' else done(task); "
-        "worker.main()"
+        "import os, sys; sys.path.insert(0, sys.argv[1]); from grader.batch import grade; "
+        "done = grade.done; "
+        "grade.done = lambda task: os._exit(9) if task.key[0] == 'c' else done(task); "
+        "grade.serve()"
     )
     monkeypatch.setattr(pool, "_COMMAND", ("-P", "-c", dies, pool._COMMAND[-1]))
     found = judging.regrade(whole, changed, 1)
-    assert {failure.entry.id: failure.why for failure in found.failures} == {
+    assert {failure.entry.id: str(failure.why) for failure in found.failures} == {
         "red": "the process that graded it ended (exit code 9), 2 times"
     }
     assert found.judged == 3
@@ -310,7 +309,7 @@ def test_a_worker_that_is_stuck_is_ended_and_told(whole, changed, monkeypatch):
     monkeypatch.setattr(judging, "MOST_S", 0.2)
     found = judging.regrade(whole, changed, 4)
     assert {failure.entry.id for failure in found.failures} == {"right", "twin", "far", "red"}
-    assert found.failures[0].why == "the process that graded it ended (SIGKILL), 2 times"
+    assert str(found.failures[0].why) == "the process that graded it ended (SIGKILL), 2 times"
 
 
 def test_a_recording_that_lies_with_the_hand_in_alone_is_judged_and_kept(
@@ -329,7 +328,7 @@ def test_the_recording_of_somebody_else_is_not_judged_for_a_hand_in(out, changed
     shutil.rmtree(far)
     shutil.copytree(right, far)
     found = judging.regrade(out, changed, 1)
-    assert {failure.entry.id: failure.why for failure in found.failures} == {
+    assert {failure.entry.id: str(failure.why) for failure in found.failures} == {
         "far": "its recording is not the one that its result was made of. To have it graded anew: "
         "grader batch ... --again far"
     }
@@ -356,8 +355,7 @@ def test_an_exercise_that_fails_is_named_where_it_is_applied_too(
     out, changed, in_process, monkeypatch, capsys
 ):
     failed = Answer("exercise", "ValueError: mine (checks.py, line 3)")
-    done = worker.done
-    monkeypatch.setattr(worker, "done", lambda task: done(task) if task.judge_only else failed)
+    monkeypatch.setattr(grade, "done", lambda task: failed)
     call(out, changed, jobs=1, apply=True)
     said = " ".join(capsys.readouterr().out.split())
     assert "The exercise's own code failed: ValueError: mine (checks.py, line 3)" in said
@@ -418,8 +416,8 @@ def test_applied_everybody_has_the_new_result_and_the_old_one_is_beside(
 
 def test_who_has_no_result_stays_so(in_force):
     states = {entry.id: (entry.state, entry.score, entry.message) for entry in entries(in_force)}
-    assert states["nobody"] == ("nothing", 0.0, NOTHING)
-    assert states["unlucky"] == ("failed", None, "A disk was full.")
+    assert states["nobody"] == ("nothing", 0.0, NOT_HANDED_IN)
+    assert states["unlucky"] == ("failed", None, msg("A disk was full."))
 
 
 def test_what_is_applied_is_applied_once(in_force, changed, in_process, tmp_path, capsys):
@@ -475,7 +473,7 @@ def test_an_interrupted_call_leaves_each_as_it_was_or_as_it_will_be(
         name: new for name, (_, new) in expected.items()
     }
     assert ClassFile.read(out).exercise_sha256 == load_exercise(changed).sha256
-    assert not (out / store_module.UNFINISHED).exists()
+    assert not (out / UNFINISHED).exists()
 
 
 def test_a_call_that_is_killed_between_two_names_gives_back_what_it_took(out, expected):
@@ -483,8 +481,8 @@ def test_a_call_that_is_killed_between_two_names_gives_back_what_it_took(out, ex
     with Store.opened(out) as store:
         place = store.new_place()
         store.student("far").rename(place / "older-far")
-        shutil.copytree(out / store_module.UNFINISHED, out.parent / "left")
-    (out.parent / "left").rename(out / store_module.UNFINISHED)
+        shutil.copytree(out / UNFINISHED, out.parent / "left")
+    (out.parent / "left").rename(out / UNFINISHED)
     assert "far" not in {entry.id for entry in entries(out)}
     with Store.opened(out):
         pass
@@ -510,7 +508,7 @@ def test_two_do_not_write_at_once(out, changed, in_process):
 
 
 def test_the_table_has_a_row_a_check_and_adds_up(found, expected):
-    rows = list(csv.DictReader(io.StringIO(table.render(found))))
+    rows = list(csv.DictReader(io.StringIO(shown.table(found))))
     for name, (old, new) in expected.items():
         own = [row for row in rows if row["id"] == name]
         assert {(float(row["before"]), float(row["after"])) for row in own} == {(old, new)}
@@ -520,8 +518,8 @@ def test_the_table_has_a_row_a_check_and_adds_up(found, expected):
 
 
 def test_no_name_is_a_formula_a_tag_or_an_escape(found):
-    assert not re.search(r'(^|,)"?=', table.render(found), re.MULTILINE)
-    page = html.render(found)
+    assert not re.search(r'(^|,)"?=', shown.table(found), re.MULTILINE)
+    page = shown.page(found)
     assert "<script>alert" not in page
     assert "&lt;script&gt;alert(1)" in page
     said = io.StringIO()
@@ -530,12 +528,12 @@ def test_no_name_is_a_formula_a_tag_or_an_escape(found):
 
 
 def test_the_page_stands_alone_and_leads_to_each_report(found):
-    page = html.render(found, "../..")
+    page = shown.page(found, "../..")
     assert found.headline in page
     assert 'href="../../submissions/far/report.html"' in page
     assert not re.search(r'(src|href)="(?!\.\./\.\./submissions/)', page)
     assert "default-src 'none'" in page
-    assert "<a " not in html.render(found)
+    assert "<a " not in shown.page(found)
 
 
 def test_the_terminal_tells_the_largest_changes_first_and_how_many_more(found, monkeypatch):
@@ -557,7 +555,7 @@ def test_what_is_kept_before_anything_changes_is_whole_or_not_there(
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(applying.table, "render", full)
+    monkeypatch.setattr(judging.shown, "table", full)
     monkeypatch.setattr(regrading, "_write", lambda *_: None)
     with pytest.raises(UsageError, match="No space left"):
         applied(out, changed)

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import errno
-import gzip
-import io
 import os
 import pickle
 import socket
-import tarfile
-import tracemalloc
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from grader.batch import parcel, remote
-from grader.batch.hand_in import HandIn, Person
-from grader.batch.parcel import Unfit
-from grader.batch.task import Answer, Task
+from grader.batch import remote
+from grader.batch.entry import HandIn, Person
+from grader.batch.pool import Answer, Task
+from grader.batch.remote import Returned, Shipped, Unfit
 from grader.errors import UsageError
+from grader.message import msg
 from tests.files import lay_too_deep
 
 DONE = Answer("done")
@@ -125,91 +122,72 @@ def test_a_worker_that_cannot_confine_as_asked_says_which_it_is(
 ) -> None:
     class Process:
         def done(self, task: Task) -> Answer:
-            return Answer("unfit", f"isolation by {task.isolation} is not to be had here")
+            return Answer(
+                "unfit", msg("isolation by {level} is not to be had here", level=task.isolation)
+            )
 
     monkeypatch.setattr(remote, "_process", Process)
     monkeypatch.setattr(remote, "_address", lambda: "tcp://10.0.0.1:7")
-    with pytest.raises(remote.Declined, match="isolation by namespaces is not to be") as raised:
-        remote.graded(remote.packed(replace(task, isolation="namespaces")))
-    again = pickle.loads(pickle.dumps(raised.value))  # as dask sends it
-    assert (again.address, again.message) == ("tcp://10.0.0.1:7", raised.value.message)
+    returned = remote.graded(remote.packed(replace(task, isolation="namespaces")))
+    again = pickle.loads(pickle.dumps(returned))  # as dask sends it
+    why = "isolation by namespaces is not to be had here"
+    assert (again.unfit, str(again.answer.message)) == ("tcp://10.0.0.1:7", why)
 
 
-def test_what_is_too_large_for_a_parcel_is_refused(
+def test_what_is_too_large_to_travel_is_refused(
     task: Task, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(parcel, "MOST_MEMBERS", 4)
+    monkeypatch.setattr(remote, "MOST_ENTRIES", 4)
     with pytest.raises(Unfit, match="more than 4 files"):
         remote.packed(task)
 
 
-def tarred(name: str, kind: bytes = tarfile.REGTYPE, link: str = "") -> bytes:
-    """An answer with one more member."""
-    buffer = io.BytesIO()
-    with tarfile.open(fileobj=buffer, mode="w:gz") as tar:
-        answer, more = tarfile.TarInfo(remote.ANSWER), tarfile.TarInfo(name)
-        answer.size = len(DONE.to_line())
-        more.type, more.linkname = kind, link
-        tar.addfile(answer, io.BytesIO(DONE.to_line()))
-        tar.addfile(more)
-    return buffer.getvalue()
+OUTSIDE = Shipped("file", b"x")
 
 
 @pytest.mark.parametrize(
-    "package",
+    "returned",
     [
         b"",
-        b"\x80\x04no pickle is read\x94.",
-        tarred("../outside"),
-        tarred("students/../../outside"),
-        tarred("students/zoe/link", tarfile.SYMTYPE, "/etc"),
-        tarred("students/zoe/device", tarfile.CHRTYPE),
-        tarred("students/bob/entry.json"),
-        tarred("submissions/zoe/entry.json"),
-        tarred("run/../students/bob/entry.json"),
-        tarred("students/" + "n" * 300),
-        "no bytes",
+        "no answer",
         None,
+        Returned(DONE, {"../outside": OUTSIDE}),
+        Returned(DONE, {"students/../../outside": OUTSIDE}),
+        Returned(DONE, {"/tmp/outside": OUTSIDE}),
+        Returned(DONE, {"students/zoe/link": Shipped("link", b"/etc")}),
+        Returned(DONE, {"students/bob/entry.json": OUTSIDE}),
+        Returned(DONE, {"submissions/zoe/entry.json": OUTSIDE}),
+        Returned(DONE, {"run/../students/bob/entry.json": OUTSIDE}),
     ],
 )
-def test_what_nobody_asked_for_is_told_as_failed(task: Task, package: object) -> None:
-    assert remote.unpack(package, task).state == "failed"
+def test_what_nobody_asked_for_is_told_as_failed(task: Task, returned: object) -> None:
+    assert remote.unpack(returned, task).state == "failed"
+    assert list(task.into.iterdir()) == []
     assert not (task.into.parent / "outside").exists()
-    assert not any(path.is_symlink() for path in task.into.rglob("*"))
 
 
-def test_a_bomb_is_not_unpacked(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
-    package = parcel.pack({}, {"run": task.path / "pkg"})
-    monkeypatch.setattr(parcel, "MOST_BYTES", 3)
-    assert "more than" in remote.unpack(package, task).message
-
-
-def test_of_a_head_that_says_it_has_gigabytes_no_more_is_unpacked_than_a_parcel_holds(
-    task: Task, monkeypatch: pytest.MonkeyPatch
+def test_what_comes_of_a_task_and_is_too_large_to_travel_is_told(
+    task: Task, done: list[Task], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(parcel, "MOST_BYTES", 100_000)
-    monkeypatch.setattr(parcel, "MOST_MEMBERS", 10)
-    head = tarfile.TarInfo("././@PaxHeader")
-    head.type, head.size = tarfile.XHDTYPE, 2**26
-    package = gzip.compress(head.tobuf(tarfile.USTAR_FORMAT) + bytes(head.size))
-    tracemalloc.start()
-    try:
-        assert remote.unpack(package, task).state == "failed"
-        assert tracemalloc.get_traced_memory()[1] < 2**24
-    finally:
-        tracemalloc.stop()
-
-
-def test_a_worker_without_room_is_named(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
-    package, unpack = remote.packed(task), parcel.unpack
-
-    def full(data: bytes, folder: Path, trust: parcel.Trust = "data") -> dict[str, bytes]:
-        if trust == "tar":
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return unpack(data, folder, trust)
-
-    monkeypatch.setattr(parcel, "unpack", full)
+    package = remote.packed(task)
+    monkeypatch.setattr(remote, "MOST_BYTES", 1)
     answer = remote.unpack(remote.graded(package), task)
     assert answer.state == "failed"
+    assert "what came of it cannot be sent: it has more than" in str(answer.message)
+
+
+def test_a_worker_without_room_is_named(
+    task: Task, done: list[Task], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = remote.packed(task)
+
+    def full(self: Path, data: bytes) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as there:
+        there.setattr(Path, "write_bytes", full)
+        returned = remote.graded(package)
+    answer = remote.unpack(returned, task)
+    assert answer.state == "failed"
     name = socket.gethostname()
-    assert answer.message == f"the worker {name} has no room for it: No space left on device"
+    assert str(answer.message) == f"the worker {name} has no room for it: No space left on device"

@@ -59,9 +59,9 @@ def test_what_is_to_mend_is_named_with_exit_code_1(tmp_path, check):
     code, said, _ = check(exercises.write(tmp_path / "ahead", mutants=mutants))
     assert code == 1
     for words in (
-        "To mend: commands: a right solution loses points: 0 commands came. (on solution)",
-        "To mend: nobody catches a mutant (on right)",
-        "To mend: far: never fails on any mutant",
+        "To fix: commands: a right solution loses points: 0 commands came. (on solution)",
+        "To fix: nobody catches a mutant (on right)",
+        "To fix: far: never fails on any mutant",
     ):
         assert words in said
 

@@ -38,7 +38,7 @@ def test_an_unusable_submission_is_the_students(tmp_path, error, capsys):
     whose, message, max_score = said(error)
     assert (whose, max_score) == ("submission", 100)
     assert message.startswith("empty is an empty folder.")
-    assert capsys.readouterr().err == f"First to mend: {message}\n"
+    assert capsys.readouterr().err == f"Fix this first: {message}\n"
 
 
 def test_the_points_are_those_of_the_exercise(tmp_path, error):

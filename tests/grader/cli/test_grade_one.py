@@ -81,7 +81,7 @@ def in_turn(monkeypatch, drawn):
 
 
 def test_under_watch_the_nominal_run_s_verdicts_come_first(call, in_turn, capsys):
-    assert grade(call("--watch")) == 0
+    assert grade(call("--watch"), None) == 0
     first = capsys.readouterr().err
     assert "The nominal run is over, the others still go." in first
     assert "The node starts and moves turtle1" in first
@@ -89,14 +89,14 @@ def test_under_watch_the_nominal_run_s_verdicts_come_first(call, in_turn, capsys
 
 
 def test_without_watch_there_is_one_table(call, in_turn, capsys):
-    assert grade(call()) == 0
+    assert grade(call(), None) == 0
     shown = capsys.readouterr()
     assert "nominal run" not in shown.err
     assert shown.out.count("Score: ") == 1
 
 
 def test_recordings_are_complete_and_in_order_whichever_run_ends_first(call, in_turn, tmp_path):
-    assert grade(call()) == 0
+    assert grade(call(), None) == 0
     loaded = reading.load_all(tmp_path / "out" / "recording")
     starts = [recording.start for recording in loaded]
     assert starts[0] is None
@@ -107,7 +107,7 @@ def test_a_run_that_cannot_be_made_leaves_an_older_recording_and_no_result(
     call, monkeypatch, drawn, tmp_path
 ):
     monkeypatch.setitem(grading.RUNNERS, "virtual", lambda *_: drawn)
-    assert grade(call()) == 0
+    assert grade(call(), None) == 0
     out = tmp_path / "out"
     before = {path: path.read_bytes() for path in (out / "recording").rglob("*.*")}
 
@@ -118,7 +118,7 @@ def test_a_run_that_cannot_be_made_leaves_an_older_recording_and_no_result(
 
     monkeypatch.setitem(grading.RUNNERS, "virtual", fails)
     with pytest.raises(GraderFailure, match="the simulator died"):
-        grade(call())
+        grade(call(), None)
     assert not (out / "result.json").exists()
     assert {path: path.read_bytes() for path in (out / "recording").rglob("*.*")} == before
 
@@ -191,7 +191,7 @@ def test_who_grades_into_the_folder_of_another_grading_is_told_so(
         files.sole_writer(out),
         pytest.raises(UsageError, match="another grading writes into"),
     ):
-        grade(call())
+        grade(call(), None)
     assert list(out.iterdir()) == []
 
 

@@ -27,9 +27,9 @@ sys.exit(main(["run", "x.py"]))
 @pytest.mark.parametrize(
     ("module", "who"),
     [
-        ("grader.cli.error_file", "grader"),
+        ("grader.cli.options", "grader"),
         ("grader.cli.run", "grader"),
-        ("grader.run.processes.watched", "grader"),
+        ("grader.run.processes.started_process", "grader"),
         ("grader.cli.grade_one", "grader run"),
         ("numpy", "grader run"),
         ("yaml", "grader run"),

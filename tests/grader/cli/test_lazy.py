@@ -78,7 +78,7 @@ def test_a_table_of_results_needs_no_terminal_and_no_page(tmp_path):
 
 @pytest.mark.parametrize("verb", cli.VERBS)
 def test_the_summary_of_a_verb_is_the_first_line_of_its_module(verb):
-    assert cli.VERBS[verb] == (cli.load(verb).__doc__ or "").splitlines()[0]
+    assert str(cli.VERBS[verb]) == (cli.load(verb).__doc__ or "").splitlines()[0]
 
 
 def test_the_clocks_are_those_that_there_are():

@@ -20,7 +20,8 @@ from websockets.sync.client import connect
 from grader import grading
 from grader.cli import live, main, run
 from grader.exercise.loading import load_exercise
-from grader.scenes.turtlesim.live.page import TurtlesimPage
+from grader.scenes import load_scene
+from grader.scenes.turtlesim.live import TurtlesimPage
 from tests.grader.driving import Spiral, drive
 from tests.programs import DEADLINE_S
 
@@ -81,8 +82,8 @@ def test_runs_go_one_after_the_other_and_verdicts_are_told_as_they_are_known(
     assert 0 < len(early.judged) < len(result["verdicts"]) == len(told[-1].judged)
     assert (told[-1].score, told[-1].is_over) == (f"Score: {result['score']} of 100", True)
     said = capfd.readouterr().err
-    assert re.search(r"The runs are to be seen at http://127.0.0.1:\d+/\?token=\S+\n", said)
-    assert "Nobody looks yet; the run begins." in said
+    assert re.search(r"See the runs at http://127.0.0.1:\d+/\?token=\S+\n", said)
+    assert "Nobody has opened the page yet; the run begins." in said
 
 
 def test_who_presses_ctrl_c_as_soon_as_it_is_offered_gets_the_code_of_the_score(
@@ -103,12 +104,12 @@ def test_who_has_come_by_ssh_is_told_how_to_see_it(in_no_time, tmp_path, monkeyp
     assert main(["run", str(QUICK), "--live", "--out", str(tmp_path / "out")]) == 0
     said = capfd.readouterr().err
     assert re.search(
-        r"where you are, type there: ssh -L (\d+):127\.0\.0\.1:\1 \S+@192\.0\.2\.4\n", said
+        r"on your own machine, run there: ssh -L (\d+):127\.0\.0\.1:\1 \S+@192\.0\.2\.4\n", said
     )
 
 
 def test_a_port_that_is_taken_is_no_hindrance(in_no_time, tmp_path, capfd, monkeypatch):
-    first = live.load_live("turtlesim")(0)
+    first = load_scene("turtlesim").live_page(0)
     monkeypatch.setattr(live, "USUAL_PORT", int(first.address.split(":")[2].split("/")[0]))
     try:
         assert main(["run", str(QUICK), "--live", "--out", str(tmp_path / "out")]) == 0
@@ -128,7 +129,7 @@ def test_a_port_that_is_taken_is_no_hindrance(in_no_time, tmp_path, capfd, monke
 )
 def test_what_cannot_be_shown_is_told_before_anything_is_written(words, said, tmp_path, capfd):
     out = tmp_path / "out"
-    package = Path(grading.__file__).parent / "exercises/state_publisher/reference"
+    package = load_exercise("state_publisher").folder / "reference"
     handed_in = package if "--exercise" in words else QUICK
     assert main(["run", str(handed_in), *words, "--out", str(out)]) == 2
     assert said in " ".join(capfd.readouterr().err.split())

@@ -36,7 +36,7 @@ def test_a_person_sees_the_run_to_its_last_pixel_and_what_the_checks_say(tmp_pat
     words = (str(QUICK), "--live", "--speed", "free", "--out", str(out))
     given = ("run", *words, "--exercise", "one_run.yaml", "--lang", "en")
     with Program("grader", *given, cwd=tmp_path) as program:
-        address = re.search(r"http://\S+", program.wait_for_line("to be seen at"))[0]
+        address = re.search(r"http://\S+", program.wait_for_line("See the runs at"))[0]
         page = browser.new_page(viewport={"width": width, "height": 900}, locale="fr-FR")
         page.set_default_timeout(DEADLINE_S * 1000)
         errors: list[str] = []

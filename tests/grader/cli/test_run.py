@@ -24,7 +24,7 @@ import yaml
 from grader import scratch
 from grader.cli import main
 from grader.result import json_file
-from grader.run.processes import ZYGOTE
+from grader.run.processes import FORK_SERVER
 from grader.scenes.turtlesim.interfaces import adapted
 from tests import once
 from turtlesim_py.ros.interfaces import installed
@@ -213,7 +213,7 @@ def test_the_untouched_starter_gets_nothing_and_a_first_line_that_says_why(grade
     run = graded("starter")
     assert (run.code, run.result["score"]) == (0, 0)
     assert run.stdout.startswith(
-        "First to mend: Your node published no velocity command on /turtle1/cmd_vel in 4.0 s"
+        "Fix this first: Your node published no velocity command on /turtle1/cmd_vel in 4.0 s"
     )
     assert run.result["run"]["outcome"] == "time_limit"
 
@@ -376,7 +376,7 @@ def running(grader: psutil.Process, name: str) -> list[psutil.Process]:
     """The processes of a module that serve runs."""
     own = grader.children()
     forked = [child for process in own for child in children(process)]
-    family = [p for p in own if ZYGOTE not in words(p)] + forked
+    family = [p for p in own if FORK_SERVER not in words(p)] + forked
     return [p for p in family if any(word.startswith(name) for word in words(p))]
 
 

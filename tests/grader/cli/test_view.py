@@ -10,9 +10,11 @@ from typing import Any
 
 import pytest
 
+from grader import extensions
 from grader.cli import main
 from grader.recording import saving
 from grader.recording.recording import Recordings
+from grader.recording.subject import load_subject
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.samples import evidence, verdict
@@ -104,7 +106,7 @@ def test_what_is_not_there_is_said_in_a_line(tmp_path, capsys):
 
 def test_a_scene_that_has_no_such_page_is_led_to_the_report(graded, capsys, monkeypatch):
     (graded / "report.html").write_text("")
-    monkeypatch.setattr("grader.cli.view.load_player", lambda _: None)
+    monkeypatch.setattr("grader.cli.view.load_subject", lambda _: load_subject("package"))
     assert main(["view", str(graded), "--no-open"]) == 2
     said = capsys.readouterr().err
     assert "cannot be played; look at" in said
@@ -113,10 +115,8 @@ def test_a_scene_that_has_no_such_page_is_led_to_the_report(graded, capsys, monk
 
 
 def test_only_one_scene_is_played_so_far():
-    from grader.scenes import NAMES, load_player
-
-    assert [name for name in NAMES if load_player(name)] == ["turtlesim"]
-    assert load_player("nonsense") is None
+    names = extensions.points(extensions.SCENES)
+    assert [name for name in names if load_subject(name).player] == ["turtlesim"]
 
 
 def test_recordings_of_two_scenes_are_not_compared(graded, capsys, monkeypatch, drawn):

@@ -22,8 +22,7 @@ from watchdog.events import (
     FileOpenedEvent,
 )
 
-from grader.cli.rounds import Rounds, change
-from grader.cli.watch import Saves, each_save
+from grader.cli.watch import Saves, change, each_save, grade_again
 from grader.errors import UsageError
 from grader.result.result import Result
 from tests.grader.reports import samples
@@ -208,7 +207,6 @@ def test_the_screen_is_cleared_before_the_second_time_and_only_on_a_terminal(mon
         cleared = []
         monkeypatch.setattr(Console, "is_terminal", is_terminal)
         monkeypatch.setattr(Console, "clear", lambda self, cleared=cleared: cleared.append(1))
-        rounds = Rounds(Namespace(error_json=None))
-        for expected in (0, is_terminal):
-            rounds.grade()
+        for number, expected in enumerate((0, is_terminal)):
+            grade_again(Namespace(error_json=None), None, None, clears=number > 0)
             assert len(cleared) == expected

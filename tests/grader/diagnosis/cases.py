@@ -6,11 +6,12 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from grader.recording.conduct import Conduct, End, Place
+from grader.message import Message
+from grader.recording.observations import End, Observations, SourceLine
 from grader.recording.recording import PublishedTopic, Recording, Run
 from tests.grader.driving import Spiral, drive
 
-LINE = Place("drive.py", 39, "on_pose", "self.step(2)")
+LINE = SourceLine("drive.py", 39, "on_pose", "self.step(2)")
 POSE, TWIST, SET_PEN = "turtlesim/msg/Pose", "geometry_msgs/msg/Twist", "turtlesim/srv/SetPen"
 #: What a right controller has.
 VELOCITY = End("publisher", "/turtle1/cmd_vel", TWIST, True, 100)
@@ -18,25 +19,25 @@ POSES = End("subscription", "/turtle1/pose", POSE, True, 100)
 PEN = End("client", "/turtle1/set_pen", SET_PEN, True, 10)
 
 
-def said(*ends: End, **more: Any) -> Conduct:
+def said(*ends: End, **more: Any) -> Observations:
     """What a program has told: the ends of a right one, if none are given, which it spins."""
     parts: dict[str, Any] = {"ends": ends or (VELOCITY, POSES, PEN), "spun_s": 0.2}
-    return Conduct(is_told=True, **(parts | more))
+    return Observations(is_known=True, **(parts | more))
 
 
 def run_of(
-    conduct: Conduct | None = None,
+    observations: Observations | None = None,
     outcome: Any = "finished",
     *,
     output: str = "",
     topics: tuple[PublishedTopic, ...] = (),
     exit_code: int | None = None,
-    flags: tuple[str, ...] = (),
+    flags: tuple[Message, ...] = (),
 ) -> Recording:
     trace = _trace()
-    run = Run("virtual", outcome, exit_code, trace.ticks, trace.simulated_s, flags=flags)
+    run = Run("virtual", outcome, exit_code, trace.ticks, trace.duration_ns / 1e9, flags=flags)
     run = replace(run, interfaces="turtlesim", trace_sha256=trace.sha256())
-    return Recording(trace, run, topics, output, conduct=conduct or Conduct())
+    return Recording(trace, run, topics, output, observations=observations or Observations())
 
 
 @cache

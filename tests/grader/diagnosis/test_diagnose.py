@@ -10,7 +10,15 @@ from hypothesis import strategies as st
 from grader.diagnosis.diagnose import diagnose
 from grader.diagnosis.diagnosis import CHECK
 from grader.exercise.verdict import Evidence, Verdict
-from grader.recording.conduct import Conduct, Place, Raised, Slow, Stop, StopKind
+from grader.message import plain_text
+from grader.recording.observations import (
+    Observations,
+    Raised,
+    SlowCallback,
+    SourceLine,
+    Standstill,
+    StopKind,
+)
 from grader.recording.reading import load_all
 from grader.recording.recording import Recordings
 from grader.recording.saving import save_all
@@ -18,12 +26,13 @@ from grader.text import one_line
 from tests.grader.diagnosis.cases import LINE, run_of, said
 
 CRASH = run_of(said(raised=Raised("KeyError", "4", 6.0, LINE)), "crashed", exit_code=1)
-SLOW = run_of(said(slow=(Slow(LINE, 0.2, 50),)))
+SLOW = run_of(said(slow=(SlowCallback(LINE, 0.2, 50),)))
 RIGHT = run_of(said())
 
 
 def verdict(check, status="failed", score=0.0, most=10.0, **more):
-    return Verdict(check, check, status, score, most, f"{check} was seen.", f"{check} help", **more)
+    texts = (plain_text(f"{check} was seen."), plain_text(f"{check} help"))
+    return Verdict(check, plain_text(check), status, score, most, *texts, **more)
 
 
 def test_there_is_none_at_full_marks():
@@ -33,7 +42,7 @@ def test_there_is_none_at_full_marks():
 def test_a_crash_in_a_varied_run_comes_before_what_only_disturbs_the_nominal_one():
     found = diagnose(Recordings(SLOW, (RIGHT, CRASH)), [verdict("a")])
     assert (found.key, found.run, found.time_s, found.place) == ("crashed", 2, 6.0, LINE)
-    assert found.cause.startswith("In varied run 2: Your node crashed at 6.0 s: KeyError: 4")
+    assert str(found.cause).startswith("In varied run 2: Your node crashed at 6.0 s: KeyError: 4")
 
 
 def test_the_nominal_run_comes_before_the_varied_ones():
@@ -48,7 +57,7 @@ def test_a_recording_that_is_judged_again_has_the_same_diagnosis(tmp_path):
 
 
 def test_where_no_run_shows_a_cause_it_is_the_check_that_costs_most_with_all_that_wait_for_it():
-    seen = (Evidence(100, 1.6, 2.0, 3.0, "here", 1),)
+    seen = (Evidence(1.6, "here", 2.0, 3.0, 1, tick=100),)
     verdicts = [
         verdict("dear", "failed", 5.0, 30.0),
         verdict("moves", most=10.0, evidence=seen),
@@ -56,7 +65,7 @@ def test_where_no_run_shows_a_cause_it_is_the_check_that_costs_most_with_all_tha
     ]
     found = diagnose(Recordings(RIGHT, (RIGHT,)), verdicts)
     assert (found.key, found.check) == (CHECK, "moves")
-    assert (found.cause, found.help) == ("moves was seen.", "moves help")
+    assert (str(found.cause), str(found.help)) == ("moves was seen.", "moves help")
     assert (found.run, found.time_s) == (1, 1.6)
 
 
@@ -69,9 +78,9 @@ def test_of_equally_dear_ones_it_is_the_first_and_of_none_failed_the_one_not_jud
 HARD = ["\x1b[31m", "\u202e", "\n::error::x", "'NoneType'", "The 'x' field must be of type 'int'"]
 HARD += ["The '' field", "SyntaxError", "AttributeError", "has no attribute", "/", "//", "a" * 300]
 TEXTS = st.text(max_size=20) | st.sampled_from(HARD)
-PLACES = st.builds(Place, TEXTS, st.integers(0, 2**53), TEXTS, TEXTS)
+PLACES = st.builds(SourceLine, TEXTS, st.integers(0, 2**53), TEXTS, TEXTS)
 FORMS = {
-    Place: PLACES,
+    SourceLine: PLACES,
     str: TEXTS | st.sampled_from(["/turtle1/cmd_vel", "/pose", "a/msg/B", "turtlesim/msg/Pose"]),
     int: st.integers(0, 100),
     bool: st.booleans(),
@@ -97,16 +106,16 @@ def form(hint):
 
 
 @given(
-    conduct=anything(Conduct),
+    seen=anything(Observations),
     outcome=st.sampled_from(["finished", "exited", "crashed", "stalled", "time_limit", "killed"]),
     code=st.none() | st.integers(-70, 255),
     output=TEXTS,
 )
-def test_whatever_a_program_tells_the_diagnosis_is_one_plain_line(conduct, outcome, code, output):
-    recording = run_of(conduct, outcome, exit_code=code, output=output)
+def test_whatever_a_program_tells_the_diagnosis_is_one_plain_line(seen, outcome, code, output):
+    recording = run_of(seen, outcome, exit_code=code, output=output)
     found = diagnose(Recordings(recording))
     if found is not None:
-        for text in (found.cause, found.help):
+        for text in (str(found.cause), str(found.help)):
             assert text
             assert text == one_line(text)
             assert not {"\x1b", "\u202e"} & set(text)
@@ -114,7 +123,7 @@ def test_whatever_a_program_tells_the_diagnosis_is_one_plain_line(conduct, outco
 
 
 def test_the_stuck_place_of_a_stop_without_a_line_is_left_out():
-    found = diagnose(Recordings(run_of(said(stop=Stop("call", 1.0)), "stalled")))
-    assert found.cause.startswith(
+    found = diagnose(Recordings(run_of(said(stop=Standstill("call", 1.0)), "stalled")))
+    assert str(found.cause).startswith(
         "Your program is stuck from 1.0 s on: it waits while nobody spins"
     )

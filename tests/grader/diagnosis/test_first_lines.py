@@ -6,11 +6,11 @@ import pytest
 
 from grader.diagnosis.diagnose import diagnose
 from grader.recording.recording import Recordings
-from grader.run.plan import Plan
-from grader.run.simulator.link import Patience
+from grader.run.handover import Plan
+from grader.run.limits import Patience
 from grader.scenes.scene import Limits
 from tests import runs
-from tests.grader.language.holes import holes
+from tests.grader.languages.holes import holes
 from tests.submissions.beginners import MISTAKES
 
 PLAN = Plan(Limits(first_motion_s=3, rest_s=1, total_s=10))
@@ -22,7 +22,7 @@ PATIENCE = Patience(stall_cpu_s=0.5, start_cpu_s=1.5)
 def test_the_first_line_is_the_cause_and_is_said_in_other_languages(name):
     found, row = diagnose(Recordings(runs.recorded(name, PLAN, PATIENCE))), MISTAKES[name]
     assert found is not None
-    said = f"{found.cause} {found.help}"
+    said = f"{found.cause!s} {found.help!s}"
     begin = 0
     for piece in row["says"]:
         assert piece in said[begin:], f"{found.key}: {said}"

@@ -8,7 +8,17 @@ import pytest
 
 from grader.diagnosis.diagnose import diagnose
 from grader.exercise.verdict import Verdict
-from grader.recording.conduct import Caught, End, Place, Raised, Slip, Slow, Stop, Wait
+from grader.message import plain_text
+from grader.recording.observations import (
+    Caught,
+    End,
+    LintFinding,
+    Raised,
+    SlowCallback,
+    SourceLine,
+    Standstill,
+    Wait,
+)
 from grader.recording.recording import PublishedTopic, Recordings
 from tests.grader.diagnosis.cases import LINE, PEN, POSE, POSES, TWIST, VELOCITY, run_of, said
 
@@ -32,21 +42,6 @@ TRACEBACK = """Traceback (most recent call last):
     self.__publisher.publish(msg)
 AttributeError: 'float' object has no attribute 'x'
 """
-STUCK = """
-Your node is stuck here, at 1.25 s: it waits for something that can no longer happen.
-  File "/home/ada/drive.py", line 15, in on_timer
-    self.pen.call(request)
-  File "/usr/lib/python3.11/threading.py", line 629, in wait
-    waiter.acquire()
-This is a callback. While it waits, ...
-"""
-FATAL = """Fatal Python error: Aborted
-
-Current thread 0x00007f (most recent call first):
-  File "/x/site-packages/rclpy/client.py", line 150 in call_async
-  File "/home/ada/drive.py", line 31 in colour
-  File "/home/ada/drive.py", line 44 in <module>
-"""
 UNFIT = (
     "[WARN] [1.0] [spiral]: New subscription discovered on topic '/turtle1/cmd_vel', requesting "
     "incompatible QoS. No messages will be sent to it. Last incompatible policy: RELIABILITY\n"
@@ -57,7 +52,7 @@ NEVER_AWAITED = (
 )
 STAMPED = end("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped")
 NOT_A_POSE = end("subscription", "/pose", "geometry_msgs/msg/Pose", used=0)
-FLAG = "the node used 6 s of processor time without waiting for ROS"
+FLAG = plain_text("the node used 6 s of processor time without waiting for ROS")
 
 CAUSES = {
     "an exception": (
@@ -72,7 +67,7 @@ CAUSES = {
         "(drive.py, line 50).",
     ),
     "a syntax error": (
-        raising("SyntaxError", "expected ':'", Place("drive.py", 12, "", "def drive(self)")),
+        raising("SyntaxError", "expected ':'", SourceLine("drive.py", 12, "", "def drive(self)")),
         "unreadable",
         "Python cannot read your file: SyntaxError: expected ':' (drive.py, line 12).",
     ),
@@ -146,7 +141,7 @@ CAUSES = {
         raising("TypeError", "Expected <class 'g._twist.Twist'>, got <class 'g.Metaclass_Twist'>"),
         "crashed",
         "publish() was given the class Twist itself, not a message (drive.py, line 39). "
-        "The brackets are missing: Twist()",
+        "The parentheses are missing: Twist()",
     ),
     "a function that is spun": (
         raising(
@@ -160,7 +155,7 @@ CAUSES = {
     "a request's class": (
         raising("TypeError", place=replace(LINE, text="self.pen.call_async(request)")),
         "crashed",
-        "no request of this service (drive.py, line 39). Are brackets missing",
+        "no request of this service (drive.py, line 39). Are parentheses missing",
     ),
     "no super().__init__": (
         raising("AttributeError", "'Spiral' object has no attribute '_default_callback_group'"),
@@ -195,7 +190,7 @@ CAUSES = {
     "an indentation": (
         raising("TabError", "inconsistent use of tabs and spaces in indentation"),
         "unreadable",
-        "TabError: inconsistent .* begins in the same column",
+        "TabError: inconsistent .* begin in the same column",
     ),
     "an exception that says all": (
         raising("ValueError", "math domain error"),
@@ -224,9 +219,9 @@ CAUSES = {
         "exit code 3, by no exception; the last that it printed is: 'bye'.",
     ),
     "an abort": (
-        run_of(outcome="killed", exit_code=-6, output=FATAL),
+        run_of(said(raised=Raised("SIGABRT", "", 6.0, LINE)), "killed", exit_code=-6),
         "killed",
-        "by the signal SIGABRT (drive.py, line 31): a library gave up on a value",
+        "by the signal SIGABRT (drive.py, line 39): a library gave up on a value",
     ),
     "another type on the right topic": (
         run_of(said(STAMPED, POSES), "time_limit"),
@@ -279,24 +274,21 @@ CAUSES = {
         "You call the service /turtle1/set_pen as std_srvs/srv/Empty, but it is turtlesim/srv/Set",
     ),
     "a wait in a callback": (
-        run_of(said(stop=Stop("callback", 1.5, "Client.call", LINE)), "stalled"),
+        run_of(said(stop=Standstill("callback", 1.5, "Client.call", LINE)), "stalled"),
         "stuck_in_callback",
         "Your node is stuck in on_pose() (drive.py, line 39) from 1.5 s on: .* call_async(request)",
     ),
-    "the same, known from the output alone": (
-        run_of(outcome="stalled", output=STUCK),
-        "stuck_in_callback",
-        "in on_timer() (drive.py, line 15)",
-    ),
     "a rate that nobody spins": (
-        run_of(said(stop=Stop("call", 1.5, "Rate.sleep", LINE), spun_s=None), "stalled"),
+        run_of(said(stop=Standstill("call", 1.5, "Rate.sleep", LINE), spun_s=None), "stalled"),
         "stuck_in_call",
-        "it waits in Rate.sleep() while nobody spins the node, .* A Rate needs somebody who spins",
+        "it waits in Rate.sleep() while nobody spins the node, .* A Rate needs a node that spins",
     ),
     "an endless loop": (
-        run_of(said(stop=Stop("loop", 0.5, "", replace(LINE, text="while True:"))), "stalled"),
+        run_of(
+            said(stop=Standstill("loop", 0.5, "", replace(LINE, text="while True:"))), "stalled"
+        ),
         "endless_loop",
-        "never comes out of a loop in on_pose() (drive.py, line 39)",
+        "never leaves a loop in on_pose() (drive.py, line 39)",
     ),
     "an endless loop somewhere": (
         run_of(said(), "stalled", flags=(FLAG,)),
@@ -333,12 +325,14 @@ CAUSES = {
     "a callback that does not return": (
         run_of(said(VELOCITY, replace(POSES, used=1, place=LINE))),
         "hears_once",
-        "has heard /turtle1/pose hardly more than once in 10 s (drive.py, line 39), .* returned",
+        "received /turtle1/pose hardly more than once in 10 s (drive.py, line 39), .* returned",
     ),
     "a sleep in a callback": (
-        run_of(said(slow=(Slow(replace(LINE, text="time.sleep(0.2)"), 0.2, 50),)), "time_limit"),
+        run_of(
+            said(slow=(SlowCallback(replace(LINE, text="time.sleep(0.2)"), 0.2, 50),)), "time_limit"
+        ),
         "slow_callback",
-        "on_pose() lets up to 0.2 s pass each time that it is called (drive.py, line 39); ",
+        "on_pose() takes up to 0.2 s each time it is called (drive.py, line 39); ",
     ),
 }
 
@@ -349,7 +343,7 @@ def test_the_cause_is_named_with_its_place_and_with_what_to_do(name):
     found = diagnose(Recordings(recording))
     assert found is not None
     assert found.key == key
-    whole = f"{found.cause} {found.help}"
+    whole = f"{found.cause!s} {found.help!s}"
     first, *rest = words.split(" .* ")
     assert first.strip() in whole
     assert all(part in whole for part in rest), whole
@@ -373,7 +367,7 @@ SILENT = {
     "one message, and it was asked for one": run_of(
         said(replace(POSES, used=1, place=replace(LINE, text="wait_for_message(Pose, node, t)")))
     ),
-    "a last pause": run_of(said(slow=(Slow(LINE, 2.0, 1),))),
+    "a last pause": run_of(said(slow=(SlowCallback(LINE, 2.0, 1),))),
     "no spin, and none is needed": run_of(said(VELOCITY, spun_s=None, returned_s=40.0)),
     "the end of a long run": run_of(said(returned_s=40.0)),
     "a program in another language": run_of(outcome="exited"),
@@ -382,26 +376,26 @@ SILENT = {
 
 def test_a_check_that_found_an_end_unused_says_which():
     recording = run_of(said(VELOCITY, POSES, replace(PEN, used=0, place=LINE)))
-    verdict = Verdict(
-        "pen", "Pen", "failed", 0, 20, "The pen was never changed.", "Call /turtle1/set_pen."
-    )
+    texts = map(plain_text, ("The pen was never changed.", "Call /turtle1/set_pen."))
+    verdict = Verdict("pen", plain_text("Pen"), "failed", 0, 20, *texts)
     found = diagnose(Recordings(recording), [verdict])
     assert found is not None
-    assert found.cause == (
+    assert str(found.cause) == (
         "The pen was never changed. Your client (drive.py, line 39) has sent no request."
     )
-    assert (found.help, found.place) == ("Call /turtle1/set_pen.", LINE)
+    assert (str(found.help), found.place) == ("Call /turtle1/set_pen.", LINE)
 
 
 def of_check(rationale, help_="", **told):
-    verdict = Verdict("check", "Check", "failed", 0, 20, rationale, help_)
+    texts = map(plain_text, (rationale, help_))
+    verdict = Verdict("check", plain_text("Check"), "failed", 0, 20, *texts)
     found = diagnose(Recordings(run_of(said(**told))), [verdict])
     assert found is not None
     return found
 
 
 SLIPS = {
-    "uncalled": ("self.near", "", "`self.near` stands there without brackets", "self.near()"),
+    "uncalled": ("self.near", "", "`self.near` stands there without parentheses", "self.near()"),
     "unread": ("stoped", "stopped", "`self.stoped` is set and never read", "self.stopped"),
     "local": ("quad", "self.quad", "`quad` is a variable of this function", "self.quad = ..."),
 }
@@ -410,25 +404,26 @@ SLIPS = {
 @pytest.mark.parametrize("kind", SLIPS)
 def test_a_slip_stands_before_the_finding_that_it_may_explain(kind):
     name, near, text, help_ = SLIPS[kind]
-    found = of_check("It ran into a wall.", slips=(Slip(kind, name, near, LINE),))
-    assert found.cause.startswith(text)
-    assert found.cause.endswith(" (drive.py, line 39). It ran into a wall.")
-    assert help_ in found.help
+    found = of_check("It ran into a wall.", lint_findings=(LintFinding(kind, name, near, LINE),))
+    assert str(found.cause).startswith(text)
+    assert str(found.cause).endswith(" (drive.py, line 39). It ran into a wall.")
+    assert help_ in str(found.help)
     assert found.place == LINE
 
 
 def test_a_slip_that_explains_an_exception_only_is_not_told_of_anything_else():
-    slips = tuple(Slip(kind, "a", "b", LINE) for kind in ("method", "without_self", "class"))
-    assert of_check("It ran into a wall.", slips=slips).cause == "It ran into a wall."
+    slips = tuple(LintFinding(kind, "a", "b", LINE) for kind in ("method", "without_self", "class"))
+    assert of_check("It ran into a wall.", lint_findings=slips).cause == plain_text(
+        "It ran into a wall."
+    )
 
 
 def test_a_request_that_is_made_and_never_sent_is_told_with_its_line():
-    made = Place("drive.py", 43, "watch", "request = SetPen.Request()")
+    made = SourceLine("drive.py", 43, "watch", "request = SetPen.Request()")
     ends = (VELOCITY, POSES, replace(PEN, used=0, place=LINE))
-    found = of_check(
-        "Call /turtle1/set_pen.", ends=ends, slips=(Slip("unsent", "SetPen", "", made),)
-    )
-    assert (found.place, found.help) == (
+    unsent = LintFinding("unsent", "SetPen", "", made)
+    found = of_check("Call /turtle1/set_pen.", ends=ends, lint_findings=(unsent,))
+    assert (found.place, str(found.help)) == (
         made,
         "Send the request that you make: call_async(request).",
     )
@@ -443,24 +438,35 @@ def test_the_finding_of_a_check_has_the_line_that_sends_what_it_speaks_of():
 
 
 def test_a_message_that_is_none_at_first_is_no_hidden_error():
-    caught = Caught("AttributeError", "'NoneType' object has no attribute 'x'", 0.1, 3, LINE, LINE)
+    caught = Caught("AttributeError", "'NoneType' object has no attribute 'x'", 0.1, 3, LINE)
     assert of_check("Seen.", caught=(caught,)).key == "check"
     assert of_check("Seen.", caught=(replace(caught, times=90),)).key == "hides_errors"
 
 
 def test_what_a_program_looks_up_and_does_not_find_is_no_hidden_error():
-    by = replace(LINE, text="except KeyError:")
-    caught = Caught("KeyError", "'a'", 0.1, 30, LINE, by)
+    caught = Caught("KeyError", "'a'", 0.1, 30, LINE)
     assert of_check("Seen.", caught=(caught,)).key == "check"
+
+
+def test_an_except_that_hides_every_error_stands_behind_the_finding_that_it_may_explain():
+    place = replace(LINE, text="except Exception:")
+    swallows = LintFinding("swallows", "tick", "", place)
+    found = of_check("It never moved.", "Publish.", lint_findings=(swallows,))
+    assert str(found.cause) == (
+        "It never moved. `except Exception:` (drive.py, line 39) hides every error in tick()."
+    )
+    assert str(found.help) == "Publish. Without the try/except Python would say so itself."
+    assert found.place == place
 
 
 def test_a_module_that_lies_beside_is_told_by_its_full_name():
     place = replace(LINE, text="from my_colors import COLORS")
-    slip = Slip("beside", "my_colors", "my_package.my_colors", place)
-    recording = raising("ModuleNotFoundError", "No module named 'my_colors'", place, slips=(slip,))
+    slip = LintFinding("beside", "my_colors", "my_package.my_colors", place)
+    text = "No module named 'my_colors'"
+    recording = raising("ModuleNotFoundError", text, place, lint_findings=(slip,))
     found = diagnose(Recordings(recording))
     assert found is not None
-    assert found.help == "Write `from my_package.my_colors import COLORS` there."
+    assert str(found.help) == "Write `from my_package.my_colors import COLORS` there."
 
 
 @pytest.mark.parametrize("name", SILENT)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, timezone
 
 import pytest
 import yaml
 
 from grader.errors import ExerciseError
-from grader.exercise.late import LatePolicy
+from grader.exercise.handing_in import Late, LatePolicy
 from grader.exercise.loading import load_exercise
 from grader.exercise.sheet import Start, sheet
-from grader.scenes import load_scene
+from grader.recording.subject import load_subject
 from tests.grader.testing import exercises
 
 NAME = "turtlesim_challenge"
@@ -98,8 +98,8 @@ def test_they_are_part_of_the_rubric_and_not_of_what_a_run_depends_on(tmp_path):
 def test_a_slip_is_told_with_file_and_line(tmp_path, text, words):
     with pytest.raises(ExerciseError) as error:
         loaded(tmp_path, text)
-    assert words in error.value.message
-    assert "mine.yaml, line " in error.value.message
+    assert words in str(error.value.message)
+    assert "mine.yaml, line " in str(error.value.message)
 
 
 def test_a_check_is_not_shown_before_one_that_it_waits_for(tmp_path):
@@ -135,7 +135,7 @@ def test_only_another_run_follows_a_change_of_it(tmp_path):
 
 
 def sheet_of(exercise):
-    text = sheet(exercise, load_scene(exercise.scene), Start("node.py", "", "grader run mine"))
+    text = sheet(exercise, load_subject(exercise.scene), Start("node.py", "", "grader run mine"))
     return " ".join(text.split())
 
 
@@ -175,3 +175,35 @@ def test_an_edited_copy_can_take_back_what_its_original_says(tmp_path):
     copy.write_text(yaml.safe_dump({"exercise": "ahead", "late": None, "visible": {}}))
     exercise = load_exercise(copy)
     assert (dict(exercise.visible), exercise.late) == ({}, None)
+
+
+DUE = datetime(2026, 11, 30, 23, 59, tzinfo=timezone(timedelta(hours=1)))
+POLICY = LatePolicy(DUE, grace_min=10, per_day=10, most=25)
+DAY_S = 86_400
+
+
+@pytest.mark.parametrize(
+    ("after", "expected"),
+    [
+        (timedelta(days=-3), Late()),
+        (timedelta(0), Late()),
+        (timedelta(minutes=10), Late(600)),
+        (timedelta(minutes=10, microseconds=1), Late(600.000001, 1, 10)),
+        (timedelta(days=1, minutes=10), Late(DAY_S + 600, 1, 10)),
+        (timedelta(days=1, hours=3), Late(DAY_S + 10_800, 2, 20)),
+        (timedelta(days=2, hours=3), Late(2 * DAY_S + 10_800, 3, 25)),
+        (timedelta(days=400), Late(400 * DAY_S, 400, 25)),
+    ],
+)
+def test_each_started_day_after_due_and_grace_costs_up_to_the_limit(after, expected):
+    assert POLICY.deduction(DUE + after) == expected
+
+
+def test_a_time_is_the_same_in_any_zone():
+    at = DUE + timedelta(hours=5)
+    assert POLICY.deduction(at.astimezone(UTC)) == POLICY.deduction(at) == Late(18_000, 1, 10)
+
+
+def test_a_time_without_a_zone_is_refused():
+    with pytest.raises(ValueError, match=r"with its zone, found 2026-12-01T00:00:00"):
+        POLICY.deduction(datetime(2026, 12, 1))

@@ -105,9 +105,10 @@ def said_of(tmp_path, text):
     with pytest.raises(ExerciseError) as error:
         load_exercise(path)
     prefix = f"{path} is not an exercise: "
-    assert error.value.message.startswith(prefix)
-    assert "\n" not in error.value.message
-    return error.value.message.removeprefix(prefix)
+    said = str(error.value.message)
+    assert said.startswith(prefix)
+    assert "\n" not in said
+    return said.removeprefix(prefix)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from grader.exercise.sentences import how_it_ended, last_error, remarks
-from grader.recording.conduct import Conduct, Place, Raised
+from grader.recording.observations import Observations, Raised, SourceLine
 from grader.recording.recording import Run
 from tests.grader.driving import drive
 from tests.limited import printed_by
@@ -43,7 +43,7 @@ SyntaxError: expected ':'
     ],
 )
 def test_the_last_error_is_found_with_file_and_line(output, expected):
-    assert last_error(output).startswith(expected)
+    assert str(last_error(output)).startswith(expected)
     assert bool(last_error(output)) == bool(expected)
 
 
@@ -55,7 +55,7 @@ def test_a_traceback_that_is_none_is_gone_through_once(after):
     code = f"""
 from grader.exercise.sentences import last_error
 limit(2, 4_000_000_000)
-print(repr(last_error("Traceback (most recent call last)" + {after})))
+print(repr(str(last_error("Traceback (most recent call last)" + {after}))))
 """
     assert printed_by(code) == "''\n"
 
@@ -66,7 +66,8 @@ IN_A_LIBRARY = CRASH.replace("<module>", "spin").replace("turtle_controller", "e
 def crashed(output, raised):
     run = Run(outcome="crashed", exit_code=1)
     recording = drive(lambda tick, pose, arena: None, ticks=1)
-    return replace(recording, run=run, output=output, conduct=Conduct(True, raised=raised))
+    seen = Observations(True, raised=raised)
+    return replace(recording, run=run, output=output, observations=seen)
 
 
 @pytest.mark.parametrize(
@@ -86,22 +87,22 @@ def crashed(output, raised):
     ],
 )
 def test_an_error_names_the_last_line_of_the_submission_s_own(output, type_, expected):
-    recording = crashed(output, Raised(type_, "'x'", 1.0, Place("src/drive.py", 39)))
-    assert how_it_ended(recording) == f" The node ended with an error: {expected}."
+    recording = crashed(output, Raised(type_, "'x'", 1.0, SourceLine("src/drive.py", 39)))
+    assert str(how_it_ended(recording)) == f" The node ended with an error: {expected}."
 
 
 def test_an_error_that_cost_nothing_is_told_as_such():
     recording = crashed(CRASH, None)
-    assert remarks(recording, all_passed=True)[0] == (
+    assert str(remarks(recording, all_passed=True)[0]) == (
         "After its work was done the node ended with an error: ModuleNotFoundError: No module "
         "named 'turtlesim_messages' (turtle_controller.py, line 3); it costs no points."
     )
-    assert remarks(recording)[0].startswith("The node ended with an error: ")
+    assert str(remarks(recording)[0]).startswith("The node ended with an error: ")
 
 
 def test_a_signal_is_told_only_where_there_was_one():
     run = Run(outcome="killed", exit_code=-9)
     recording = drive(lambda tick, pose, arena: None, ticks=1)
-    assert how_it_ended(replace(recording, run=run)).endswith("killed (signal 9).")
+    assert str(how_it_ended(replace(recording, run=run))).endswith("killed (signal 9).")
     run = Run(outcome="killed", exit_code=None)
-    assert how_it_ended(replace(recording, run=run)).endswith("was killed.")
+    assert str(how_it_ended(replace(recording, run=run))).endswith("was killed.")

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
+import runpy
+from pathlib import Path
+
 import pytest
 import yaml
 
 from grader.errors import ExerciseError
 from grader.exercise.loading import load_exercise
 from grader.exercise.places import names
-from grader.exercise.rubric import in_force
-from grader.exercise.sheet import Start, sheet
-from grader.scenes import load_scene
+from grader.exercise.sheet import Start, in_force, rubric, sheet
+from grader.recording.subject import load_subject
 from tests.grader.testing import exercises
 
 START = Start("pkg/node.py", "pkg", "grader run mine")
@@ -18,7 +21,7 @@ START = Start("pkg/node.py", "pkg", "grader run mine")
 
 def sheet_of(where, start=START):
     exercise = load_exercise(where)
-    return sheet(exercise, load_scene(exercise.scene), start)
+    return sheet(exercise, load_subject(exercise.scene), start)
 
 
 #: Scene -> what a task in it names, and what a sheet tells of how to try.
@@ -44,16 +47,16 @@ def test_the_sheet_of_what_is_looked_at_tells_that_nothing_is_started():
 def test_the_sheet_of_an_exercise_of_ours_tells_task_points_limits_and_how_to_begin(name):
     exercise, text = load_exercise(name), sheet_of(name)
     assert text.startswith(
-        f"# {exercise.title}\n\n{in_force(exercise.task, exercise.tolerances).strip()}\n\n"
+        f"# {exercise.title!s}\n\n{in_force(str(exercise.task), exercise.tolerances).strip()}\n\n"
         "## What it is worth: 100"
     )
     for check in exercise.checks:
-        assert f"| {exercise.points[check.name]:g} | {check.title} | `{check.name}` |" in text
+        assert f"| {exercise.points[check.name]:g} | {check.title!s} | `{check.name}` |" in text
     assert f"{exercise.limits.total_s:g} simulated seconds at most" in " ".join(text.split())
     for key, value in exercise.tolerances.items():
         assert f"\n{key}: {value}" in text
     for words in ASKED[exercise.scene]:
-        assert words in exercise.task
+        assert words in str(exercise.task)
     for words in (
         *TRIED[exercise.scene],
         "    ros2 run pkg node\n",
@@ -88,3 +91,29 @@ def test_an_exercise_needs_no_words_of_its_own(tmp_path):
 def test_a_task_is_a_text(tmp_path):
     with pytest.raises(ExerciseError, match="task: expected a text, found 3"):
         load_exercise(exercises.write(tmp_path / "ahead", task=3))
+
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_the_page_in_the_docs_is_the_one_that_the_checks_make():
+    page = runpy.run_path(str(ROOT / "scripts" / "rubric.py"))["page"]
+    shown = (ROOT / "docs" / "rubric.md").read_text(encoding="utf-8")
+    assert shown == page(shown), "run python scripts/rubric.py"
+
+
+@pytest.mark.parametrize("name", ["turtlesim_challenge", "square"])
+def test_every_check_tells_what_it_measures_and_every_tolerance_is_told(name):
+    exercise = load_exercise(name)
+    text = rubric(exercise)
+    assert not re.search(r"\{\w", text)
+    assert all(check.rubric for check in exercise.checks)
+    told = " ".join(str(check.rubric) for check in exercise.checks)
+    untold = {key for key in exercise.tolerances if f"{{{key}" not in told}
+    assert untold <= {"centres_m", "colours"}
+
+
+def test_a_tolerance_that_was_edited_is_told_as_it_is_in_force(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("exercise: turtlesim_challenge\ntolerances: {own_ink: 0.5}\n")
+    assert "50 % or more" in rubric(load_exercise(path))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 import yaml
 
@@ -9,12 +11,12 @@ from grader.errors import ExerciseError
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.exercise.sheet import Start, sheet
-from grader.language import stored
-from grader.language.catalogue import ENGLISH, speak
-from grader.language.telling import told
+from grader.exercise.verdict import Verdict
 from grader.recording.recording import Recordings
-from grader.scenes import load_scene
+from grader.recording.subject import load_subject
+from grader.result import json_file
 from grader.testing import drive
+from grader.translations import ENGLISH, translate, use
 from tests.grader.testing import exercises
 
 WORDS = {
@@ -35,7 +37,7 @@ TASK = "Drive {far_m} m."
 @pytest.fixture(autouse=True)
 def english_again():
     yield
-    speak(ENGLISH)
+    use(ENGLISH)
 
 
 def written(tmp_path, languages, **changes):
@@ -46,8 +48,8 @@ def written(tmp_path, languages, **changes):
 
 
 def sheet_in(language, exercise):
-    speak(language)
-    return sheet(exercise, load_scene(exercise.scene), Start("my_node.py", "", "grader run mine"))
+    use(language)
+    return sheet(exercise, load_subject(exercise.scene), Start("my_node.py", "", "grader run mine"))
 
 
 def test_the_sheet_has_the_exercises_words_in_the_users_language(tmp_path):
@@ -74,13 +76,15 @@ def test_a_verdict_takes_the_words_of_its_title_with_it(tmp_path):
     exercise = load_exercise(written(tmp_path, WORDS))
     recordings = Recordings(drive(lambda *_: None, 60))
     first, _ = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
-    assert first.title == "It sends commands"
-    assert told(first.title, "fr") == "Il envoie des commandes"
+    assert str(first.title) == "It sends commands"
+    assert translate(first.title, "fr") == "Il envoie des commandes"
     # ... through a file
-    plain = str(first.title)
-    again = stored.restored([plain], stored.phrases_in([first]))
-    assert told(again[0], "fr") == "Il envoie des commandes"
-    assert told(again[0], "zh") == plain
+    data = json_file.with_phrases(first)
+    assert data["title"] == "It sends commands"
+    phrases = json.loads(json.dumps(data.pop("phrases")))
+    again = json_file.typed(Verdict, data, phrases)
+    assert translate(again.title, "fr") == "Il envoie des commandes"
+    assert translate(again.title, "zh") == "It sends commands"
 
 
 def test_words_change_no_hash_and_no_points(tmp_path):
@@ -116,13 +120,13 @@ def test_words_change_no_hash_and_no_points(tmp_path):
 def test_a_slip_is_told_where_it_stands(tmp_path, languages, words):
     with pytest.raises(ExerciseError) as error:
         load_exercise(written(tmp_path, languages))
-    assert words in error.value.message
-    assert "exercise.yaml, line " in error.value.message
+    assert words in str(error.value.message)
+    assert "exercise.yaml, line " in str(error.value.message)
 
 
 def test_an_edited_copy_keeps_the_words_of_what_it_does_not_change(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({"exercise": "square", "title": "A smaller square"}))
     exercise = load_exercise(path)
-    assert told(exercise.title, "fr") == "A smaller square"
-    assert told(exercise.task, "fr").startswith("Écrivez un nœud")
+    assert translate(exercise.title, "fr") == "A smaller square"
+    assert translate(exercise.task, "fr").startswith("Écrivez un nœud")

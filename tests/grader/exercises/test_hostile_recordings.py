@@ -13,14 +13,11 @@ from hypothesis import strategies as st
 from grader.exercise.check import judge
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings, Run
-from grader.scenes.robot.driving import EPOCH_NS, joint_state, tf
-from grader.scenes.robot.driving import drive as drive_robot
-from grader.scenes.scene import Start
+from grader.recording.subject import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import drive
-from robot_py.robot_state import Placed
 from tests.conftest import CASES
-from tests.grader.language.known import unknown
+from tests.grader.languages.holes import unknown
 from turtlesim_py.world import events
 from turtlesim_py.world.trajectory import Trajectory
 
@@ -103,32 +100,8 @@ def test_whatever_was_recorded_is_judged(name, nominal, varied):
         warnings.simplefilter("ignore", RuntimeWarning)  # numpy's, about numbers that are none
         found = judge(asked, exercise.checks, exercise.points, exercise.tolerances)
     assert {verdict.status for verdict in found} <= {"passed", "failed", "not_judged"}
-    assert not any("fault of the exercise" in verdict.rationale for verdict in found)
+    assert not any("fault of the exercise" in str(verdict.rationale) for verdict in found)
     assert unknown(found) == []  # to translators
-
-
-ROBOT = load_exercise("state_publisher")
-names = st.sampled_from(["swivel", "tilt", "periscope", "odom", "axis", "", "/a", "ü", "a" * 3000])
-sizes = st.sampled_from([0.0, 1.0, -2.5, 1e-320, 1e300, np.inf, -np.inf, np.nan])
-stamps = st.sampled_from([0, 1, EPOCH_NS, EPOCH_NS - 1, (2**31 - 1) * 10**9])
-placed = st.builds(Placed, stamps, names, names, st.tuples(*[sizes] * 3), st.tuples(*[sizes] * 4))
-messages = st.one_of(
-    st.builds(joint_state, stamps, st.lists(names, max_size=5), st.lists(sizes, max_size=5)),
-    st.lists(placed, max_size=3).map(lambda each: tf(*each)),
-)
-
-
-@pytest.mark.timeout(4 * CASES)
-@settings(max_examples=CASES)
-@given(said=st.lists(st.tuples(st.integers(1, TICKS), messages), max_size=30))
-def test_whatever_a_robot_has_said_is_judged(said):
-    trace = drive_robot(
-        lambda tick, _: [each for at, each in said if at == tick], TICKS, ROBOT.setting
-    )
-    asked = Recordings(Recording(trace, scene="robot"))
-    found = judge(asked, ROBOT.checks, ROBOT.points, ROBOT.tolerances)
-    assert not any("fault of the exercise" in verdict.rationale for verdict in found)
-    assert unknown(found) == []
 
 
 def test_a_hundred_thousand_inputs_are_judged():
@@ -145,4 +118,4 @@ def test_a_hundred_thousand_inputs_are_judged():
         varied = tuple(replace(recording, start=start) for start in exercise.starts())
         asked = Recordings(recording, varied)
         found = judge(asked, exercise.checks, exercise.points, exercise.tolerances)
-        assert not any("fault of the exercise" in verdict.rationale for verdict in found)
+        assert not any("fault of the exercise" in str(verdict.rationale) for verdict in found)

@@ -16,10 +16,10 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from grader.recording import bag, saving
-from grader.recording.recording import Recording
+from grader.recording.bag import types_of
+from grader.recording.recording import Recording, Recordings
 from grader.recording.rosbag2_writer import Rosbag2Writer
 from grader.scenes import load_scene
-from grader.scenes.message_types import types_of
 from grader.scenes.turtlesim import messages as bag_messages
 from tests.grader.driving import drive, pen, twist
 
@@ -61,7 +61,7 @@ def recorded() -> Recording:
 @pytest.fixture(scope="module")
 def folder(recorded, tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("bag") / "recording"
-    saving.save(recorded, folder)
+    saving.save_all(Recordings(recorded), folder)
     return folder
 
 
@@ -280,13 +280,13 @@ def test_it_is_the_bag_that_rosbags_writes_message_by_message(tmp_path):
     with writer:
         for topic, msgtype in scene.bag_topics(trace):
             connections[topic] = writer.add_connection(topic, msgtype, typestore=types)
-        for tick, topic, msgtype, message in scene.to_messages(trace):
+        for time_ns, topic, msgtype, data in scene.to_messages(trace):
             if topic not in connections:
                 connections[topic] = writer.add_connection(topic, msgtype, typestore=types)
-            if isinstance(message, bytes):
-                message = types.deserialize_cdr(message, msgtype)
-            data = types.serialize_cdr(message, msgtype, little_endian=True)
-            writer.write(connections[topic], tick * scene.tick_ns, data)
+            again = types.serialize_cdr(
+                types.deserialize_cdr(data, msgtype), msgtype, little_endian=True
+            )
+            writer.write(connections[topic], time_ns, again)
     with quick.open("rb") as stream:
         assert len(make_reader(stream).get_summary().chunk_indexes) > 2
     for name in ("recording.mcap", "metadata.yaml"):

@@ -14,13 +14,12 @@ import yaml
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from grader import cli
+from grader import cli, content
 from grader.errors import RecordingError
 from grader.recording import bag, reading, saving
-from grader.recording.conduct import Conduct, End, Place, Stop
-from grader.recording.folder import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA, sha256_of
-from grader.recording.provenance import Provenance
-from grader.recording.recording import Recording, Recordings
+from grader.recording.folder import BAG, CIRCUMSTANCES_FILE, FILES, OUTPUT, RUN, SCHEMA
+from grader.recording.observations import End, Observations, SourceLine, Standstill
+from grader.recording.recording import Provenance, Recording, Recordings
 from grader.scenes.package.trace import PackageTrace
 from grader.scenes.turtlesim.trace import Log
 from grader.strict_json import to_json
@@ -30,24 +29,26 @@ from turtlesim_py.world.trajectory import Trajectory
 
 TICKS = 200
 CIRCUMSTANCES = "circumstances.json"
-CONDUCT = Conduct(
-    is_told=True,
-    ends=(End("publisher", "/pose", "turtlesim/msg/Pose", False, 3, Place("a.py", 7)),),
-    stop=Stop("callback", 1.5, "Client.call", Place("a.py", 9, "on_pose", "self.pen.call(red)")),
+OBSERVATIONS = Observations(
+    is_known=True,
+    ends=(End("publisher", "/pose", "turtlesim/msg/Pose", False, 3, SourceLine("a.py", 7)),),
+    stop=Standstill(
+        "callback", 1.5, "Client.call", SourceLine("a.py", 9, "on_pose", "self.pen.call(red)")
+    ),
 )
 PACKAGE = PackageTrace(others=("beside",))
 
 
 @pytest.fixture(scope="module")
 def recorded() -> Recording:
-    return replace(drive(Spiral(), ticks=TICKS), conduct=CONDUCT, package=PACKAGE)
+    return replace(drive(Spiral(), ticks=TICKS), observations=OBSERVATIONS, package=PACKAGE)
 
 
 @pytest.fixture(scope="module")
 def saved(recorded, tmp_path_factory) -> Path:
     """As `save` has left it; not to be changed."""
     folder = tmp_path_factory.mktemp("saved") / "recording"
-    saving.save(recorded, folder)
+    saving.save_all(Recordings(recorded), folder)
     return folder
 
 
@@ -83,19 +84,19 @@ def test_two_saves_of_a_recording_are_the_same_byte_for_byte(recorded, tmp_path)
 
 
 def test_equal_runs_make_equal_files(recorded, folder, tmp_path):
-    again = replace(drive(Spiral(), ticks=TICKS), conduct=CONDUCT, package=PACKAGE)
-    saving.save(again, tmp_path / "again")
+    again = replace(drive(Spiral(), ticks=TICKS), observations=OBSERVATIONS, package=PACKAGE)
+    saving.save_all(Recordings(again), tmp_path / "again")
     assert contents(tmp_path / "again") == contents(folder)
 
 
 def test_a_loaded_recording_saves_as_the_same_files(folder, tmp_path):
-    saving.save(reading.load(folder), tmp_path / "again")
+    saving.save_all(Recordings(reading.load(folder)), tmp_path / "again")
     assert contents(tmp_path / "again") == contents(folder)
 
 
 def test_what_differs_between_equal_runs_stands_apart(recorded, folder, tmp_path):
     other = replace(recorded, run=replace(recorded.run, wall_s=12.5, isolation="ROS domain 77"))
-    saving.save(other, tmp_path / "other")
+    saving.save_all(Recordings(other), tmp_path / "other")
     ours, theirs = contents(folder), contents(tmp_path / "other")
     assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
     assert reading.load(tmp_path / "other").run == other.run
@@ -117,7 +118,7 @@ PROVENANCE = Provenance(
 
 
 def test_where_it_comes_from_is_a_circumstance_and_comes_back(recorded, folder, tmp_path):
-    saving.save(replace(recorded, provenance=PROVENANCE), tmp_path / "other")
+    saving.save_all(Recordings(replace(recorded, provenance=PROVENANCE)), tmp_path / "other")
     ours, theirs = contents(folder), contents(tmp_path / "other")
     assert {name for name in ours if ours[name] != theirs[name]} == {CIRCUMSTANCES}
     assert reading.load(tmp_path / "other").provenance == PROVENANCE
@@ -149,7 +150,7 @@ def test_pictures_and_scenario_are_copies_that_nobody_reads(recorded, folder):
 def test_the_metadata_comes_last(recorded, folder, monkeypatch):
     rename, moved = Path.replace, []
     monkeypatch.setattr(Path, "replace", lambda a, b: moved.append(b.name) or rename(a, b))
-    saving.save(recorded, folder)
+    saving.save_all(Recordings(recorded), folder)
     assert moved[-1] == "metadata.yaml"
 
 
@@ -179,7 +180,7 @@ def test_an_older_recording_stays_whole_until_the_new_one_is_written(recorded, f
 
     monkeypatch.setattr(bag, "write", disk_full)
     with pytest.raises(OSError, match="no space left"):
-        saving.save(recorded, folder)
+        saving.save_all(Recordings(recorded), folder)
     assert contents(folder) == before
 
 
@@ -207,7 +208,7 @@ def test_what_a_killed_save_left_behind_goes_with_the_next(recorded, folder):
     before = contents(folder)
     (folder / saving.UNFINISHED / "recording").mkdir(parents=True)
     (folder / saving.UNFINISHED / "recording" / "metadata.yaml").write_text("half of it")
-    saving.save(recorded, folder)
+    saving.save_all(Recordings(recorded), folder)
     assert contents(folder) == before
 
 
@@ -284,7 +285,7 @@ def test_a_damaged_bag_whose_digest_fits_is_an_error_or_harmless(folder, place):
     start = len(whole) * place // 100
     whole[start : start + 9] = b"\xff" * 9
     path.write_bytes(whole)
-    change(folder / "run.json", bag_sha256=sha256_of(path))
+    change(folder / "run.json", bag_sha256=content.of_file(path))
     try:
         reading.load(folder)
     except RecordingError as error:
@@ -346,7 +347,9 @@ def test_a_pipe_is_refused_and_not_waited_for(folder, name):
 
 def test_a_scene_that_is_not_known_is_named(folder):
     change(folder / "run.json", scene="moon")
-    assert "there is no scene 'moon'; there are: turtlesim" in refused(folder)
+    assert "grader.scenes: there is no 'moon'; there are: package, robot, turtlesim" in refused(
+        folder
+    )
 
 
 def test_the_usual_scene_may_be_named(recorded, folder):
@@ -380,7 +383,7 @@ def test_a_bag_of_the_right_name_with_other_messages_is_an_error(folder, tmp_pat
     foreign_bag(other, StoragePlugin.MCAP, "/turtlesim/events", "std_msgs/msg/String", text)
     for name in ("recording.mcap", "metadata.yaml"):
         (other / name).replace(folder / name)
-    change(folder / "run.json", bag_sha256=sha256_of(folder / "recording.mcap"))
+    change(folder / "run.json", bag_sha256=content.of_file(folder / "recording.mcap"))
     assert "holds no recording" in refused(folder)
 
 
@@ -402,7 +405,7 @@ def test_a_bag_that_unpacks_to_more_than_there_is_room_for_is_refused(
     recorded, tmp_path, monkeypatch
 ):
     bomb = replace(recorded.trace, logs=(Log(1, "INFO", "bomb", "a" * 2**27),))
-    saving.save(replace(recorded, trace=bomb), tmp_path)
+    saving.save_all(Recordings(replace(recorded, trace=bomb)), tmp_path)
     assert (tmp_path / BAG).stat().st_size < 2**20
     brief = replace(reading.READING, memory_bytes=2**26)
     monkeypatch.setattr(reading, "READING", brief)
@@ -457,7 +460,7 @@ HOSTILE = {
 def test_an_input_that_cannot_have_come_is_refused(recorded, tmp_path, event):
     trace = replace(recorded.trace, events=(*recorded.trace.events, event))
     run = replace(recorded.run, trace_sha256=trace.sha256())
-    saving.save(replace(recorded, trace=trace, run=run), tmp_path)
+    saving.save_all(Recordings(replace(recorded, trace=trace, run=run)), tmp_path)
     with pytest.raises(RecordingError, match="holds no recording"):
         reading.load(tmp_path)
 
@@ -468,7 +471,7 @@ def test_a_way_with_impossible_ticks_is_refused(recorded, tmp_path, ticks):
     rows[:, 0] = ticks
     trace = replace(recorded.trace, trajectories={"turtle1": Trajectory.of_rows(rows)})
     run = replace(recorded.run, trace_sha256=trace.sha256())
-    saving.save(replace(recorded, trace=trace, run=run), tmp_path)
+    saving.save_all(Recordings(replace(recorded, trace=trace, run=run)), tmp_path)
     with pytest.raises(RecordingError, match="ticks"):
         reading.load(tmp_path)
 
@@ -483,7 +486,7 @@ def test_an_input_that_is_nested_without_measure_is_refused(recorded, tmp_path, 
         "grader.scenes.turtlesim.messages.json.dumps",
         lambda words, **how: real(words, **how).replace(f'"value": "{name}"', f'"value": {deep}'),
     )
-    saving.save(replace(recorded, trace=trace), tmp_path)
+    saving.save_all(Recordings(replace(recorded, trace=trace)), tmp_path)
     monkeypatch.undo()
     with pytest.raises(RecordingError):
         reading.load(tmp_path)
@@ -493,13 +496,13 @@ def test_an_input_that_is_nested_without_measure_is_refused(recorded, tmp_path, 
 
 
 def test_what_the_process_told_comes_back(folder):
-    assert reading.load(folder).conduct == CONDUCT
+    assert reading.load(folder).observations == OBSERVATIONS
 
 
 def test_a_recording_of_which_nothing_was_told_has_no_file_for_it(recorded, folder):
-    saving.save(replace(recorded, conduct=Conduct()), folder)
-    assert not (folder / "conduct.json").exists()
-    assert reading.load(folder).conduct == Conduct()
+    saving.save_all(Recordings(replace(recorded, observations=Observations())), folder)
+    assert not (folder / "observations.json").exists()
+    assert reading.load(folder).observations == Observations()
 
 
 def test_what_was_found_of_a_package_is_read_back_and_nothing_else_taken_for_it(folder):
@@ -511,9 +514,8 @@ def test_what_was_found_of_a_package_is_read_back_and_nothing_else_taken_for_it(
     assert reading.load(folder).package is None
 
 
-def test_a_conduct_of_another_form_is_refused_by_name(folder):
-    change(folder / "conduct.json", spun_s="soon")
-    with pytest.raises(
-        RecordingError, match=r"conduct\.json is damaged: spun_s: expected a number, found 'soon'"
-    ):
+def test_observations_of_another_form_are_refused_by_name(folder):
+    change(folder / "observations.json", spun_s="soon")
+    damage = r"observations\.json is damaged: spun_s: expected a number, found 'soon'"
+    with pytest.raises(RecordingError, match=damage):
         reading.load(folder)

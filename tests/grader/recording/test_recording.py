@@ -10,15 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.message import msg, plain_text
 from grader.recording import reading, saving
 from grader.recording.recording import PublishedTopic, Recording, Recordings, Run
+from grader.recording.subject import Start
 from grader.run.finish import Ending, record
-from grader.run.plan import Plan
-from grader.scenes.scene import Limits, Start
+from grader.run.handover import Plan
+from grader.scenes.scene import Limits
 from tests.grader.driving import Spiral, drive, twist
 from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_traces, texts
-from turtlesim_py.replay import replay
-from turtlesim_py.scenario import read
+from turtlesim_py.scenario import read, replay
 from turtlesim_py.world.floats import json_number
 from turtlesim_py.world.trajectory import Trajectory
 
@@ -30,7 +31,7 @@ def recorded() -> Recording:
 
 @pytest.fixture
 def folder(recorded, tmp_path):
-    saving.save(recorded, tmp_path / "recording")
+    saving.save_all(Recordings(recorded), tmp_path / "recording")
     return tmp_path / "recording"
 
 
@@ -72,13 +73,13 @@ def test_every_kind_of_input_survives_in_its_order(tmp_path):
     ops = {event.op for event in recorded.trace.events}
     assert ops > {"cmd_vel", "spawn", "kill", "cancel"}
     assert np.isnan(recorded.trace.trajectory("zoë/second").x).any()
-    saving.save(recorded, tmp_path)
+    saving.save_all(Recordings(recorded), tmp_path)
     assert_same(reading.load(tmp_path), recorded)
 
 
 def test_the_facts_about_a_run_survive(recorded, tmp_path):
     ticks, simulated_s = recorded.run.ticks, recorded.run.simulated_s
-    told = ("ROS domain 77", ("odd", "ü"), 42, "i")
+    told = ("ROS domain 77", (plain_text("odd"), msg("ü {at}", at=1.5)), 42, "i")
     run = Run("virtual", "crashed", -11, ticks, simulated_s, 1.5, recorded.run.trace_sha256, *told)
     changed = replace(
         recorded,
@@ -88,7 +89,7 @@ def test_the_facts_about_a_run_survive(recorded, tmp_path):
         output="one\r\ntwo\rthree\x00\x1b[31m \ud800 é",
     )
     assert all(getattr(run, f.name) != getattr(Run(), f.name) for f in fields(Run))
-    saving.save(changed, tmp_path)
+    saving.save_all(Recordings(changed), tmp_path)
     assert_same(reading.load(tmp_path), changed)
 
 
@@ -101,7 +102,7 @@ def test_a_recording_without_a_single_tick_survives(recorded, tmp_path):
         trajectories={"a": Trajectory.of_rows(np.zeros((0, 9)))},
     )
     empty = replace(recorded, trace=nothing, run=Run(trace_sha256=nothing.sha256()))
-    saving.save(empty, tmp_path)
+    saving.save_all(Recordings(empty), tmp_path)
     assert_same(reading.load(tmp_path), empty)
 
 
@@ -111,9 +112,11 @@ def test_any_file_of_a_recording_names_it(recorded, folder):
 
 def test_the_hash_depends_on_what_happened_only(recorded, folder):
     loaded = reading.load(folder)
-    ending = Ending("virtual", "crashed", 1, 99.0, "elsewhere", "more output", ("odd",))
-    plan = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), seed=7, flags=("odder",))
-    again = record(plan, loaded.trace, (), ending)
+    run = Run(
+        "virtual", "crashed", 1, wall_s=99.0, isolation="elsewhere", flags=(plain_text("odd"),)
+    )
+    plan = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), seed=7, flags=(plain_text("odder"),))
+    again = record(plan, loaded.trace, (), Ending(run, "more output"))
     assert again.run.trace_sha256 == recorded.run.trace_sha256
     other = drive(Spiral(), ticks=500)
     assert other.run.trace_sha256 != recorded.run.trace_sha256
@@ -131,13 +134,13 @@ def test_inputs_that_came_after_the_last_tick_do_not_spoil_the_scenario(recorded
     trace = recorded.trace
     late = replace(trace.events[-1], tick=trace.ticks + 1)
     late_one = replace(trace, events=(*trace.events, late))
-    saving.save(replace(recorded, trace=late_one), tmp_path)
+    saving.save_all(Recordings(replace(recorded, trace=late_one)), tmp_path)
     replay(read(tmp_path / "scenario.json"))
 
 
 def test_a_run_that_started_elsewhere_has_no_scenario(recorded, tmp_path):
-    saving.save(recorded, tmp_path)
-    saving.save(replace(recorded, start=Start(1.0, 2.0, 3.0)), tmp_path)
+    saving.save_all(Recordings(recorded), tmp_path)
+    saving.save_all(Recordings(replace(recorded, start=Start(1.0, 2.0, 3.0))), tmp_path)
     assert not (tmp_path / "scenario.json").exists()
 
 
@@ -163,7 +166,7 @@ def odd_recordings(draw) -> Recording:
         output=draw(st.text()),
         run=Run(
             ticks=trace.ticks,
-            simulated_s=trace.simulated_s,
+            simulated_s=trace.duration_ns / 1e9,
             trace_sha256=trace.sha256(),
             seed=draw(st.none() | st.integers()),
         ),
@@ -174,7 +177,7 @@ def odd_recordings(draw) -> Recording:
 @given(odd=odd_recordings())
 def test_odd_values_survive_bit_for_bit(tmp_path_factory, odd):
     folder = tmp_path_factory.mktemp("odd")
-    saving.save(odd, folder)
+    saving.save_all(Recordings(odd), folder)
     loaded = reading.load(folder)
     assert_same(loaded, odd)
     assert loaded.trace.sha256() == odd.trace.sha256()

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from rosbags.rosbag2 import Reader
 
 from grader.recording import bag, rosbag2_reader
+from grader.recording.channel import Channel
 from grader.scenes import load_scene
-from grader.scenes.channel import Channel
+from grader.scenes.scene import STEP_NS
 from tests.grader.driving import Spiral, drive, twist
 
 SCENE = load_scene("turtlesim")
-TICK_NS = SCENE.tick_ns
 #: Where in its head a message says what it is, and how long.
 OPCODE, LENGTH, CHANNEL = 0, 1, 9
 
@@ -59,19 +59,19 @@ def chunks(written):
 
 def columns(channels: list[Channel]) -> dict[str, list[tuple[int, bytes]]]:
     return {
-        channel.topic: list(zip(channel.ticks.tolist(), channel.messages(), strict=True))
+        channel.topic: list(zip(channel.times_ns.tolist(), channel.messages(), strict=True))
         for channel in channels
     }
 
 
 def test_it_finds_what_rosbags_finds_message_by_message(written):
-    channels = rosbag2_reader.read(written, TICK_NS)
+    channels = rosbag2_reader.read(written)
     with Reader(written.parent) as reader:
-        expected = [(c.topic, t // TICK_NS, bytes(data)) for c, t, data in reader.messages()]
+        expected = [(c.topic, time, bytes(data)) for c, time, data in reader.messages()]
         topics = [(c.topic, c.msgtype) for c in reader.connections]
     assert [(channel.topic, channel.msgtype) for channel in channels] == topics
     for topic, found in columns(channels).items():
-        assert found == [(tick, data) for where, tick, data in expected if where == topic]
+        assert found == [(time, data) for where, time, data in expected if where == topic]
     places = {n: c.topic for c in channels for n in c.places.tolist()}
     assert [places[n] for n in range(len(places))] == [topic for topic, _, _ in expected]
 
@@ -101,7 +101,7 @@ def test_an_index_that_leads_elsewhere_is_refused(chunks, by):
 def test_an_index_with_another_time_is_refused(chunks):
     chunk, index = chunks[0]
     wrong = {channel: rows.copy() for channel, rows in index.items()}
-    next(iter(wrong.values()))[3, 0] += np.uint64(TICK_NS)
+    next(iter(wrong.values()))[3, 0] += np.uint64(STEP_NS)
     with pytest.raises(ValueError, match="tells of messages"):
         rosbag2_reader._messages(chunk, wrong)
 
@@ -170,7 +170,7 @@ def test_metadata_that_is_not_that_of_the_bag_is_refused(written, tmp_path, chan
     data["rosbag2_bagfile_information"].update(changed)
     mcap.with_name("metadata.yaml").write_text(yaml.safe_dump(data))
     with pytest.raises((ValueError, TypeError)):
-        rosbag2_reader.read(mcap, TICK_NS)
+        rosbag2_reader.read(mcap)
 
 
 def test_metadata_that_would_make_an_object_makes_none(written, tmp_path):
@@ -178,4 +178,4 @@ def test_metadata_that_would_make_an_object_makes_none(written, tmp_path):
     mcap.write_bytes(written.read_bytes())
     mcap.with_name("metadata.yaml").write_text("!!python/object/apply:os.system ['false']")
     with pytest.raises(yaml.YAMLError):
-        rosbag2_reader.read(mcap, TICK_NS)
+        rosbag2_reader.read(mcap)

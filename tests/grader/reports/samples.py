@@ -7,10 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from grader.recording import saving
-from grader.recording.recording import Recording
-from grader.reports import Report
+from grader.recording.recording import Recording, Recordings
+from grader.reports import Report, names
 from grader.reports.beside import Beside
 from grader.result.result import Result
+
+#: The formats that are installed.
+FORMATS = names()
 
 #: The environment that Classroom 50 gives to an autograder.
 CLASSROOM50 = {
@@ -116,9 +119,7 @@ def graded(
     **more: Any,
 ) -> Path:
     """A result file with a recording, a picture and an output beside it, as `grader run` leaves."""
-    saving.save(recording, folder / "recording")
-    for number, other in enumerate(varied, 1):
-        saving.save(other, folder / "recording" / f"varied_{number}")
+    saving.save_all(Recordings(recording, tuple(varied)), folder / "recording")
     (folder / "canvas.png").write_bytes(recording.png["window"])
     (folder / "output.txt").write_bytes(output.encode())
     artifacts = {"canvas": "canvas.png", "recording": "recording", "output": "output.txt"}

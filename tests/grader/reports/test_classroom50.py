@@ -1,11 +1,15 @@
 from __future__ import annotations
 
 import json
+from decimal import ROUND_HALF_UP, Decimal
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from grader.errors import UsageError
 from grader.reports import classroom50
+from grader.reports.classroom50 import whole_points
 from tests.grader.reports import readers, samples
 
 
@@ -62,3 +66,53 @@ def test_what_the_schema_would_refuse_is_refused_with_its_value(environment, nam
     environment(**{name: value})
     with pytest.raises(UsageError, match=f"{name} is '{value}'"):
         document()
+
+
+def whole(*pairs):
+    verdicts = [
+        samples.verdict(f"v{i}", "passed" if s == m else "failed", s, max_score=m)
+        for i, (s, m) in enumerate(pairs)
+    ]
+    return whole_points(samples.report(*verdicts).verdicts)
+
+
+def test_whole_points_stay_as_they_are():
+    points = whole((5, 5), (0, 25), (20, 20))
+    assert (points.scores, points.max_scores, points.factor) == ((5, 0, 20), (5, 25, 20), 1)
+
+
+def test_the_points_that_rounding_down_loses_go_where_most_was_lost():
+    # 33.33 + 8.4 + 2.3 = 44.03
+    points = whole((33.33, 50), (8.4, 10), (2.3, 5))
+    assert (points.scores, points.total) == ((33, 9, 2), 44)
+
+
+def test_the_total_is_rounded_half_up():
+    assert whole((12.5, 30), (70, 70)).total == 83
+    assert whole((12.49, 30), (70, 70)).total == 82
+
+
+def test_checks_worth_a_fraction_multiply_everything():
+    points = whole((2.5, 2.5), (1.25, 5))
+    assert (points.scores, points.max_scores, points.factor) == ((25, 13), (25, 50), 10)
+
+
+def test_nothing_judged_is_nothing():
+    assert whole_points([]).total == 0
+
+
+@given(
+    st.lists(
+        st.tuples(st.sampled_from([0, 1, 5, 10, 2.5, 33.33]), st.floats(0, 1)),
+        min_size=1,
+        max_size=10,
+    )
+)
+def test_parts_add_up_to_the_rounded_total_and_none_is_off_by_a_point(drawn):
+    pairs = [(round(most * share, 2), most) for most, share in drawn]
+    points = whole(*pairs)
+    exact = [Decimal(str(score)) * points.factor for score, _ in pairs]
+    assert points.total == int(sum(exact).to_integral_value(ROUND_HALF_UP))
+    for got, want, most in zip(points.scores, exact, points.max_scores, strict=True):
+        assert abs(got - want) < 1
+        assert 0 <= got <= most

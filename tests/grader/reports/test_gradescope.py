@@ -2,14 +2,15 @@ from __future__ import annotations
 
 import json
 
-from grader.reports import Report, gradescope
+from grader.reports import gradescope
+from grader.reports import read as read_report
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers, samples
 
 
 def test_students_see_the_picture_and_what_their_node_printed(tmp_path):
     path = samples.graded(tmp_path, drive(Spiral(), ticks=200), output="<b>Traceback</b>\n")
-    content = gradescope.render(Report.read(path))
+    content = gradescope.render(read_report(path))
     readers.gradescope(content)
     overview = json.loads(content)["output"]
     assert 'src="data:image/png;base64,' in overview

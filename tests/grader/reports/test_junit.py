@@ -2,7 +2,8 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from grader.reports import Report, junit
+from grader.reports import junit
+from grader.reports import read as read_report
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import verdict
@@ -34,7 +35,7 @@ def test_marks_of_xml_come_out_as_they_went_in():
 def test_the_picture_is_attached_to_what_failed_if_it_lies_in_the_project(tmp_path, monkeypatch):
     path = samples.graded(tmp_path / "graded", drive(Spiral(), ticks=200))
     monkeypatch.chdir(tmp_path)
-    said = [case.findtext("system-out") for case in cases(Report.read(path))]
+    said = [case.findtext("system-out") for case in cases(read_report(path))]
     assert ["[[ATTACHMENT|graded/canvas.png]]" in text for text in said] == [
         False,
         True,
@@ -42,7 +43,7 @@ def test_the_picture_is_attached_to_what_failed_if_it_lies_in_the_project(tmp_pa
         False,
     ]
     monkeypatch.chdir(tmp_path / "graded" / "recording")
-    assert "ATTACHMENT" not in junit.render(Report.read(path))
+    assert "ATTACHMENT" not in junit.render(read_report(path))
 
 
 def test_a_submission_attaches_nothing():

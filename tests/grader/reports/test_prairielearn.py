@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grader.reports import Report, prairielearn
+from grader.reports import prairielearn
+from grader.reports import read as read_report
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import verdict
@@ -20,7 +21,7 @@ def test_the_score_is_a_share():
 
 def test_the_picture_is_in_it(tmp_path):
     path = samples.graded(tmp_path, drive(Spiral(), ticks=200), output="printed")
-    content = prairielearn.render(Report.read(path))
+    content = prairielearn.render(read_report(path))
     readers.prairielearn(content)
     found = json.loads(content)
     assert found["images"][0]["url"].startswith("data:image/png;base64,")
@@ -32,7 +33,7 @@ def test_a_picture_of_noise_and_a_flood_of_output_still_fit(tmp_path):
     drawn = drive(Spiral(), ticks=200)
     recording = replace(drawn, trace=replace(drawn.trace, window=noise))
     path = samples.graded(tmp_path, recording, output="x" * 3_000_000)
-    content = prairielearn.render(Report.read(path))
+    content = prairielearn.render(read_report(path))
     readers.prairielearn(content)
     assert json.loads(content)["images"]
 

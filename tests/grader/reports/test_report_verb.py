@@ -25,7 +25,7 @@ def result(tmp_path):
 
 def test_without_a_format_it_is_for_the_terminal(result, capsys):
     assert main(["report", str(result)]) == 0
-    assert capsys.readouterr().out.startswith("First to mend: Rationale of draws.\n")
+    assert capsys.readouterr().out.startswith("Fix this first: Rationale of draws.\n")
 
 
 def test_a_format_goes_to_standard_output(result, capsysbinary):

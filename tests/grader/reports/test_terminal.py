@@ -20,7 +20,7 @@ def shown(result, width=80):
 def test_the_first_line_is_the_first_thing_to_mend_uncut():
     rationale = "word " * 60
     text = shown(samples.result(verdict("a", "failed", 0, rationale=rationale)))
-    assert text.splitlines()[0] == f"First to mend: {rationale.strip()}"
+    assert text.splitlines()[0] == f"Fix this first: {rationale.strip()}"
 
 
 def test_in_a_terminal_the_first_line_is_wrapped_at_words():
@@ -28,13 +28,18 @@ def test_in_a_terminal_the_first_line_is_wrapped_at_words():
     report = samples.report(verdict("a", "failed", 0, rationale="word " * 60))
     terminal.show(report, Console(file=out, width=80, force_terminal=True, color_system=None))
     lines = out.getvalue().splitlines()
-    assert {word for line in lines[:4] for word in line.split()} == {"First", "to", "mend:", "word"}
+    assert {word for line in lines[:4] for word in line.split()} == {
+        "Fix",
+        "this",
+        "first:",
+        "word",
+    }
     assert max(map(len, lines)) <= 80
 
 
 def test_with_nothing_to_mend_the_first_line_says_so():
     text = shown(samples.result(verdict("a")))
-    assert text.startswith("Nothing to mend: the only check passed.\n")
+    assert text.startswith("Nothing to fix: the only check passed.\n")
 
 
 @pytest.mark.parametrize("width", [80, 120])
@@ -111,7 +116,7 @@ def test_a_check_that_waits_for_none_says_why_it_is_not_judged():
 
 def test_markup_is_shown_and_not_obeyed():
     text = shown(samples.result(verdict("a", "failed", 0, rationale="[bold]x[/bold] [/red] [1]")))
-    assert text.startswith("First to mend: [bold]x[/bold] [/red] [1]\n")
+    assert text.startswith("Fix this first: [bold]x[/bold] [/red] [1]\n")
 
 
 def test_a_submission_cannot_speak_to_the_runner_of_a_ci_system():

@@ -11,19 +11,20 @@ import re
 import pytest
 
 from grader.cli import main
-from grader.exercise.late import LatePolicy
-from grader.reports import FORMATS, Report, render
+from grader.exercise.handing_in import LatePolicy
+from grader.reports import read as read_report
+from grader.reports import render
 from grader.reports.wording import duration
-from grader.result.handed_in import HandedIn
-from grader.result.result import Result
+from grader.result.result import HandedIn, Result
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
 from tests.grader.reports.readers import READERS
-from tests.grader.result.test_handed_in import DUE, LATE, POLICY
+from tests.grader.reports.samples import FORMATS
+from tests.grader.result.test_result import DUE, LATE, POLICY
 
 #: Made for teachers: a table of a class; and Gradescope hides what the file tells it to.
-FOR_STUDENTS = sorted(FORMATS.keys() - {"csv", "gradescope"})
+FOR_STUDENTS = sorted(set(FORMATS) - {"csv", "gradescope"})
 #: Whatever is said of a hidden check has this in it.
 MARK = "hush"
 TIMES = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ")
@@ -64,7 +65,7 @@ def written(folder, *verdicts, **more):
 
 
 def shown_in(name, path, view="student"):
-    content = render(name, [Report.read(path, view)])
+    content = render(name, [read_report(path, view=view)])
     if name == "github-autograding":
         content = base64.b64decode(content).decode()
     return TIMES.sub("", content)
@@ -78,7 +79,7 @@ def test_no_text_of_a_hidden_check_is_in_any_report_for_students(tmp_path, name,
     assert MARK not in content.lower()
     assert "17.77" not in content
     assert "31.7" in content  # what is not shown is told, by its points
-    assert READERS[name](render(name, [Report.read(path)])) == {"classroom50": 18}.get(name, 18.33)
+    assert READERS[name](render(name, [read_report(path)])) == {"classroom50": 18}.get(name, 18.33)
 
 
 @pytest.mark.parametrize("passed", [True, False], ids=["the rest passed", "the rest did not"])
@@ -107,13 +108,13 @@ def test_who_passed_what_is_shown_does_not_read_that_all_passed(tmp_path, name):
 def test_where_nothing_at_all_is_shown_nothing_is_earned_yet(tmp_path, name):
     path = written(tmp_path / "graded", secret())
     if name in FOR_STUDENTS:
-        assert READERS[name](render(name, [Report.read(path)])) == 0
+        assert READERS[name](render(name, [read_report(path)])) == 0
         assert MARK not in shown_in(name, path)
     if name == "prairielearn":
         assert json.loads(shown_in(name, path))["score"] == 0
 
 
-@pytest.mark.parametrize("name", sorted(FORMATS.keys() - {"csv"}))
+@pytest.mark.parametrize("name", sorted(set(FORMATS) - {"csv"}))
 def test_of_points_only_every_format_shows_the_points_and_no_finding(tmp_path, name):
     path = written(tmp_path / "graded", *samples.MIXED, secret("points_only"))
     content = shown_in(name, path)
@@ -121,11 +122,11 @@ def test_of_points_only_every_format_shows_the_points_and_no_finding(tmp_path, n
     for words in ("rationale", "help", "note"):
         assert f"the {MARK} {words}" not in content.lower()
     assert "What was found is not shown" in content
-    total = READERS[name](render(name, [Report.read(path)]))
+    total = READERS[name](render(name, [read_report(path)]))
     assert total == pytest.approx({"classroom50": 215}.get(name, 21.5))
 
 
-@pytest.mark.parametrize("name", sorted(FORMATS.keys() - {"csv"}))
+@pytest.mark.parametrize("name", sorted(set(FORMATS) - {"csv"}))
 def test_a_teacher_sees_all_and_what_students_see_of_it(tmp_path, name):
     path = written(tmp_path / "graded", *samples.MIXED, secret())
     content = shown_in(name, path, "whole").replace("\\", "")
@@ -143,7 +144,7 @@ def test_when_the_exercise_is_over_students_see_what_waited_for_that(tmp_path, n
     assert f"the {MARK} rationale" in content.lower()
     assert "not shown" not in content
     assert "students see it" not in content
-    total = READERS[name](render(name, [Report.read(path, "after_due")]))
+    total = READERS[name](render(name, [read_report(path, view="after_due")]))
     assert total == pytest.approx({"classroom50": 215}.get(name, 21.5))
 
 
@@ -153,7 +154,7 @@ def test_gradescope_hides_by_its_own_means_and_has_all_points(tmp_path):
         secret("points_only", "passed", 31.7) | {"check": "part", "title": "Part"},
     ]
     path = written(tmp_path / "graded", *samples.MIXED, secret(), *others)
-    content = render("gradescope", [Report.read(path)])
+    content = render("gradescope", [read_report(path)])
     assert READERS["gradescope"](content) == 56.37
     document = json.loads(content)
     tests = {test["name"].partition(":")[0]: test for test in document["tests"]}
@@ -216,7 +217,7 @@ def test_what_lateness_costs_does_not_tell_what_hidden_checks_gave(tmp_path):
         (HandedIn.of("4711", "", 1, DUE, POLICY), ["4711, attempt 1, handed in 2026-11-30 22:59:"]),
         (HandedIn.of("4711", "Zoë", 1, None, POLICY), ["Zoë, attempt 1."]),
         (
-            HandedIn("4711", "Zoë", 1, DUE.isoformat(), 300),
+            HandedIn("4711", "Zoë", 1, DUE, 300),
             ["Handed in 5 min late, which costs no points."],
         ),
     ],

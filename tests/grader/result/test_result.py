@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, replace
+from datetime import UTC, datetime, timedelta
 
 import pytest
 from hypothesis import given
@@ -9,13 +10,13 @@ from hypothesis import given
 from grader import reports
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.errors import UsageError
+from grader.exercise.handing_in import LatePolicy
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Evidence, Verdict
-from grader.recording.conduct import Place
-from grader.recording.provenance import Provenance
-from grader.recording.recording import Recordings, Run, Start
-from grader.result.provenance import Judged, Origin
-from grader.result.result import Result, RunSummary, build
+from grader.message import NOTHING, authored, joined, msg, msg_many, plain_text
+from grader.recording.observations import SourceLine
+from grader.recording.recording import Provenance, Recordings, Run, Start
+from grader.result.result import HandedIn, Judging, Result, ResultProvenance, RunSummary, build
 from grader.strict_json import to_json
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
@@ -51,11 +52,21 @@ def test_a_whole_number_may_be_written_as_a_float():
 
 
 def test_everything_comes_back_as_it_was(tmp_path):
-    seen = (Evidence(1, 0.016, 2.0, 3.0, "n", 1),)
-    verdict = Verdict("a", "A", "failed", 1.5, 4.0, "seen", "help", seen, ("b",))
-    run = RunSummary(exit_code=-9, outcome="killed", ticks=3, flags=("x",), seed=5)
+    seen = (Evidence(0.016, msg("n {at}", at=2), 2.0, 3.0, 1, tick=1),)
+    words = (plain_text("seen {as} it is"), msg_many("{n} help", "{n} helps", 2))
+    title = authored("A", {"fr": "Â"})
+    verdict = Verdict("a", title, "failed", 1.5, 4.0, *words, seen, ("b",))
+    run = RunSummary(exit_code=-9, outcome="killed", ticks=3, flags=(msg("x"),), seed=5)
     varied = replace(run, seed=None, start=Start(1.0, 2.0, 3.0))
-    cause = Diagnosis("k", "cause", "help", 1, 0.0, Place("d.py", 3, "f", "x = 1"), "a")
+    cause = Diagnosis(
+        "k",
+        joined([msg("cause"), "!"]),
+        msg("help"),
+        1,
+        0.0,
+        SourceLine("d.py", 3, "f", "x = 1"),
+        "a",
+    )
     parts = ((verdict,), run, (varied,), {"canvas": "c.png"})
     result = Result("e", "größe 🐢", 1.5, 4.0, *parts, diagnosis=cause)
     result.write(tmp_path / "new" / "result.json")
@@ -84,13 +95,13 @@ def test_the_interfaces_are_there_where_they_are_known(tmp_path):
 
 
 RECORDED = Provenance("2026-11-21T23:52:52Z", "0.1.0", "3.12.3", "7.1.6", seed=7)
-JUDGED = Judged("2026-11-22T10:00:00Z", "0.2.0", "b" * 64)
+JUDGED = Judging("2026-11-22T10:00:00Z", "0.2.0", "b" * 64)
 
 
 @pytest.mark.parametrize("recorded", [RECORDED, None])
 def test_where_it_comes_from_is_told_and_makes_no_other_result_of_it(tmp_path, recorded):
     result = Result.from_json(samples.result())
-    told = replace(result, provenance=Origin(JUDGED, recorded))
+    told = replace(result, provenance=ResultProvenance(JUDGED, recorded))
     told.write(tmp_path / "result.json")
     assert Result.read(tmp_path / "result.json").provenance == told.provenance
     assert told == result
@@ -167,13 +178,55 @@ def test_what_is_no_json_is_refused(tmp_path, text):
 def test_a_result_adds_up_its_verdicts_and_remarks_on_its_runs():
     recording = drive(Spiral(), ticks=50)
     crashed = replace(recording, run=replace(recording.run, outcome="crashed", exit_code=1))
-    verdicts = [Verdict(n, n, "failed", 3.33, 10.0, "") for n in ("a", "b", "c")]
+    verdicts = [Verdict(n, msg(n), "failed", 3.33, 10.0, NOTHING) for n in ("a", "b", "c")]
     exercise = load_exercise("turtlesim_challenge")
     varied = replace(recording, start=Start(1.0, 2.0, 0.5))
     result = build("s", exercise, Recordings(crashed, (varied,)), verdicts, {})
     assert (result.exercise, result.score, result.max_score) == ("turtlesim_challenge", 9.99, 30)
-    assert result.run.flags == ("The node ended with an error: exit code 1.",)
+    assert tuple(map(str, result.run.flags)) == ("The node ended with an error: exit code 1.",)
     assert isinstance(result.run, Run)
     assert result.varied_runs[0].start == Start(1.0, 2.0, 0.5)
     assert "start" not in to_json(result.run)
     assert result.provenance.judged.exercise_sha256 == exercise.sha256
+
+
+DUE = datetime(2026, 11, 30, 22, 59, tzinfo=UTC)
+POLICY = LatePolicy(DUE, 10, 10, 50)
+LATE = HandedIn.of("4711", "Zoë Müller", 2, DUE + timedelta(days=1, hours=3), POLICY)
+
+
+def with_it(handed_in, **more):
+    return Result.from_json(samples.result(**more) | {"handed_in": to_json(handed_in)})
+
+
+def test_a_result_keeps_whose_it_is():
+    assert (LATE.at.isoformat(), LATE.late_s) == ("2026-12-02T01:59:00+00:00", 97_200)
+    assert (LATE.days, LATE.deducted) == (2, 20)
+    result = with_it(LATE)
+    assert result.handed_in == LATE
+    assert Result.from_file(result.to_json()) == result
+
+
+@pytest.mark.parametrize(("score", "final"), [(87.5, 67.5), (20, 0), (3.25, 0)])
+def test_the_final_score_is_what_lateness_leaves_and_never_below_nothing(score, final):
+    listed = [samples.verdict("a", "failed", score, max_score=100)]
+    result = Result.from_json(samples.result(*listed) | {"handed_in": to_json(LATE)})
+    assert (result.score, result.final) == (score, final)
+
+
+def test_without_a_hand_in_or_a_policy_the_score_is_final():
+    assert Result.from_json(samples.result()).final == 18.33
+    assert with_it(HandedIn.of("4711", "", 1, None, POLICY)).final == 18.33
+    assert with_it(HandedIn.of("4711", "", 1, DUE, None)).final == 18.33
+
+
+def test_it_costs_what_the_exercise_says_now():
+    assert LATE.by(LatePolicy(DUE, 0, 1, 50)).deducted == 2
+    assert LATE.by(None).deducted == 0
+
+
+@pytest.mark.parametrize("at", ["2026-12-02T01:59:00", "soon"])
+def test_a_time_without_a_zone_is_no_time(at):
+    data = samples.result() | {"handed_in": to_json(LATE) | {"at": at}}
+    with pytest.raises(ValueError, match=at):
+        Result.from_json(data)

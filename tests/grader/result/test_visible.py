@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.diagnosis.costliest import costliest
-from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.diagnosis import Diagnosis, costliest
 from grader.exercise.loading import load_exercise
 from grader.exercise.verdict import Verdict
 from grader.judging import judge
+from grader.message import NOTHING, msg
 from grader.recording.recording import Recordings
+from grader.result.json_file import typed
 from grader.result.result import NotShown, Result, RunSummary
 from grader.result.visible import as_seen, student_view
-from grader.strict_json import OURS, from_json
 from grader.testing import drive, twist
 from tests.grader.reports import samples
 from tests.grader.testing import exercises
@@ -25,7 +25,7 @@ from tests.grader.testing import exercises
 def verdict(check, status="passed", visible="now", score=None, **more):
     earned = {"passed": 10.0}.get(status, 0.0) if score is None else score
     made = samples.verdict(check, status, earned, **more)
-    return replace(from_json(Verdict, made, OURS), visible=visible)
+    return replace(typed(Verdict, made), visible=visible)
 
 
 def result_of(*verdicts, diagnosis="costliest"):
@@ -37,7 +37,7 @@ def result_of(*verdicts, diagnosis="costliest"):
         round(sum(v.score for v in verdicts), 2),
         round(sum(v.max_score for v in verdicts), 2),
         tuple(verdicts),
-        from_json(RunSummary, samples.run(), OURS),
+        typed(RunSummary, samples.run()),
         diagnosis=found if any(not v.passed for v in verdicts) else None,
     )
 
@@ -50,14 +50,14 @@ def test_a_result_with_nothing_to_hide_is_shown_as_it_is():
 def test_of_points_only_title_status_and_points_stay():
     points = verdict("a", "failed", "points_only", 2.5, evidence=[samples.evidence("a gap")])
     (seen,) = student_view(result_of(points)).verdicts
-    assert (seen.check, seen.title, seen.status, seen.score, seen.max_score) == (
+    assert (seen.check, str(seen.title), seen.status, seen.score, seen.max_score) == (
         *("a", "Title of a", "failed"),
         *(2.5, 10),
     )
-    assert seen.rationale == (
+    assert str(seen.rationale) == (
         "“Title of a” did not pass in full. What was found is not shown: only its points are."
     )
-    assert (seen.help, seen.evidence) == ("", ())
+    assert (seen.help, seen.evidence) == (NOTHING, ())
 
 
 @pytest.mark.parametrize("visible", ["never", "after_due"])
@@ -86,11 +86,11 @@ def test_the_first_line_is_of_what_is_shown_and_tells_a_finding_if_it_may():
     seen = student_view(result_of(hidden, points, shown))
     assert seen.diagnosis.check == "shown"
     alone = student_view(result_of(hidden, points, verdict("shown")))
-    assert alone.diagnosis.cause.startswith("“Title of points” did not pass in full.")
+    assert str(alone.diagnosis.cause).startswith("“Title of points” did not pass in full.")
 
 
 def test_what_a_run_shows_by_itself_is_said_where_points_that_are_shown_are_lost():
-    crashed = Diagnosis("crashed", "You crashed.", "Mend it.")
+    crashed = Diagnosis("crashed", msg("You crashed."), msg("Mend it."))
     hidden = verdict("b", "failed", "never")
     lost = result_of(verdict("a", "failed"), hidden, diagnosis=crashed)
     assert student_view(lost).diagnosis == crashed
@@ -130,7 +130,9 @@ def twins(draw):
         one.append(drawn())
         is_hidden = visible == "never" or (visible == "after_due" and not after_due)
         other.append(drawn() if is_hidden else one[-1])
-    run = draw(st.sampled_from(["costliest", Diagnosis("crashed", "You crashed.", "Mend it.")]))
+    run = draw(
+        st.sampled_from(["costliest", Diagnosis("crashed", msg("You crashed."), msg("Mend it."))])
+    )
     return result_of(*one, diagnosis=run), result_of(*other, diagnosis=run), after_due
 
 
@@ -156,7 +158,7 @@ def test_a_result_says_what_students_see_of_it_and_no_remark_tells_that_all_pass
     whole, hiding = (judge(Recordings(ran), each) for each in (shown, exercise))
     assert [v.visible for v in hiding.verdicts] == ["now", "never"]
     assert all(v.passed for v in (*whole.verdicts, *hiding.verdicts))
-    assert "it costs no points" in " ".join(whole.run.flags)
-    assert "it costs no points" not in " ".join(hiding.run.flags)
+    assert "it costs no points" in " ".join(map(str, whole.run.flags))
+    assert "it costs no points" not in " ".join(map(str, hiding.run.flags))
     assert as_seen(hiding, "whole") is hiding
     assert Result.from_file(hiding.to_json()) == hiding

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from grader.recording.recording import Recording
-from grader.run.plan import Plan
-from grader.run.simulator.link import Patience
-from grader.scenes.scene import Limits, Start
+from grader.recording.subject import Start
+from grader.run.handover import Plan
+from grader.run.limits import Patience
+from grader.scenes.scene import Limits
 from tests import runs
 
 LIMITS = Limits(first_motion_s=3, rest_s=1, total_s=60)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from grader.run import audience, real_time, virtual_time
+from grader.recording.subject import Start
+from grader.run import real_time, simulator_process, virtual_time
+from grader.run.handover import Plan
 from grader.run.opening import open_submission
-from grader.run.plan import Plan
-from grader.scenes.scene import Limits, Start
-from grader.scenes.turtlesim.live.mirror import Mirror
+from grader.scenes.scene import Limits
+from grader.scenes.turtlesim.live import Mirror
 from tests.grader.run.conftest import LIMITS
 from tests.runs import SUBMISSIONS
-from turtlesim_py.live.feed import Whole
+from turtlesim_py.live.feed import News
 from turtlesim_py.world import picture
 
 
@@ -23,8 +24,8 @@ class Onlooker:
         self.speed = speed
         self.told: list[object] = []
         self.ticks: list[int] = []
-        self.wholes: list[Whole] = []
-        self.mirror = Mirror(lambda news: isinstance(news, Whole) and self.wholes.append(news))
+        self.wholes: list[News] = []
+        self.mirror = Mirror(lambda news: news.canvas and self.wholes.append(news))
 
     def begins(self, plan, time):
         self.told.append((plan.start, time))
@@ -59,7 +60,7 @@ def test_a_run_that_is_seen_is_the_same_run_and_is_seen_to_its_last_pixel(record
     assert (seen.run.time, seen.run.trace_sha256) == ("virtual", unseen.run.trace_sha256)
     assert (seen.run.outcome, seen.run.flags) == (unseen.run.outcome, unseen.run.flags)
     assert (seen.topics, seen.output) == (unseen.topics, unseen.output)
-    assert seen.conduct == unseen.conduct
+    assert seen.observations == unseen.observations
     assert onlooker.ticks == sorted(onlooker.ticks)
     assert onlooker.ticks[0] == 0
     assert np.array_equal(onlooker.window(), seen.trace.window)
@@ -91,5 +92,5 @@ def test_one_who_fails_is_told_nothing_more_and_the_run_goes_on(recorded):
 
 
 def test_nobody_costs_nothing():
-    with audience.seats(None, Plan(LIMITS), "virtual") as seat:
-        assert (seat.word, seat.fds) == ("", ())
+    with simulator_process.live_feed(None, Plan(LIMITS), "virtual") as feed:
+        assert (feed.argument, feed.fds) == ("", ())

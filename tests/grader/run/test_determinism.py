@@ -12,8 +12,8 @@ import pytest
 
 from grader.recording.recording import Run
 from grader.run import virtual_time
+from grader.run.handover import Plan
 from grader.run.opening import open_submission
-from grader.run.plan import Plan
 from grader.scenes.scene import Limits
 from tests import runs
 

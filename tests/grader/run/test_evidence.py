@@ -12,14 +12,13 @@ from itertools import count
 
 import pytest
 
-from grader import usage
-from grader.recording.conduct import Conduct
+from grader import linux
+from grader.recording.observations import LintFinding, Observations, SourceLine
 from grader.run import evidence
 from grader.run.evidence import open_evidence
+from grader.run.observe import account
 from grader.run.opening import open_submission
-from grader.run.student import account, loops
-from grader.submission.opening import Submission
-from grader.submission.start import Slip
+from grader.submission.start import Submission
 from tests.children import in_child
 
 PLACE = {"file": "a.py", "line": 2, "function": "", "text": "pass"}
@@ -41,20 +40,20 @@ def submission(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Submission]
         yield opened
 
 
-def told(submission: Submission, account: bytes = b"", dumped: bytes = b"") -> Conduct:
+def told(submission: Submission, account: bytes = b"", dumped: bytes = b"") -> Observations:
     """What is believed of what stands in the page."""
     with open_evidence() as evidence:
         if account:
             put(evidence.page, 1, account)
         os.write(evidence.page, dumped)
-        return evidence.conduct(submission, 1.5, computes=True)
+        return evidence.observations(submission, 1.5, computes=True)
 
 
 def put(page: int, number: int, data: bytes, length: int | None = None) -> None:
     """Write a half of the page, as anybody may."""
     length = len(data) if length is None else length
     head = account._HEAD.pack(account._checksum(number, data), number, length, False)
-    os.pwrite(page, head + data[: account.MOST_BYTES], account.HALF_BYTES * (number % 2))
+    os.pwrite(page, head + data[: account.MOST_BYTES], account.HALVES[number % 2])
 
 
 def say(**changes: object) -> bytes:
@@ -62,17 +61,17 @@ def say(**changes: object) -> bytes:
 
 
 def test_what_stands_in_the_account_is_told(submission: Submission) -> None:
-    conduct = told(submission, say())
-    assert conduct.is_told
-    assert [(end.name, end.used, end.is_met) for end in conduct.ends] == [("/a", 4, True)]
-    assert (conduct.spun_s, conduct.returned_s) == (0.5, 1.0)
+    observations = told(submission, say())
+    assert observations.is_known
+    assert [(end.name, end.used, end.is_met) for end in observations.ends] == [("/a", 4, True)]
+    assert (observations.spun_s, observations.returned_s) == (0.5, 1.0)
 
 
 def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission) -> None:
     lines = [PLACE, {**PLACE, "line": 1}]
     sent = [{"line": 0, "times": 104}, {"line": 1, "times": 1}]
-    conduct = told(submission, say(ends=[{**END, "lines": lines, "sent": sent}]))
-    (end,) = conduct.ends
+    observations = told(submission, say(ends=[{**END, "lines": lines, "sent": sent}]))
+    (end,) = observations.ends
     assert [place.line for place in end.lines] == [2, 1]
     assert [(burst.line, burst.times) for burst in end.sent] == [(0, 104), (1, 1)]
 
@@ -93,41 +92,40 @@ def test_from_which_lines_was_sent_what_is_told_in_order(submission: Submission)
 def test_lines_that_nothing_can_have_been_sent_from_are_not_believed(
     submission: Submission, lines: object, sent: object
 ) -> None:
-    assert told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])) == Conduct()
+    assert told(submission, say(ends=[{**END, "lines": lines, "sent": sent}])) == Observations()
 
 
 def test_what_was_seen_of_timers_and_exceptions_is_believed_by_its_form(
     submission: Submission,
 ) -> None:
     timer = {"place": PLACE, "period_s": 0.1, "times": 4}
-    caught = {"type": "E", "text": "", "time_s": 1, "times": 2, "place": PLACE, "by": None}
+    caught = {"type": "E", "text": "", "time_s": 1, "times": 2, "place": PLACE}
     right = {"ends": [{**END, "used_at": PLACE}], "timers": [timer], "caught": [caught]}
-    conduct = told(submission, say(**right))
-    assert [each.times for each in conduct.timers] == [4]
-    assert [(each.type, each.times, each.by) for each in conduct.caught] == [("E", 2, None)]
-    assert conduct.ends[0].used_at is not None
-    assert Conduct.from_json(json.loads(json.dumps(conduct.to_json()))) == conduct
+    observations = told(submission, say(**right))
+    assert [each.times for each in observations.timers] == [4]
+    assert [(each.type, each.times) for each in observations.caught] == [("E", 2)]
+    assert observations.ends[0].used_at is not None
+    assert Observations.from_json(json.loads(json.dumps(observations.to_json()))) == observations
     for wrong in (
         {"timers": [{**timer, "period_s": -1}]},
         {"caught": [{**caught, "times": 0.5}]},
         {"caught": [caught] * 101},
         {"ends": [{**END, "used_at": [7, PLACE]}]},
     ):
-        assert told(submission, say(**{**right, **wrong})) == Conduct()
+        assert told(submission, say(**{**right, **wrong})) == Observations()
 
 
 def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
     submission: Submission,
 ) -> None:
-    slip = Slip("unread", "stoped", "stopped", "a.py", 3, "self.stoped = True")
-    read = replace(submission, slips=(slip,))
-    (found,) = told(read, say()).slips
+    place = SourceLine("a.py", 3, "", "self.stoped = True")
+    read = replace(submission, lint_findings=(LintFinding("unread", "stoped", "stopped", place),))
+    (found,) = told(read, say()).lint_findings
     assert (found.kind, found.name, found.near) == ("unread", "stoped", "stopped")
-    assert (found.place.file, found.place.line) == (slip.file, slip.line)
-    assert found.place.text == slip.text
-    assert told(read) == Conduct()
+    assert found.place == place
+    assert told(read) == Observations()
     forged = {"kind": "unread", "name": "a", "near": "b", "place": PLACE}
-    assert told(read, say(slips=[forged])).slips == (found,)
+    assert told(read, say(lint_findings=[forged])).lint_findings == (found,)
 
 
 @pytest.mark.parametrize(
@@ -139,14 +137,14 @@ def test_what_the_source_shows_is_said_by_who_has_read_it_and_by_no_process(
         say().replace(b'"spun_s": 0.5', b'"spun_s": 1e999'),
         *(say(unheard_of=1), say(is_blind=True), say(ends=[{}]), say(stop={"place": None})),
         *(say(ends=[{**END, "kind": "friend"}]), say(ends=[{**END, "name": "x" * 301}])),
-        *(say(ends=[END] * 101), say(waits=[{}]), say(slow=[1]), say(is_told=False, extra=1)),
+        *(say(ends=[END] * 101), say(waits=[{}]), say(slow=[1]), say(is_known=False, extra=1)),
         say(ends=[{**END, "place": {**PLACE, "line": "2"}}]),
     ],
 )
 def test_of_a_process_that_tells_nonsense_nothing_is_told(
     submission: Submission, account: bytes
 ) -> None:
-    assert told(submission, account) == Conduct()
+    assert told(submission, account) == Observations()
 
 
 def test_the_newest_half_that_is_whole_counts(submission: Submission) -> None:
@@ -155,8 +153,8 @@ def test_the_newest_half_that_is_whole_counts(submission: Submission) -> None:
         put(page, 1, say(spun_s=1))
         put(page, 2, say(spun_s=2))
         put(page, 3, say(spun_s=3))
-        os.pwrite(page, b"?", account.HALF_BYTES + 100)  # killed in the middle of writing
-        assert evidence.conduct(submission, 1.5, computes=True).spun_s == 2
+        os.pwrite(page, b"?", account.HALVES[1] + 100)  # killed in the middle of writing
+        assert evidence.observations(submission, 1.5, computes=True).spun_s == 2
 
 
 @pytest.mark.parametrize("length", [0, 1, 2**31, 2**32 - 1])
@@ -164,7 +162,7 @@ def test_a_length_that_is_none_is_not_believed(submission: Submission, length: i
     with open_evidence() as evidence:
         page = evidence.page
         put(page, 1, say(), length)
-        assert evidence.conduct(submission, 1.5, computes=True) == Conduct()
+        assert evidence.observations(submission, 1.5, computes=True) == Observations()
 
 
 def test_nobody_makes_the_page_longer_or_shorter() -> None:
@@ -179,8 +177,7 @@ def kept(told: dict[str, object], times: int = 1) -> dict[str, object]:
     """What of an account comes through the page, as a process writes it."""
     page = account.make()
     try:
-        writer = account.Account(page)
-        writer.tell = lambda: json.loads(json.dumps(told))
+        writer = account.ProcessAccount(page, lambda: json.loads(json.dumps(told)))
         for _ in range(times):
             writer.write()
         found: dict[str, object] = json.loads(account.read(page)[0])
@@ -202,17 +199,16 @@ def test_what_there_is_no_room_for_is_left_out_in_an_order() -> None:
 
 def test_a_fork_tells_nothing() -> None:
     page = account.make()
-    writer = account.Account(page)
-    writer.tell = lambda: {"ends": []}
+    writer = account.ProcessAccount(page, lambda: {"ends": []})
     writer.write()
     in_child(writer.write)
-    assert len({os.pread(page, 16, begin) for begin in (0, account.HALF_BYTES)} - {bytes(16)}) == 1
+    assert len({os.pread(page, 16, begin) for begin in account.HALVES} - {bytes(16)}) == 1
     os.close(page)
 
 
 def test_the_last_one_is_known_as_such(submission: Submission) -> None:
     page = account.make()
-    writer = account.Account(page)
+    writer = account.ProcessAccount(page, dict)
     writer.write()
     assert not account.read(page)[1]
     writer.write(is_last=True)
@@ -222,7 +218,7 @@ def test_the_last_one_is_known_as_such(submission: Submission) -> None:
 
 def test_what_a_program_has_opened_in_its_place_is_left_alone(tmp_path) -> None:
     page = account.make()
-    writer = account.Account(page)
+    writer = account.ProcessAccount(page, dict)
     other = os.open(tmp_path / "its own", os.O_RDWR | os.O_CREAT)
     os.dup2(other, page)
     writer.write()
@@ -233,9 +229,8 @@ def test_what_a_program_has_opened_in_its_place_is_left_alone(tmp_path) -> None:
 
 def test_the_more_often_something_changes_the_less_often_it_is_written() -> None:
     page = account.make()
-    writer = account.Account(page)
-    written = []
-    writer.tell = lambda: {"n": written.append(1)}
+    written: list[int] = []
+    writer = account.ProcessAccount(page, lambda: {"n": written.append(1)})
     for _ in range(100_000):
         writer.changed()
     os.close(page)
@@ -251,7 +246,7 @@ def test_texts_are_told_in_one_line_that_can_be_shown(submission: Submission) ->
 
 
 def test_of_a_process_that_tells_nothing_nothing_is_told(submission: Submission) -> None:
-    assert told(submission) == Conduct()
+    assert told(submission) == Observations()
 
 
 def test_bytes_of_any_kind_are_never_our_failure(submission: Submission) -> None:
@@ -272,7 +267,7 @@ def test_a_dump_has_so_much_room_and_no_more(submission: Submission) -> None:
             while True:
                 sent += os.write(evidence.page, b"x" * 1000)
         assert sent == account.DUMP_BYTES
-        assert evidence.conduct(submission, 0.0, computes=True).is_told
+        assert evidence.observations(submission, 0.0, computes=True).is_known
 
 
 def dump(submission: Submission, *frames: tuple[str, int, str]) -> bytes:
@@ -284,11 +279,11 @@ def dump(submission: Submission, *frames: tuple[str, int, str]) -> bytes:
 def test_a_loop_is_shown_where_it_begins(submission: Submission) -> None:
     file = str(submission.root / "a.py")
     for line in (1, 2):
-        conduct = told(submission, b"", dump(submission, (file, line, "<module>")))
-        assert conduct.stop is not None
-        assert conduct.stop.place is not None
-        assert (conduct.stop.place.line, conduct.stop.place.text) == (1, "while True:")
-        assert conduct.stop.time_s == 1.5
+        observations = told(submission, b"", dump(submission, (file, line, "<module>")))
+        assert observations.stop is not None
+        assert observations.stop.place is not None
+        assert (observations.stop.place.line, observations.stop.place.text) == (1, "while True:")
+        assert observations.stop.time_s == 1.5
 
 
 def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
@@ -299,15 +294,15 @@ def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
         # each look finds it where the last one did; every fifth time it has come to a line more
         looks = count(1)
 
-        def look(pid: int) -> usage.Usage:
+        def look(pid: int) -> linux.ProcessStat:
             number = next(looks)
             line = next(lines, None) if number % 5 == 0 else None
             if line is not None:
                 os.write(heard.page, line + b"\n")
-            return usage.Usage(0.0 if number < 20 else number, "R")
+            return linux.ProcessStat(0.0 if number < 20 else number, "R")
 
-        monkeypatch.setattr(evidence.usage, "look", look)
-        monkeypatch.setattr(evidence, "asking_signal", lambda: signal.SIGCONT)
+        monkeypatch.setattr(evidence.linux, "process_stat", look)
+        monkeypatch.setattr(account, "DUMP_SIGNAL", signal.SIGCONT)
         monkeypatch.setattr(evidence, "QUIET_S", 0.01)
         monkeypatch.setattr(evidence, "PATIENCE_S", 0.01)
         heard.ask(os.getpid())
@@ -315,60 +310,19 @@ def test_a_process_that_waits_for_a_processor_is_heard_to_the_end(
     assert len(said) == 2
 
 
+def test_a_link_that_leads_to_itself_or_out_is_no_source(submission: Submission) -> None:
+    for name, to in (("itself.py", "itself.py"), ("out.py", "/etc/passwd")):
+        link = submission.root / name
+        link.symlink_to(to)
+        found = told(submission, b"", dump(submission, (str(link), 1, "f"))).stop
+        assert found is not None
+        assert found.place == SourceLine(name, 1, "f", "")
+        link.unlink()
+
+
 def test_what_lies_beside_a_submission_is_none_of_its_own(submission: Submission) -> None:
     file = f"{submission.root}/../secret.py"
-    assert told(submission, b"", dump(submission, (file, 1, "f"))) == Conduct(is_told=True)
+    assert told(submission, b"", dump(submission, (file, 1, "f"))) == Observations(is_known=True)
     for name in ("../secret.py", "/etc/passwd", "a/../../b.py"):
         place = {**PLACE, "file": name}
-        assert told(submission, say(ends=[{**END, "place": place}])) == Conduct()
-
-
-NESTED = """\
-def drive():
-    for turn in range(4):
-        while True:
-            if turn:
-
-    # a comment
-                step(turn)
-    return 1
-
-x = 2
-""".splitlines()
-
-
-@pytest.mark.parametrize(("line", "found"), [(7, [3, 2]), (3, [3, 2]), (2, [2]), (8, []), (10, [])])
-def test_the_loops_round_a_line_are_found_by_indentation(line: int, found: list[int]) -> None:
-    assert loops.around(NESTED, line) == found
-
-
-SPIN = loops.Seen("/x/rclpy/executors.py", "spin_once", 9, None)
-FOR_EVER = loops.Seen("/x/rclpy/__init__.py", "spin", 9, None)
-CALLBACK = loops.Seen("/x/rclpy/task.py", "__call__", 9, None)
-SLEEP = loops.Seen("/x/time.py", "sleep", 9, None)
-
-
-def at(line: int, function: str = "drive") -> loops.Seen:
-    return loops.Seen("/a/a.py", function, line, NESTED)
-
-
-@pytest.mark.parametrize(
-    ("frames", "found"),
-    [
-        ([SPIN, at(8)], None),
-        ([SPIN, at(7)], None),
-        ([SLEEP, at(7)], loops.Standing("going", 1, 3)),
-        ([SLEEP, at(7), CALLBACK, SPIN, at(8)], loops.Standing("going", 1, 3)),
-        ([SLEEP, at(8)], None),
-        ([SPIN, at(8, "__init__"), at(10, "<module>")], loops.Standing("init", 1, 8)),
-        ([SLEEP, at(8), at(7, "__init__")], loops.Standing("init", 2, 3)),
-        ([FOR_EVER, at(7, "__init__")], loops.Standing("init", 1, 7)),
-        ([FOR_EVER, at(7)], loops.Standing("spin", 1, 7)),
-        ([FOR_EVER, at(8)], None),
-        ([SLEEP], None),
-    ],
-)
-def test_where_a_main_thread_is_at_the_end_is_told_unless_it_just_spins(
-    frames: list[loops.Seen], found: loops.Standing | None
-) -> None:
-    assert loops.standing(frames) == found
+        assert told(submission, say(ends=[{**END, "place": place}])) == Observations()

@@ -7,10 +7,12 @@ from typing import get_args
 
 import pytest
 
+from grader.message import msg, plain_text
 from grader.recording.recording import Outcome, PublishedTopic, Run
+from grader.recording.subject import Start
 from grader.run.finish import Ending, outcome, record
-from grader.run.plan import Plan
-from grader.scenes.scene import Limits, Reason, Start
+from grader.run.handover import Plan
+from grader.scenes.scene import Limits, Reason
 from tests.grader.driving import Spiral, drive
 
 REASONS = get_args(Reason)
@@ -31,8 +33,10 @@ EXPECTED = {
     **{(reason, -9): "killed" for reason in REASONS},
     **{(reason, -11): "killed" for reason in REASONS},
 }
-ENDING = Ending("virtual", "crashed", -11, 1.23456, "ROS domain 77", "printed\n", ("a", "b"))
-PLAN = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, ("c",), "turtlesim")
+A, B, C = msg("a"), plain_text("b"), msg("c {n}", n=1)
+RUN = Run("virtual", "crashed", -11, wall_s=1.23456, isolation="ROS domain 77", flags=(A, B))
+ENDING = Ending(RUN, "printed\n")
+PLAN = Plan(Limits(1, 2, 3), Start(1.0, 2.0, 3.0), "turtlesim", 42, (C,), "turtlesim")
 TOPICS = (PublishedTopic("/a", "b/msg/C"),)
 
 
@@ -63,7 +67,7 @@ def test_a_recording_has_everything_about_its_run(trace):
         wall_s=1.235,
         trace_sha256=trace.sha256(),
         isolation="ROS domain 77",
-        flags=("a", "b", "c"),
+        flags=(A, B, C),
         seed=42,
         interfaces="turtlesim",
     )
@@ -73,9 +77,9 @@ def test_a_recording_has_everything_about_its_run(trace):
 
 
 def test_what_the_run_itself_says_stands_before_what_was_known_before(trace):
-    repeated = replace(PLAN, flags=("graded in real time", "repeated"))
-    made = record(repeated, trace, TOPICS, replace(ENDING, flags=("late",)))
-    assert made.run.flags == ("late", "graded in real time", "repeated")
+    repeated = replace(PLAN, flags=(A, B))
+    made = record(repeated, trace, TOPICS, ENDING.with_flags(C))
+    assert made.run.flags == (C, A, B)
 
 
 def test_from_the_usual_place_there_is_no_start_and_no_seed(trace):
@@ -84,6 +88,6 @@ def test_from_the_usual_place_there_is_no_start_and_no_seed(trace):
 
 
 def test_the_hash_is_the_trace_s_whatever_else_differs(trace):
-    other = Ending("real", "finished", None, 9.0, "private network", "")
+    other = Ending(Run("real", "finished", None, wall_s=9.0, isolation="private network"))
     made = record(Plan(Limits(9, 9, 9)), trace, (), other)
     assert made.run.trace_sha256 == record(PLAN, trace, TOPICS, ENDING).run.trace_sha256

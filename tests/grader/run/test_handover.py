@@ -14,14 +14,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import GraderFailure
+from grader.recording import transfer
 from grader.recording.recording import PublishedTopic
 from grader.run.handover import fetch, leave
-from grader.scenes import load_scene, transfer
+from grader.scenes import load_scene
 from grader.scenes.scene import Scene
 from grader.scenes.turtlesim.trace import TurtleTrace
 from tests.grader.driving import Spiral, drive
 from tests.grader.scenes.turtlesim.traces import assert_same_trace
 
+PUBLISHED = {"/ü": "", "/turtle1/cmd_vel": "geometry_msgs/msg/Twist"}
 TOPICS = (PublishedTopic("/turtle1/cmd_vel", "geometry_msgs/msg/Twist"), PublishedTopic("/ü", ""))
 
 
@@ -46,7 +48,7 @@ def file() -> Iterator[int]:
 @pytest.fixture
 def left(file, scene, trace) -> bytes:
     """What lies in the file when it was left."""
-    leave(Path(f"/proc/self/fd/{file}"), scene, trace, TOPICS)
+    leave(Path(f"/proc/self/fd/{file}"), scene, trace, PUBLISHED)
     return contents(file)
 
 
@@ -79,8 +81,14 @@ def test_it_can_be_fetched_again_and_the_file_stays_open(file, left, scene):
 
 
 def test_a_submission_that_published_nothing_has_no_topics(file, scene, trace):
-    leave(Path(f"/proc/self/fd/{file}"), scene, trace, ())
+    leave(Path(f"/proc/self/fd/{file}"), scene, trace, {})
     assert fetch(file, scene)[1] == ()
+
+
+def test_what_every_node_publishes_on_is_left_out(file, scene, trace):
+    every = {"/rosout": "rcl_interfaces/msg/Log", "/parameter_events": "x"}
+    leave(Path(f"/proc/self/fd/{file}"), scene, trace, {**PUBLISHED, **every})
+    assert fetch(file, scene)[1] == TOPICS
 
 
 def test_an_empty_file_is_a_failure(file, scene):
@@ -99,7 +107,7 @@ def test_a_pickle_is_not_unpickled(file, scene, trace):
             return os._exit, (1,)
 
     data = pickle.dumps(Trap())
-    for found in (data, pack("<Q", 2) + b"[]" + data, pack("<Q", len(data)) + data):
+    for found in (data, pack("<Q", 2) + b"{}" + data, pack("<Q", len(data)) + data):
         put(file, found)
         failure(file, scene)
 
@@ -119,8 +127,8 @@ def test_a_file_that_is_cut_off_is_a_failure(file, left, scene, part):
         b"\xff\xfe",
         b"[" * 100_000,
         b"[3]",
-        b'[{"topic": "/a"}]',
-        b'[{"topic": "/a", "type": "b", "more": 1}]',
+        b'{"/a": 3}',
+        b'{"/a": ["b"]}',
     ],
 )
 def test_topics_that_are_none_are_a_failure(file, left, scene, trace, topics):

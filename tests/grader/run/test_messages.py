@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import pytest
 
+from grader.message import msg
 from grader.recording.recording import Recording
-from grader.run.student import executor
+from grader.run.clock import executor
 
 OUTPUTS = Path(__file__).parent / "messages"
 
@@ -63,9 +64,9 @@ NOT_WITH_DDS = {
 }
 RUNS = AS_WITH_DDS | NOT_WITH_DDS
 
-STALLED = "the node used 0 s of processor time without waiting for ROS"
-UNREADABLE = "a message on topic /turtle1/cmd_vel could not be read"
-ITS_OWN_CLOCK = "the parameter use_sim_time cannot be set: the run has a clock of its own"
+STALLED = msg("the node used {seconds} s of processor time without waiting for ROS", seconds="0")
+UNREADABLE = msg("a message on {channel} could not be read", channel="topic /turtle1/cmd_vel")
+ITS_OWN_CLOCK = msg("the parameter use_sim_time cannot be set: the run has a clock of its own")
 FLAGS = {
     "hangs_after_command": (STALLED,),
     "hangs_while_driving": (STALLED,),

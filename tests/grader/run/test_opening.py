@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
-from grader.run import static
-from grader.run.budget import Budget
+from grader.run import inspecting
+from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
 from grader.scenes.package.inspection import Inspection, decode, encode
-from grader.submission.opening import EntryPoint, Script, Submission, Whole
+from grader.submission.start import EntryPoint, Script, Submission, Whole
 from tests.files import lay
-from tests.grader.run.test_static import FORGES
+from tests.grader.run.test_inspecting import FORGES
 from tests.grader.submission.test_entry_points import SETUP, package
 
 KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
@@ -56,19 +56,21 @@ def two(folder: Path, before: str) -> Path:
 def test_a_set_up_says_nothing_of_another_one(tmp_path: Path, before: str) -> None:
     submission = found_in(two(tmp_path, before))
     assert submission.start == EntryPoint("second.turtle_controller", "main")
-    assert submission.found == "console script turtle_controller in second/setup.py"
+    assert str(submission.found) == "console script turtle_controller in second/setup.py"
 
 
 def test_a_set_up_that_kills_who_inspects_is_found_by_its_files(tmp_path: Path) -> None:
     submission = found_in(lay(tmp_path, with_set_up(KILLS)))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
-    assert submission.notes[0].startswith("the process that looked at the package left nothing")
+    assert str(submission.notes[0]).startswith(
+        "the process that looked at the package left nothing"
+    )
 
 
 def test_a_set_up_that_never_ends_is_ended_and_told(tmp_path: Path) -> None:
     submission = found_in(lay(tmp_path, with_set_up("import time\ntime.sleep(1e6)")))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
-    assert submission.notes[0] == (
+    assert str(submission.notes[0]) == (
         "colcon would not build this: setup.py waited for what did not come"
     )
 
@@ -90,7 +92,7 @@ def test_a_launch_file_says_nothing_of_set_ups(tmp_path: Path) -> None:
     files = package("spiral") | {"launch/a.launch.py": FORGES}
     submission = found_in(lay(tmp_path, files))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
-    assert "a.launch.py was not run, and what it starts cannot be read" in submission.notes[-1]
+    assert "a.launch.py was not run, and what it starts cannot be read" in str(submission.notes[-1])
 
 
 def test_what_a_set_up_writes_is_gone_with_the_inspection(tmp_path: Path) -> None:
@@ -105,11 +107,11 @@ def test_an_answer_about_other_folders_is_none(tmp_path: Path, monkeypatch) -> N
     with open_submission(lay(tmp_path, package("spiral"))) as found:
         assert found.copy is not None
         whole = Submission("a", found.copy.folder, Whole(), "", copy=found.copy)
-        asked = (whole, ["."], "turtle_controller", Budget())
-        said, _ = static.inspect(*asked, is_whole=False)
+        asked = (whole, ["."], "turtle_controller", CpuBudget())
+        said, _ = inspecting.inspect(*asked, is_whole=False)
         assert [each.told.name for each in said.set_ups] == ["spiral"]
-        monkeypatch.setattr(static.inspection, "decode", lambda _: Inspection())
-        said, _ = static.inspect(*asked, is_whole=False)
+        monkeypatch.setattr(inspecting.inspection, "decode", lambda _: Inspection())
+        said, _ = inspecting.inspect(*asked, is_whole=False)
         assert [(each.folder, each.told.name) for each in said.set_ups] == [(".", "")]
 
 
@@ -124,7 +126,7 @@ def test_a_single_file_is_not_inspected(tmp_path: Path, monkeypatch) -> None:
     def fail(*_: object, **__: object) -> None:
         raise AssertionError
 
-    monkeypatch.setattr(static, "inspect", fail)
+    monkeypatch.setattr(inspecting, "inspect", fail)
     lay(tmp_path, {"node.py": "print(1)\n", "setup.py": "1 / 0\n"})
     start = found_in(tmp_path / "node.py").start
     assert isinstance(start, Script)
@@ -135,9 +137,11 @@ def test_one_look_serves_the_start_and_the_exercise(tmp_path: Path) -> None:
     lay(tmp_path, package("spiral"))
     with open_submission(tmp_path, is_whole=True) as submission:
         assert submission.seen is not None
-        trace, remarks = static.look_beside(submission, Budget(0.0))
+        trace, remarks = inspecting.inspect_beside(submission, CpuBudget(0.0))
         assert (trace, remarks) == (submission.seen, ())
-        again, _ = static.look_beside(Submission(**{**vars(submission), "seen": None}), Budget())
+        again, _ = inspecting.inspect_beside(
+            Submission(**{**vars(submission), "seen": None}), CpuBudget()
+        )
         assert again == trace
     with open_submission(tmp_path) as submission:
         assert submission.seen is None

@@ -9,17 +9,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.run.plan import Plan
-from grader.scenes.scene import Limits, Start
+from grader.message import msg, plain_text
+from grader.recording.subject import Start
+from grader.run.handover import Plan
+from grader.scenes.scene import Limits
 
 numbers = st.floats(allow_nan=False)
+flags = st.text().map(plain_text) | st.builds(
+    msg, st.just("{n:,} of {it}"), n=st.integers(), it=st.text()
+)
 plans = st.builds(
     Plan,
     limits=st.builds(Limits, numbers, numbers, numbers),
     start=st.none() | st.builds(Start, numbers, numbers, numbers),
     scene=st.text(),
     seed=st.none() | st.integers(),
-    flags=st.lists(st.text(), max_size=3).map(tuple),
+    flags=st.lists(flags, max_size=3).map(tuple),
     interfaces=st.text(),
 )
 
@@ -35,7 +40,7 @@ def test_every_field_and_its_type_survive():
         Start(-0.1, 1 / 3, 5e-324),
         "moon",
         42,
-        ("odd", "ü\n"),
+        (msg("odd {n:.1f}", n=0.25), plain_text("ü\n")),
         "i",
         "s",
         True,

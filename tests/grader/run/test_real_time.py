@@ -6,10 +6,10 @@ import pytest
 
 from grader.recording.recording import Recording
 from grader.run import real_time
+from grader.run.handover import Plan
 from grader.run.opening import open_submission
-from grader.run.plan import Plan
 from grader.scenes.scene import Limits
-from grader.submission.opening import EntryPoint, Submission
+from grader.submission.start import EntryPoint, Submission
 from tests import runs
 from tests.tiers import others_are_more
 from turtlesim_py.world.events import CmdVel, SetPen
@@ -70,11 +70,14 @@ def test_the_first_call_of_a_service_arrives() -> None:
     assert len(recorded("calls_at_once").trace.of_kind(SetPen)) == 1
 
 
-def test_without_a_node_the_clock_of_the_run_starts_as_well(tmp_path: Path) -> None:
+def test_without_a_node_the_clock_of_the_run_starts_as_well(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(real_time, "FIRST_NODE_S", 0.3)
     (tmp_path / "sleeps.py").write_text("import time; time.sleep(60)\n")
     plan = Plan(Limits(first_motion_s=0.3, rest_s=0.2, total_s=60))
     with open_submission(tmp_path / "sleeps.py") as submission:
-        run = real_time.run(submission, plan, first_node_s=0.3).run
+        run = real_time.run(submission, plan).run
     assert (run.outcome, run.simulated_s) == ("time_limit", pytest.approx(0.3, abs=0.1))
 
 

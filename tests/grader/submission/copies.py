@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from grader.submission.opening import Script, Submission
+from grader.submission.start import Script, Submission
 
 
 def in_place(submission: Submission) -> Submission:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.run.opening import open_submission
-from grader.submission.opening import EntryPoint
+from grader.submission.start import EntryPoint
 from tests.files import lay
 from tests.grader.submission.test_opening import NODE, below
 
@@ -51,7 +51,7 @@ PACKAGE = {
 def notes(path: Path) -> tuple[str, ...]:
     with open_submission(path) as submission:
         assert submission.remarks == submission.notes
-        return submission.notes
+        return tuple(map(str, submission.notes))
 
 
 def changed(name: str, old: str, new: str) -> dict[str, str | None]:
@@ -170,7 +170,7 @@ def test_a_set_up_that_cannot_be_evaluated_is_a_note_with_its_line(tmp_path: Pat
     change = changed("setup.py", "packages=[package_name]", "packages=more()")
     with open_submission(lay(tmp_path, PACKAGE | change)) as submission:
         assert submission.start == EntryPoint("spiral.node", "main")
-        assert submission.notes == (
+        assert tuple(map(str, submission.notes)) == (
             "colcon would not build this: setup.py ends with NameError: name 'more' is not "
             "defined (setup.py, line 8)",
         )

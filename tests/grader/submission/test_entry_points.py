@@ -6,7 +6,7 @@ import pytest
 
 from grader.errors import SubmissionError
 from grader.run.opening import open_submission
-from grader.submission.opening import EntryPoint, Submission
+from grader.submission.start import EntryPoint, Submission
 from tests.files import lay
 from tests.grader.submission.copies import in_place
 
@@ -58,19 +58,17 @@ def refused(path: Path, executable: str | None = None) -> str:
 
 def test_a_package_starts_by_its_console_script(tmp_path: Path) -> None:
     lay(tmp_path / "spiral", package("spiral"))
-    assert found_in(tmp_path / "spiral") == Submission(
-        "spiral",
-        tmp_path / "spiral",
-        EntryPoint("spiral.turtle_controller", "main"),
-        "console script turtle_controller in setup.py",
-    )
+    found = found_in(tmp_path / "spiral")
+    assert (found.name, found.root) == ("spiral", tmp_path / "spiral")
+    assert found.start == EntryPoint("spiral.turtle_controller", "main")
+    assert str(found.found) == "console script turtle_controller in setup.py"
 
 
 def test_turtle_controller_is_preferred_to_other_scripts(tmp_path: Path) -> None:
     target = "spiral.turtle_controller:main"
     lay(tmp_path, package("spiral", f"a = {target}", f"turtle_controller = {target}"))
-    assert found_in(tmp_path).found == "console script turtle_controller in setup.py"
-    assert found_in(tmp_path, "a").found == "console script a in setup.py"
+    assert str(found_in(tmp_path).found) == "console script turtle_controller in setup.py"
+    assert str(found_in(tmp_path, "a").found) == "console script a in setup.py"
 
 
 def test_the_only_console_script_needs_no_particular_name(tmp_path: Path) -> None:
@@ -96,7 +94,7 @@ def test_the_package_is_found_in_a_workspace(tmp_path: Path) -> None:
     lay(tmp_path, {"src/msgs/package.xml": "", "src/msgs/CMakeLists.txt": ""})
     submission = found_in(tmp_path)
     assert submission.root == tmp_path / "src/spiral"
-    assert submission.found == "console script turtle_controller in src/spiral/setup.py"
+    assert str(submission.found) == "console script turtle_controller in src/spiral/setup.py"
 
 
 def test_of_several_packages_the_one_with_the_script_is_taken(tmp_path: Path) -> None:
@@ -135,7 +133,7 @@ def test_a_set_up_file_may_compute_its_scripts(tmp_path: Path) -> None:
     files = package("spiral") | {"setup.py": SETUP.format(package="spiral", entries=entries)}
     submission = found_in(lay(tmp_path, files))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
-    assert submission.found == "console script turtle_controller in setup.py"
+    assert str(submission.found) == "console script turtle_controller in setup.py"
 
 
 @pytest.mark.parametrize(
@@ -152,8 +150,8 @@ def test_where_setup_py_cannot_be_evaluated_the_program_is_found_as_without_scri
 ) -> None:
     submission = found_in(lay(tmp_path, package("spiral") | {"setup.py": setup}))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
-    assert submission.notes[0].startswith("colcon would not build this: setup.py ")
-    assert submission.notes[0].endswith(why)
+    assert str(submission.notes[0]).startswith("colcon would not build this: setup.py ")
+    assert str(submission.notes[0]).endswith(why)
     files = package("spiral", module="draw") | {"spiral/pens.py": GUARDED, "setup.py": setup}
     assert refused(lay(tmp_path / "several", files)).endswith(f"{why}.")
 
@@ -165,7 +163,7 @@ def test_the_one_program_of_a_setup_py_without_scripts_is_started_and_the_line_t
     submission = found_in(lay(tmp_path, files))
     assert submission.start == EntryPoint("spiral.turtle_controller", "main")
     assert submission.root == tmp_path
-    (note,) = (note for note in submission.notes if "names no console script" in note)
+    (note,) = (note for note in map(str, submission.notes) if "names no console script" in note)
     assert note.startswith("setup.py names no console script")
     assert "'turtle_controller = spiral.turtle_controller:main'" in note
 
@@ -222,7 +220,7 @@ def test_a_missing_init_file_is_added_to_a_copy(tmp_path: Path) -> None:
         added = submission.root / "turtlesim_challenge"
         assert (added / "__init__.py").read_text() == ""
         assert (added / "turtle_controller.py").read_text() == GUARDED
-        assert "with the missing turtlesim_challenge/__init__.py added" in submission.found
+        assert "with the missing turtlesim_challenge/__init__.py added" in str(submission.found)
     assert not submission.root.exists()
     assert not (tmp_path / "turtlesim_challenge/__init__.py").exists()
 

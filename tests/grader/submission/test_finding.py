@@ -40,11 +40,11 @@ def test_an_unreadable_file_of_a_package_is_named(
     handed_in = lay(tmp_path / "in", PACKAGE)
     with pytest.raises(NotInspected) as asked:
         find(handed_in, None, scratch)
-    assert asked.value.folders == ["."]
+    assert asked.value.folders == (".",)
     forbid(monkeypatch, handed_in / "spiral/node.py")
     said = SetUp(".", Told(scripts=("turtle_controller = spiral.node:main",)), None)
     with pytest.raises(SubmissionError, match=r"^spiral/node\.py cannot be read: Permission"):
-        find_inspected(handed_in, "in", None, scratch, "a", Inspection((said,)))
+        find_inspected(asked.value, Inspection((said,)), "in", None, scratch, "a")
 
 
 def forbid(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:

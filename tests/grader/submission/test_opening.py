@@ -11,7 +11,7 @@ import pytest
 from grader.errors import SubmissionError, UsageError
 from grader.run.opening import open_submission
 from grader.submission.folder import HAND_IN
-from grader.submission.opening import EntryPoint, Script, Submission
+from grader.submission.start import EntryPoint, Script, Submission
 from tests.files import lay
 from tests.grader.submission.copies import in_place
 
@@ -57,15 +57,17 @@ def refused(path: Path, executable: str | None = None) -> str:
 
 def test_a_file_with_a_guard_runs_as_a_script(tmp_path: Path) -> None:
     file = lay(tmp_path, {"turtle_controller.py": GUARDED}) / "turtle_controller.py"
-    assert found_in(file) == Submission(
-        "turtle_controller.py", tmp_path, Script(file), "file turtle_controller.py"
+    found = found_in(file)
+    assert (found.name, found.root, found.start, str(found.found)) == (
+        *("turtle_controller.py", tmp_path, Script(file)),
+        "file turtle_controller.py",
     )
 
 
 def test_a_file_that_only_defines_main_is_imported_and_called(tmp_path: Path) -> None:
     submission = found_in(lay(tmp_path, {"controller.py": NODE}) / "controller.py")
     assert submission.start == EntryPoint("controller", "main")
-    assert submission.found == "function main of controller.py"
+    assert str(submission.found) == "function main of controller.py"
 
 
 @pytest.mark.parametrize("name", ["my-controller.py", "1_ctrl.py", "controller (1).py"])
@@ -130,7 +132,7 @@ def test_the_only_file_that_starts_itself_is_taken_from_a_folder(tmp_path: Path)
     submission = found_in(tmp_path)
     assert submission.start == Script(tmp_path / "scripts/spiral.py")
     assert submission.root == tmp_path / "scripts"
-    assert submission.found == "file scripts/spiral.py"
+    assert str(submission.found) == "file scripts/spiral.py"
 
 
 def test_turtle_controller_py_wins_over_main_py_and_that_over_others(tmp_path: Path) -> None:
@@ -174,7 +176,7 @@ def test_a_zip_is_unpacked_while_it_is_open_and_removed_afterwards(tmp_path: Pat
     archive = pack(tmp_path / "alice.zip", below("hw1/ws/src/spiral", PACKAGE))
     with open_submission(archive) as submission:
         assert submission.name == "alice.zip"
-        assert submission.found.endswith(" in hw1/ws/src/spiral/setup.py")
+        assert str(submission.found).endswith(" in hw1/ws/src/spiral/setup.py")
         assert (submission.root / "spiral/node.py").read_text() == GUARDED
     assert not submission.root.exists()
 
@@ -229,15 +231,15 @@ def test_the_folder_of_a_courses_server_with_a_zip_in_it_is_looked_into(tmp_path
     with open_submission(folder) as submission:
         assert submission.name == folder.name
         assert submission.start == EntryPoint("spiral.node", "main")
-        assert submission.found == "console script turtle_controller in spiral/setup.py, in " + (
-            "spiral.zip"
-        )
+        assert str(
+            submission.found
+        ) == "console script turtle_controller in spiral/setup.py, in " + ("spiral.zip")
         assert submission.as_handed_in(str(submission.root)).startswith(str(folder))
 
 
 def test_a_zip_in_a_zip_is_unpacked_and_so_is_a_tar(tmp_path: Path) -> None:
     (tmp_path / "a.zip").write_bytes(nested(1, packed({"node.py": NODE.encode()})))
-    assert found_in(tmp_path / "a.zip").found == "function main of node.py, in level0.zip"
+    assert str(found_in(tmp_path / "a.zip").found) == "function main of node.py, in level0.zip"
     lay(tmp_path / "a", PACKAGE)
     with tarfile.open(tmp_path / "a.tar.gz", "w:gz") as archive:
         archive.add(tmp_path / "a", "a")
@@ -271,7 +273,7 @@ def test_several_archives_are_listed_and_none_beside_a_program_is_opened(tmp_pat
         pack(tmp_path / name, {"node.py": NODE})
     assert "several archives, and no Python file beside them: a.zip, b.zip." in refused(tmp_path)
     lay(tmp_path, {"node.py": NODE})
-    assert found_in(tmp_path).found == "function main of node.py"
+    assert str(found_in(tmp_path).found) == "function main of node.py"
 
 
 def test_an_archive_that_is_a_link_to_somewhere_else_is_not_opened(tmp_path: Path) -> None:
@@ -299,7 +301,7 @@ def test_a_path_that_does_not_exist_brings_up_near_names(tmp_path: Path) -> None
 
 def test_an_empty_folder_says_what_to_hand_in(tmp_path: Path) -> None:
     lay(tmp_path, {".git/config": ""})
-    assert refused(tmp_path).endswith("is an empty folder. " + HAND_IN)
+    assert refused(tmp_path).endswith(f"is an empty folder. {HAND_IN!s}")
 
 
 def test_a_folder_without_python_lists_what_it_holds(tmp_path: Path) -> None:
@@ -323,7 +325,7 @@ def test_a_cpp_package_is_told_that_only_python_is_graded(tmp_path: Path) -> Non
 def test_another_kind_of_file_says_what_to_hand_in(tmp_path: Path, name: str, advice: str) -> None:
     text = refused(lay(tmp_path, {name: "x"}) / name)
     assert text.startswith(f"{name} is neither a .py file, nor a folder, nor a .zip or .tar.gz.")
-    assert advice in text
+    assert str(advice) in text
 
 
 def test_a_pipe_called_like_a_python_file_is_not_waited_for(tmp_path: Path) -> None:

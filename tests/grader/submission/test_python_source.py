@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.submission.python_source import Source, read_source
+from grader.submission.python_source import PythonSource, read_source
 
 
-def seen(tmp_path: Path, text: str) -> Source:
+def seen(tmp_path: Path, text: str) -> PythonSource:
     file = tmp_path / "node.py"
     file.write_text(text)
     return read_source(file)

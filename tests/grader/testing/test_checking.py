@@ -6,10 +6,14 @@ import json
 
 import pytest
 
+from grader.exercise import asking
 from grader.exercise.loading import load_exercise
+from grader.exercise.places import names
+from grader.limited import WorkLimits
 from grader.recording.recording import Recordings
 from grader.testing import check_exercise, checking, drive, twist
-from tests.grader.language.holes import holes
+from grader.testing.checking import examine, odd_recordings
+from tests.grader.languages.holes import holes
 from tests.grader.testing import exercises
 from tests.grader.testing.exercises import CHECKS, MUTANTS
 from tests.tiers import others_are_more
@@ -40,7 +44,7 @@ def driven(monkeypatch):
 
 
 def problems(folder):
-    return [str(problem) for problem in check_exercise(folder).problems]
+    return [str(problem.text) for problem in check_exercise(folder).problems]
 
 
 def test_an_exercise_that_is_in_order_has_no_problems_and_a_table(tmp_path, driven):
@@ -89,7 +93,7 @@ def test_what_is_to_mend_is_told_in_the_readers_language(language, tmp_path, dri
     driven["again"] = 1.5
     found = check_exercise(exercises.write(tmp_path)).problems
     assert len(found) == 4
-    assert [hole for each in found for hole in holes(str(each), language)] == []
+    assert [hole for each in found for hole in holes(each.text, language)] == []
 
 
 def test_an_exercise_without_mutants_is_told(tmp_path, driven):
@@ -110,3 +114,83 @@ def test_a_check_that_does_not_survive_what_a_node_can_do_is_told(tmp_path, driv
     assert found.endswith(
         "(on a node that never sends a number, a node that kills its turtle at once)"
     )
+
+
+ONE = """from grader import Checks, Evidence, Finding
+
+checks = Checks()
+seen = []
+
+
+@checks()
+def only(recordings, tolerances):
+    seen.append(1)
+    return {result}
+"""
+
+
+def faults(tmp_path, result):
+    checks = ONE.format(result=result)
+    exercise = load_exercise(exercises.write(tmp_path, checks, points={"only": 1}))
+    verdicts, found = examine(exercise, Recordings(drive(lambda *_: None, ticks=5)))
+    assert len(verdicts) == 1
+    return [str(fault.text) for fault in found]
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        "Finding(1, 'seen')",
+        "Finding(0.5, 'seen', 'look')",
+        "Finding(1, 'seen', evidence=(Evidence(0.08, 'here', 5.5, 5.5),))",
+    ],
+)
+def test_a_finding_that_is_in_order_has_no_fault(tmp_path, result):
+    assert faults(tmp_path, result) == []
+
+
+@pytest.mark.parametrize(
+    ("result", "words"),
+    [
+        ("1 / 0", "raises checks.py, line 10: ZeroDivisionError"),
+        ("exit(0)", "raises checks.py, line 10: SystemExit: 0"),
+        ("None", "returns a NoneType; expected a Finding"),
+        ("Finding(2, 'seen')", "share: expected a number from 0 to 1, found 2"),
+        ("Finding(float('nan'), 'seen')", "share: expected"),
+        ("Finding('all', 'seen')", "share: expected"),
+        ("Finding(1, ' ')", "empty rationale"),
+        ("Finding(0, 'seen')", "fails without help"),
+        ("Finding(len(seen) % 2, 'seen', 'look')", "something else when it is asked again"),
+        ("Finding(1, f'{len(seen)} times')", "something else when it is asked again"),
+        ("Finding(1, 'seen', '', [])", "evidence: expected a tuple, found a list"),
+        ("Finding(1, 'seen', '', (5,))", "evidence: expected Evidence, found a int"),
+        ("Finding(1, 's', '', (Evidence(0.096, 'n', 1, 1),))", "0.096 s is outside the recording"),
+        ("Finding(1, 's', '', (Evidence(0.08, 'n', 1, 12),))", "outside the picture"),
+        ("Finding(1, 's', '', (Evidence(0.08, 'n', 1, float('nan')),))", "a finite number"),
+        ("Finding(1, 's', '', (Evidence(0.08, 'n', 1, 1, 1),))", "there is no run 1"),
+        ("Finding(1, 's', '', (Evidence(0.08, '', 1, 1),))", "empty note"),
+    ],
+)
+def test_a_mistake_is_named(tmp_path, result, words):
+    found = faults(tmp_path, result)
+    assert len(found) == 1
+    assert words in found[0]
+
+
+def test_a_check_without_an_end_is_named_and_no_other_is_blamed(tmp_path, monkeypatch):
+    monkeypatch.setattr(asking, "LIMITS", WorkLimits(cpu_s=0.3, wall_s=30.0))
+    endless = "\n\n@checks()\ndef endless(recordings, tolerances):\n    while True:\n        pass\n"
+    checks = ONE.format(result="Finding(1, 'seen')") + endless
+    points = {"only": 1, "endless": 1}
+    exercise = load_exercise(exercises.write(tmp_path, checks, points=points))
+    _, found = examine(exercise, Recordings(drive(lambda *_: None, ticks=5)))
+    assert [fault.check for fault in found] == ["endless"]
+
+
+@pytest.mark.parametrize("name", names())
+def test_our_checks_survive_whatever_a_node_does(name):
+    exercise = load_exercise(name)
+    recordings = odd_recordings(exercise)
+    assert len(recordings) > 10
+    faults = {what: examine(exercise, recordings[what])[1] for what in recordings}
+    assert {what: found for what, found in faults.items() if found} == {}

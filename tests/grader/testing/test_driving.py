@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.scenes.scene import Start
+from grader.recording.subject import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import drive, pen, twist
 from turtlesim_py.world.events import CmdVel, SetPen

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from robot_py.drawing import NOBODY, body, picture
-from robot_py.drawing.camera import Camera
-from robot_py.drawing.raster import nearest
-from robot_py.drawing.triangles import triangles
+from robot_py.drawing.body import triangles
+from robot_py.drawing.picture import Camera, nearest
 from robot_py.kinematics import forward
 from robot_py.model import Box, Cylinder, Sphere
 from robot_py.urdf import parse

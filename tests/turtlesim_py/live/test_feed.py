@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from turtlesim_py.live.feed import Change, Feed, Whole
+from turtlesim_py.live.feed import Feed, News
 from turtlesim_py.world.arena import Arena
 
 
@@ -14,7 +14,7 @@ class Viewer:
 
     def __init__(self) -> None:
         self.arena = Arena(sprite="jazzy")
-        self.news: list[Change | Whole] = []
+        self.news: list[News] = []
         self.feed = Feed(self.arena, self.news.append)
         self.canvas = np.zeros((500, 500, 4), np.uint8)
 
@@ -27,17 +27,17 @@ class Viewer:
         for _ in range(ticks):
             self.feed.after_tick(self.arena.tick())
 
-    def changes(self) -> list[Change]:
+    def changes(self) -> list[News]:
         """Those since the last look."""
         taken, self.news[:] = self.news[:], []
         for news in taken:
-            if isinstance(news, Whole):
+            if news.canvas is not None:
                 self.canvas = news.canvas.rgba()
             else:
                 self._draw(news)
-        return [news for news in taken if isinstance(news, Change)]
+        return [news for news in taken if news.canvas is None]
 
-    def _draw(self, change: Change) -> None:
+    def _draw(self, change: News) -> None:
         for stroke in change.content["drawn"]:
             if stroke is None:
                 self.canvas[:] = (255, 255, 255, 0)

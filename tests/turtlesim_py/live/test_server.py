@@ -87,6 +87,11 @@ def test_an_action_is_followed_and_cancelled(page):
         viewer.until(lambda frame: frame["op"] == "action_feedback")
         viewer.say(op="cancel_action_goal", action=turn["action"], id="long")
         assert viewer.until(lambda frame: frame["op"] == "action_result")["status"] == 5
+        # before its server has answered
+        viewer.say(**turn, args={"theta": 1.0}, id="hasty")
+        viewer.say(op="cancel_action_goal", action=turn["action"], id="hasty")
+        ended = viewer.until(lambda frame: frame["op"] == "action_result")
+        assert (ended["id"], ended["status"]) == ("hasty", 5)
 
 
 def test_what_there_is_can_be_asked_for(page):

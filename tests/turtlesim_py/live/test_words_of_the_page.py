@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import re
 from pathlib import Path
@@ -13,31 +12,24 @@ from std_msgs.msg import ByteMultiArray, UInt8
 from std_srvs.srv import SetBool
 
 import turtlesim_py
-from tests import page_words
+from tests.catalogues import script
 from turtlesim_py.live import messages
 from turtlesim_py.live.rosbridge import FRAMES_AT_ONCE, Session
 
 PAGE = Path(turtlesim_py.__file__).parent / "live" / "page"
-FILES = sorted(file for file in PAGE.iterdir() if file.suffix in (".html", ".js"))
 
 
-@pytest.mark.parametrize("language", page_words.LANGUAGES)
+@pytest.mark.parametrize("language", script().LANGUAGES)
 def test_every_sentence_has_a_translation_and_every_translation_a_sentence(language):
-    sentences = page_words.catalogue(PAGE, language)
-    assert set(sentences) == page_words.of_page(FILES)
+    sentences = script().read(PAGE, language)
+    assert set(sentences) == set(script().of_simulator())
     assert all(sentences.values())
 
 
-@pytest.mark.parametrize("language", page_words.LANGUAGES)
+@pytest.mark.parametrize("language", script().LANGUAGES)
 def test_a_translation_has_the_values_of_its_sentence(language):
-    assert list(page_words.badly_filled(page_words.catalogue(PAGE, language))) == []
-
-
-def patterns() -> list[re.Pattern[str]]:
-    """What the page takes for an answer of the server's, as answers.js makes it."""
-    listed = re.findall(r'key\("(.*)"\)', (PAGE / "answers.js").read_text(encoding="utf-8"))
-    assert len(listed) > 10
-    return [re.compile(re.sub(r"\\\{\w+\\\}", ".+?", re.escape(each))) for each in listed]
+    for english, said in script().read(PAGE, language).items():
+        assert sorted(re.findall(r"\{\w+\}", english)) == sorted(re.findall(r"\{\w+\}", said))
 
 
 WRONG = [
@@ -57,20 +49,18 @@ WRONG = [
 
 @pytest.mark.parametrize(("kind", "said"), WRONG)
 def test_what_is_told_of_a_message_that_does_not_fit_is_a_sentence_of_the_page(kind, said):
-    with pytest.raises(messages.Unfit) as caught:
+    with pytest.raises(messages.Rejected) as caught:
         messages.from_json(kind, said)
-    assert any(each.fullmatch(str(caught.value)) for each in patterns()), caught.value
+    assert caught.value.key in set(script().of_simulator())
 
 
 def test_what_is_told_of_a_refused_frame_is_a_sentence_of_the_page():
-    class Host:
-        is_read_only = True
-
     told = []
-    session = Session(Host(), told.append, lambda watches: None, now=lambda: 0.0)
+    session = Session(lambda: None, True, told.append, lambda watches: None, now=lambda: 0.0)
     for _ in range(int(FRAMES_AT_ONCE) + 1):
-        asyncio.run(session.hear(json.dumps({"op": "publish", "topic": "/a"})))
-    texts = {each["msg"] for each in told}
-    assert len(texts) == 2
-    for text in texts:
-        assert any(each.fullmatch(text) for each in patterns()), text
+        session.handle(json.dumps({"op": "publish", "topic": "/a"}))
+    answers = {each["msg"]: each["sentence"] for each in told}
+    assert len(answers) == 2
+    for text, sentence in answers.items():
+        assert sentence["key"] in set(script().of_simulator())
+        assert sentence["key"].format(**sentence["values"]) == text

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from turtlesim_py.programs.keyboard import Keyboard, NotATerminal
+from turtlesim_py.programs.teleop_key import Keyboard, NotATerminal
 
 
 @dataclass

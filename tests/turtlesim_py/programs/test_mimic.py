@@ -12,7 +12,7 @@ from turtlesim_py.ros.interfaces import Interfaces, installed
 
 @pytest.mark.parametrize("package", installed())
 def test_the_speeds_of_a_pose_become_a_command(graph: Graph, package: str) -> None:
-    pose = Interfaces.of(package).Pose
+    pose = Interfaces.of(package).msg.Pose
     arguments = ["-r", f"input/pose:=/leader/{package}", "-r", "output/cmd_vel:=/follower/cmd_vel"]
     arguments += ["-p", f"interfaces:={package}"]
     with Program("turtlesim_py.programs.mimic", "--ros-args", *arguments) as program:

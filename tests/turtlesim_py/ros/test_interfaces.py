@@ -52,9 +52,9 @@ def test_the_classes_are_those_of_the_package():
     for name in NAMES:
         made = Interfaces.of(name)
         assert made.package == name
-        assert made.Pose.__module__.startswith(f"{name}.msg.")
-        assert made.Spawn.__module__.startswith(f"{name}.srv.")
-        assert made.RotateAbsolute.__module__.startswith(f"{name}.action.")
+        assert made.msg.Pose.__module__.startswith(f"{name}.msg.")
+        assert made.srv.Spawn.__module__.startswith(f"{name}.srv.")
+        assert made.action.RotateAbsolute.__module__.startswith(f"{name}.action.")
 
 
 @both
@@ -65,20 +65,22 @@ def test_a_node_serves_the_one_that_it_is_told_to_and_only_that(graph: Graph, pa
     kinds = Interfaces.of(package)
     with Program("turtlesim_py.ros.node", "--ros-args", *arguments) as program:
         graph.meet(f"of_{package}.turtlesim")
-        poses = graph.listen(kinds.Pose, f"{namespace}/turtle1/pose")
-        colors = graph.listen(kinds.Color, f"{namespace}/turtle1/color_sensor")
+        poses = graph.listen(kinds.msg.Pose, f"{namespace}/turtle1/pose")
+        colors = graph.listen(kinds.msg.Color, f"{namespace}/turtle1/color_sensor")
         graph.until(lambda: poses and colors, "readings")
         assert (poses[0].x, poses[0].y) == (5.544444561004639,) * 2
         assert (colors[0].r, colors[0].g, colors[0].b) == (255, 255, 255)
-        graph.call(kinds.SetPen, f"{namespace}/turtle1/set_pen", r=1, width=3)
-        graph.call(kinds.TeleportAbsolute, f"{namespace}/turtle1/teleport_absolute", x=2.0, y=3.0)
-        graph.call(kinds.TeleportRelative, f"{namespace}/turtle1/teleport_relative", linear=1.0)
+        graph.call(kinds.srv.SetPen, f"{namespace}/turtle1/set_pen", r=1, width=3)
+        graph.call(
+            kinds.srv.TeleportAbsolute, f"{namespace}/turtle1/teleport_absolute", x=2.0, y=3.0
+        )
+        graph.call(kinds.srv.TeleportRelative, f"{namespace}/turtle1/teleport_relative", linear=1.0)
         graph.until(lambda: poses[-1].x == 3.0, "the teleported")
-        assert graph.call(kinds.Spawn, f"{namespace}/spawn", x=1.0, name="late").name == "late"
-        rotation = graph.action(kinds.RotateAbsolute, f"{namespace}/late/rotate_absolute")
-        goal = graph.done(rotation.send_goal_async(kinds.RotateAbsolute.Goal(theta=0.1)))
+        assert graph.call(kinds.srv.Spawn, f"{namespace}/spawn", x=1.0, name="late").name == "late"
+        rotation = graph.action(kinds.action.RotateAbsolute, f"{namespace}/late/rotate_absolute")
+        goal = graph.done(rotation.send_goal_async(kinds.action.RotateAbsolute.Goal(theta=0.1)))
         assert graph.done(goal.get_result_async()).result.delta == pytest.approx(-0.096)
-        graph.call(kinds.Kill, f"{namespace}/kill", name="late")
+        graph.call(kinds.srv.Kill, f"{namespace}/kill", name="late")
         types = [
             type_
             for name, types in (

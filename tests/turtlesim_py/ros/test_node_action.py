@@ -56,7 +56,17 @@ class Rotation:
 
 @pytest.fixture
 def rotation(graph: Graph, turtle: str) -> Rotation:
-    return Rotation(graph, turtle)
+    made = Rotation(graph, turtle)
+    reached = []  # at once: the turtle looks that way
+
+    def is_heard() -> bool:
+        reached.append(made.send(0.0))
+        made.outcome(reached[-1])
+        return any(goal.remaining for goal in reached)
+
+    # a server that has not met who listens for feedback sends it to nobody
+    graph.until(is_heard, "feedback")
+    return made
 
 
 def test_a_goal_turns_the_turtle_and_stops_just_short(

@@ -17,7 +17,7 @@ from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelativ
 
 from tests.graph import ROSOUT_QOS, Graph
 from tests.programs import Program
-from turtlesim_py.ros.arrivals import Arrivals
+from turtlesim_py.ros.executor import Arrivals
 from turtlesim_py.ros.node import TurtlesimNode
 from turtlesim_py.world.arena import TICK_NS
 

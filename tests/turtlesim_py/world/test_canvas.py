@@ -1,4 +1,4 @@
-"""The canvas: strokes, the colour under a point, copies, PNG."""
+"""The canvas: strokes, the colour under a point, copies."""
 
 import json
 from pathlib import Path
@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from turtlesim_py.png import save_png
 from turtlesim_py.world.canvas import Canvas, Pen
 from turtlesim_py.world.floats import fuzzy_equal
 
@@ -125,15 +124,6 @@ def test_a_copy_has_the_same_pixels_and_a_life_of_its_own():
     copy.clear()
     copy.draw_line(1.5, 1.5, 1.5, 1.5, BLUE)
     assert painted(canvas) == 0
-
-
-def test_a_saved_picture_holds_the_same_pixels(tmp_path):
-    canvas = Canvas()
-    canvas.draw_line(10.0, 10.0, 480.0, 200.0, RED)
-    save_png(canvas.rgba(), tmp_path / "path.png")
-    with Image.open(tmp_path / "path.png") as picture:
-        assert picture.mode == "RGBA"
-        assert (np.array(picture) == canvas.rgba()).all()
 
 
 @given(st.floats(), st.floats(), st.floats(), st.floats(), st.integers(0, 255))

@@ -4,13 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image
 
-from turtlesim_py.png import save_png
 from turtlesim_py.world.canvas import Canvas, Pen
 from turtlesim_py.world.floats import PI
-from turtlesim_py.world.picture import Sprite, render
-from turtlesim_py.world.sprites import NAMES, sprite
+from turtlesim_py.world.picture import NAMES, Sprite, render, sprite
 
 BLUE = (69, 86, 255)
 MIDDLE = 250.5  # a picture of 45 pixels lies on whole pixels around it
@@ -125,11 +122,3 @@ def test_any_turtle_can_be_shown(x_px, y_px, heading_rad, name):
     canvas = Canvas(60, 50)
     picture = render(canvas, BLUE, [Sprite(x_px, y_px, heading_rad, name)])
     assert picture.shape == (50, 60, 3)
-
-
-def test_a_saved_window_holds_the_same_pixels(tmp_path):
-    picture = window(Sprite(100.0, 200.0, 1.0, "rolling"))
-    save_png(picture, tmp_path / "window.png")
-    with Image.open(tmp_path / "window.png") as saved:
-        assert saved.mode == "RGB"
-        assert (np.array(saved) == picture).all()

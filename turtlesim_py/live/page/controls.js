@@ -1,6 +1,5 @@
 // Drives turtles and calls what the simulator serves: keys, buttons, forms.
 
-import { heard } from "./answers.js";
 import { t } from "./language.js";
 
 const TWIST = "geometry_msgs/msg/Twist";
@@ -118,7 +117,7 @@ export class Controls {
     this.answer("");
     this.goal.done.then(
       () => this.answer(t("{name}: done", { name: "rotate_absolute" })),
-      (error) => this.answer(heard(error.message), true),
+      (error) => this.answer(error.message, true),
     );
   }
 
@@ -135,7 +134,7 @@ export class Controls {
     }
   }
 
-  fail(what, error) { this.answer(t("{what}: {value}", { what, value: heard(error.message) }), true); }
+  fail(what, error) { this.answer(t("{what}: {value}", { what, value: error.message }), true); }
 
   answer(text, isWrong = false) {
     const place = this.element("answer");

@@ -1,6 +1,5 @@
 // What `ros2 topic` and `ros2 service` would say: names, types, fields, a message, a call.
 
-import { heard } from "./answers.js";
 import { key, t } from "./language.js";
 
 /** Units, where a type has them by its meaning. */
@@ -64,7 +63,7 @@ export class Explorer {
     }
   }
 
-  fail(error) { this.element("detail").replaceChildren(made("p", heard(error.message))); }
+  fail(error) { this.element("detail").replaceChildren(made("p", error.message)); }
 
   list(id, names, show) {
     this.element(id).replaceChildren(...names.map(([name, type]) => {
@@ -131,7 +130,7 @@ export class Explorer {
         const said = await send(read(text.value));
         answer.textContent = typeof said === "string" ? said : JSON.stringify(said, null, 1);
       } catch (error) {
-        answer.textContent = heard(error.message);
+        answer.textContent = error.message;
       }
     });
     return form;

@@ -1,6 +1,5 @@
 // The page: what the simulator tells is drawn and read out; the parts beside it drive and explore.
 
-import { heard } from "./answers.js";
 import { offerLanguages, speakAsAsked } from "./choice.js";
 import { Controls } from "./controls.js";
 import { Explorer } from "./explorer.js";
@@ -104,7 +103,7 @@ function sayAgain() {
 
 const bridge = new Rosbridge({
   closed: () => { hasLooked = false; state(true); controls.rest(); },
-  status: (text) => controls.answer(heard(text), true),
+  status: (text) => controls.answer(text, true),
 });
 const controls = new Controls(bridge, element);
 const explorer = new Explorer(bridge, element);

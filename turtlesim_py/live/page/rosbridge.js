@@ -8,6 +8,9 @@ export const LIVE = "/turtlesim_live";
 const FIRST_PAUSE_MS = 300;
 const LONGEST_PAUSE_MS = 1000;
 
+/** Why something was refused, in the reader's language; in English where it is not the page's own server. */
+function text(sentence, english) { return sentence ? t(sentence.key, sentence.values) : String(english); }
+
 export class Rosbridge {
   /** @param {{closed: function(), status: function(string)}} told */
   constructor(told) {
@@ -51,11 +54,12 @@ export class Rosbridge {
     } else if (frame.op === "service_response" || frame.op === "action_result") {
       const call = this.waiting.get(frame.id);
       this.waiting.delete(frame.id);
-      if (frame.result) call?.done(frame.values); else call?.fail(new Error(String(frame.values)));
+      if (frame.result) call?.done(frame.values); else call?.fail(new Error(text(frame.sentence, frame.values)));
     } else if (frame.op === "status") {
-      this.waiting.get(frame.id)?.fail(new Error(frame.msg));
+      const why = text(frame.sentence, frame.msg);
+      this.waiting.get(frame.id)?.fail(new Error(why));
       this.waiting.delete(frame.id);
-      this.told.status(frame.msg);
+      this.told.status(why);
     }
   }
 

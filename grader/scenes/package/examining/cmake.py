@@ -12,9 +12,10 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.message import msg
 from grader.scenes.package.examining import paths
-from grader.scenes.package.examining.steps import Ended, attempt
-from grader.scenes.package.trace import Problem
+from grader.scenes.package.examining.steps import Ended, attempt, it
+from grader.scenes.package.trace import Obstacle
 
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
 _COMMAND = re.compile(r"\b(project|set|file|install)\s*\(([^()]*)\)|\b(if|endif)\s*\(", re.I)
@@ -40,21 +41,21 @@ _OPTIONS = (
 
 
 class Read(NamedTuple):
-    """What a CMakeLists.txt says.
+    """What a set-up file installs, a CMakeLists.txt or a setup.py.
 
     Attributes:
-        project: its name; '' where it tells none.
+        project: the name that it gives; '' where it tells none.
         files: (folder below the prefix, file of the package).
         absent: what it installs, and is not there.
         programs: what is compiled and installed: 'lib/NAME/PROGRAM'.
-        problems: commands that nobody can follow here.
+        problems: what ended its evaluation; commands that nobody can follow here.
     """
 
     project: str
     files: list[tuple[str, str]]
     absent: list[str]
     programs: list[str]
-    problems: list[Problem]
+    problems: list[Obstacle]
 
 
 def read(folder: Path) -> Read:
@@ -163,7 +164,7 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
     named = [each for word in words[1:end] for each in word.split(";") if each]
     unknown = [each for each in (where, *named) if "${" in each or "$<" in each]
     if unknown:
-        raise Ended(Problem("unknown", f"it installs {unknown[0]:.200}"))
+        raise Ended(Obstacle("unknown", it(msg("installs {name}", name=unknown[0][:200]))))
     if words[0].upper() == "TARGETS":
         programs += [f"{where}/{name}" for name in named]
         return
@@ -171,7 +172,7 @@ def _install(folder: Path, words: list[str], made: Read) -> None:
     for name in named:
         source = Path(os.path.normpath(folder / name))
         if not source.resolve().is_relative_to(folder.resolve()):
-            raise Ended(Problem("unknown", f"it installs {name:.200}"))
+            raise Ended(Obstacle("unknown", it(msg("installs {name}", name=name[:200]))))
         if words[0].upper() == "DIRECTORY":
             if not paths.is_folder(source):
                 absent.append(name.rstrip("/"))

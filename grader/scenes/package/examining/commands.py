@@ -13,7 +13,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Final
 
-from grader.scenes.package.examining.steps import NotKnown
+from grader.message import msg
+from grader.scenes.package.examining.steps import NotKnown, it
 
 #: Exit code, and what is printed to either side.
 Ended = tuple[int, str, str]
@@ -32,7 +33,7 @@ def xacro(words: list[str]) -> Ended:
     try:
         import xacro as program
     except ImportError:
-        raise NotKnown("xacro is not installed where this was graded") from None
+        raise NotKnown(msg("xacro is not installed where this was graded")) from None
     out, errors, before = io.StringIO(), io.StringIO(), sys.argv
     sys.argv = ["xacro", *words]
     try:
@@ -67,7 +68,7 @@ def other(words: list[str], path: Callable[[str], str]) -> Ended:
     except (OSError, IndexError) as error:
         is_slip = difflib.get_close_matches(program, _USUAL, 1, 0.7)
         if program and "/" not in program and not is_slip:
-            raise NotKnown(f"it runs {program}, which is not here") from None
+            raise NotKnown(it(msg("runs {name}, which is not here", name=program))) from None
         raise SubstitutionFailure(f"file not found: {error}") from error
     except subprocess.TimeoutExpired:
         raise SubstitutionFailure(f"{program} did not come to an end") from None
@@ -79,9 +80,11 @@ def _run(words: list[str]) -> Ended:
     """Into files, whose length the kernel limits: so much is refused the same way each time."""
 
     def limit() -> None:
-        import resource
+        import resource  # here: Windows has none
 
-        resource.setrlimit(resource.RLIMIT_FSIZE, (_MOST_BYTES, _MOST_BYTES))
+        from grader import linux
+
+        linux.set_limit(resource.RLIMIT_FSIZE, _MOST_BYTES, _MOST_BYTES)
 
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as errors:
         code = subprocess.run(

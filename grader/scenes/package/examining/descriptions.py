@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 from xml.etree import ElementTree
 
 from grader.scenes.package.examining import paths
 from grader.scenes.package.examining.launches import prepare, watch_files
+from grader.scenes.package.examining.layout import Workspace
 from grader.scenes.package.examining.packages import is_description
-from grader.scenes.package.examining.place import Place
 from grader.scenes.package.examining.steps import end_of
 from grader.scenes.package.examining.taken import Taken
+from grader.scenes.package.trace import NamedMesh
 
 _MOST_FILES: Final = 500
 #: So many numbers of a xacro are doubled, in files that are no longer than this [characters].
@@ -30,7 +31,7 @@ _PROPERTY: Final = re.compile(_GIVEN.replace("{}", "property", 1).replace("{}", 
 _ARGUMENT: Final = re.compile(_GIVEN.replace("{}", "arg", 1).replace("{}", "default", 1))
 
 
-def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
+def meshes(text: str, place: Workspace) -> tuple[NamedMesh, ...] | None:
     """The files that a description names; None where it is no XML."""
     try:
         if "<!DOCTYPE" in text:
@@ -38,19 +39,18 @@ def meshes(text: str, place: Place) -> list[dict[str, Any]] | None:
         root = ElementTree.fromstring(text)
     except (ElementTree.ParseError, ValueError):
         return None
-    found: dict[tuple[str, bool], dict[str, Any]] = {}
+    found: dict[tuple[str, bool], NamedMesh] = {}
     for element in root.iter():
         if element.tag in ("mesh", "texture") and (uri := element.get("filename")):
             key = uri, element.tag == "mesh"
             if key not in found and len(found) < _MOST_FILES:
                 state, path = _resolved(uri.strip(), place)
-                told = {"uri": place.told(uri)[:1000], "state": state}
-                told["path"] = place.told(path)[:1000]
-                found[key] = {**told, "is_mesh": key[1], "surface": -1}
-    return list(found.values())
+                named, at = place.told(uri)[:1000], place.told(path)[:1000]
+                found[key] = NamedMesh(named, state, at, key[1])
+    return tuple(found.values())
 
 
-def _resolved(uri: str, place: Place) -> tuple[str, str]:
+def _resolved(uri: str, place: Workspace) -> tuple[str, str]:
     if uri.startswith("package://"):
         package, _, inside = uri.removeprefix("package://").partition("/")
         one = next((each for each in place.all if each.name == package), None)
@@ -67,7 +67,7 @@ def _resolved(uri: str, place: Place) -> tuple[str, str]:
     return "scheme", uri.removeprefix("file://")
 
 
-def _looked_for(path: Path, place: Place) -> tuple[str, str]:
+def _looked_for(path: Path, place: Workspace) -> tuple[str, str]:
     """What there is of a file of ours, by a path without `..`."""
     if not path.is_relative_to(place.prefix):
         return "missing", str(path)
@@ -84,7 +84,7 @@ def _looked_for(path: Path, place: Place) -> tuple[str, str]:
     return "missing", str(path)
 
 
-def from_files(place: Place) -> dict[str, Any]:
+def from_files(place: Workspace) -> list[dict[str, str]]:
     """In a copy of the process: the descriptions in the package's files, expanded.
 
     For packages whose launch files hand none to a robot_state_publisher.
@@ -92,7 +92,7 @@ def from_files(place: Place) -> dict[str, Any]:
     prepare(place)
     taken = Taken(place)
     watch_files(taken, place)
-    made: list[dict[str, Any]] = []
+    made: list[dict[str, str]] = []
     sources = {source: path for path, source in place.judged.files.items()}
     for file in place.judged.package.files:
         if not is_description(file) or len(made) >= 5:
@@ -106,15 +106,14 @@ def from_files(place: Place) -> dict[str, Any]:
         if "xacro" in text:
             code, text, errors = taken.xacro([str(path)])
         made.append({"file": file, "text": "" if code else text, "errors": end_of(errors, 1000)})
-    return {"made": made, "lacking": taken.found["lacking"]}
+    return made
 
 
-def varied(place: Place, source: str, words: list[str]) -> list[dict[str, str]]:
+def varied(place: Workspace, source: str) -> list[dict[str, str]]:
     """In a copy of the process: a xacro with one of its numbers doubled, for each of them.
 
     Args:
         source: the xacro file, where it is laid out.
-        words: the arguments that xacro is given beside.
     """
     prepare(place)
     taken = Taken(place)
@@ -140,7 +139,7 @@ def varied(place: Place, source: str, words: list[str]) -> list[dict[str, str]]:
             doubled = f"${{2 * ({value})}}" if value != match["value"] else repr(2 * float(value))
             other = f"{text[: match.start('value')]}{doubled}{text[match.end('value') :]}"
             path.write_text(other, encoding="utf-8")
-            code, made, _ = taken.xacro([source, *words])
+            code, made, _ = taken.xacro([source])
             path.write_text(text, encoding="utf-8")
             size += len(made)
             found.append({"name": match["name"], "text": "" if code else place.told(made)})

@@ -14,7 +14,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any, Final
 
-from grader.scenes.package.examining.steps import NotKnown
+from grader.scenes.package.examining.steps import not_there
 
 PUBLISHER: Final = "robot_state_publisher"
 _NODE: Final = {"name": "", "namespace": "", "arguments": [], "remappings": [], "later": False}
@@ -88,7 +88,7 @@ class _Name:
         return _action(self._name, kwargs.get("condition"))
 
     def __getattr__(self, name: str) -> Any:
-        raise NotKnown(f"it uses {self._name}, which the grader does not have")
+        raise not_there(self._name)
 
 
 def _action(of: str, condition: Any) -> Any:
@@ -100,6 +100,6 @@ def _action(of: str, condition: Any) -> Any:
             context.record.foreign(package, name)
 
         def __getattr__(self, name: str) -> Any:
-            raise NotKnown(f"it uses {of}, which the grader does not have")
+            raise not_there(of)
 
     return Foreign(condition=condition)

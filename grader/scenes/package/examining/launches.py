@@ -12,11 +12,12 @@ import os
 import sys
 from typing import Any, Final
 
+from grader import strict_json
+from grader.message import msg
 from grader.scenes.package.examining import foreign, known
-from grader.scenes.package.examining.layout import Installed
+from grader.scenes.package.examining.layout import DOUBLES, Installed, Workspace
 from grader.scenes.package.examining.packages import is_description
-from grader.scenes.package.examining.place import DOUBLES, Place
-from grader.scenes.package.examining.steps import NotKnown, in_folder
+from grader.scenes.package.examining.steps import NotKnown, in_folder, it, problem_of
 from grader.scenes.package.examining.taken import SUFFIXES, Taken
 
 #: Packages of ROS that have doubles.
@@ -24,12 +25,8 @@ DOUBLED: Final = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_in
 _MOST: Final = 200
 
 
-def evaluate(place: Place, of: Installed, file: str) -> dict[str, Any]:
-    """In a copy of the process: evaluate a launch file of a package, by its own name.
-
-    Raises:
-        Exception: whatever it raises. What was taken down before is in its `taken`.
-    """
+def evaluate(place: Workspace, of: Installed, file: str) -> Any:
+    """In a copy of the process: a launch file of a package, as `Evaluated` in JSON."""
     prepare(place)
     from launch import LaunchContext
 
@@ -42,21 +39,18 @@ def evaluate(place: Place, of: Installed, file: str) -> dict[str, Any]:
         path = str(place.prefix / installed[file])
     else:
         path = str(of.package.folder / file)
-        share = f"{place.prefix}/share/{of.name}"
-        taken.found["lacking"].append(
-            {"kind": "file", "name": f"{share}/{file}", "source": file, "by": ""}
-        )
-    problem: BaseException | None = None
+        taken.lack("file", f"{place.prefix}/share/{of.name}/{file}", path)
+    problem = None
     try:
         taken.run(path)
     except MemoryError:
         raise
     except BaseException as error:
-        problem = error
-    return {**taken.found, "texts": taken.texts, "source": taken.sources[:20], "problem": problem}
+        problem = problem_of(error, place.own)
+    return strict_json.to_json(taken.evaluated(file, problem, *_asked(place)), strict_json.OURS)
 
 
-def prepare(place: Place) -> None:
+def prepare(place: Workspace) -> None:
     """In the copy: stand where nobody's files are, and find the doubles first."""
     source = str(place.judged.package.folder)
     in_folder(str(place.empty), [str(DOUBLES), source], place.environment())
@@ -66,7 +60,7 @@ def prepare(place: Place) -> None:
     sys.meta_path.insert(0, _Unknown(place))
 
 
-def asked(place: Place) -> tuple[list[str], list[str]]:
+def _asked(place: Workspace) -> tuple[list[str], list[str]]:
     """Packages that were asked for: those that are there, and those that are not."""
     lines = place.asked.read_text(encoding="utf-8", errors="replace").splitlines()
     said = [line.partition(" ") for line in lines]
@@ -75,7 +69,7 @@ def asked(place: Place) -> tuple[list[str], list[str]]:
     return [each for each in there if each not in ours][:_MOST], list(missing)[:_MOST]
 
 
-def watch_files(taken: Taken, place: Place) -> None:
+def watch_files(taken: Taken, place: Workspace) -> None:
     """A file of the submission's that is read and is not there is the one that was meant."""
     real = io.open
 
@@ -91,7 +85,7 @@ def watch_files(taken: Taken, place: Place) -> None:
     builtins.open = io.open = opened
 
 
-def _is_meant(name: str, place: Place) -> bool:
+def _is_meant(name: str, place: Workspace) -> bool:
     """Whether a file that is not there is one of a package, rather than one of the system's."""
     full = os.path.abspath(name)
     if full.startswith((f"{place.prefix}/", f"{place.stubs}/", f"{place.empty}/")):
@@ -102,7 +96,7 @@ def _is_meant(name: str, place: Place) -> bool:
 class _Unknown:
     """Modules that the doubles have not, and the originals may: no fault of the package."""
 
-    def __init__(self, place: Place) -> None:
+    def __init__(self, place: Workspace) -> None:
         self._declared = set(place.judged.setup.depends)
 
     def find_spec(self, name: str, path: Any = None, target: Any = None) -> Any:
@@ -119,5 +113,6 @@ class _Unknown:
         if importlib.machinery.PathFinder.find_spec(name, path) is not None:
             return None
         if top in DOUBLED or top.startswith("launch_"):
-            raise NotKnown(f"it imports {name}, which the grader does not have")
+            what = msg("imports {name}, which the grader does not have", name=name)
+            raise NotKnown(it(what))
         return foreign.module(name)

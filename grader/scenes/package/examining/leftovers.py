@@ -14,8 +14,8 @@ from itertools import count
 from pathlib import Path
 from typing import Final
 
-from grader import linux, usage
-from grader.usage import Usage
+from grader import linux
+from grader.linux import ProcessStat
 
 _PROC: Final = Path("/proc")
 #: After so many looks, each of which stops those who were born meanwhile, all are ended at once.
@@ -40,7 +40,7 @@ def end() -> None:
     stopped: set[int] = set()
     with suppress(ChildProcessError):  # nothing is left
         for look in count():
-            found = _below(os.getpid(), _stats()) if _is_seen() else _children()
+            found = set(_below()) if _is_seen() else _children()
             if found <= stopped or look > _MOST_LOOKS:
                 _tell(found, signal.SIGKILL)
                 while os.waitpid(-1, os.WNOHANG)[0]:
@@ -64,10 +64,9 @@ def used() -> tuple[int, bool]:
     """
     if not _is_seen():
         return 0, True
-    stats = _stats()
-    below = _below(os.getpid(), stats)
-    used = sum(stats[each].ticks + stats[each].waited_ticks for each in below)
-    return used, any(stats[each].state in ("R", "D") for each in below)
+    below = _below().values()
+    used = sum(stat.ticks + stat.waited_ticks for stat in below)
+    return used, any(stat.state in ("R", "D") for stat in below)
 
 
 def _is_seen() -> bool:
@@ -96,24 +95,6 @@ def _children() -> set[int]:
     return found
 
 
-def _stats() -> dict[int, Usage]:
-    """Of every process that there is."""
-    numbers = [int(folder.name) for folder in _PROC.iterdir() if folder.name.isdecimal()]
-    return {number: usage.look(number) for number in numbers}
-
-
-def _below(ancestor: int, stats: dict[int, Usage]) -> set[int]:
-    """All descendants of a process.
-
-    Whom /proc calls a zombie is one of them: threads of it may go on.
-    """
-    children: dict[int, list[int]] = {}
-    for number, stat in stats.items():
-        children.setdefault(stat.parent, []).append(number)
-    found: set[int] = set()
-    pending = [ancestor]
-    while pending:
-        below = [each for each in children.get(pending.pop(), []) if each not in found]
-        found.update(below)
-        pending += below
-    return found
+def _below() -> dict[int, ProcessStat]:
+    """All descendants of this process."""
+    return linux.descendants(os.getpid())

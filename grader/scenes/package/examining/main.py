@@ -1,11 +1,11 @@
 """The process that looks at a package: finds it, lays it out, evaluates it, leaves what it found.
 
-    python main.py {"root": ..., "package": ..., "folder": ..., "leaves": ...}
-    python main.py {"root": ..., "set_ups": ..., "program": ..., "is_whole": ..., "leaves": ...}
+    python main.py {"root": ..., "leaves": ..., "added": ..., ARGUMENTS OF inspect}
 
-It is a submission's process, confined as such: what is in it may be anything. It leaves a trace as
-JSON in the open file `leaves`. Each step that runs a stranger's code is a copy of it, and cannot
-reach that file.
+It is a submission's process, confined as such: what is in it may be anything. It leaves an
+`Inspection` as JSON in the open file `leaves`. Each step that runs a stranger's code is a copy of
+it, and cannot reach that file. What is `added` to a submission, so that it can be started, is no
+part of its package: it goes.
 """
 
 from __future__ import annotations
@@ -14,20 +14,19 @@ import json
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-Seen = tuple["PackageTrace", tuple[str, ...]]
 ROOT = Path(__file__).resolve().parents[4]
 if __name__ == "__main__":
     sys.path[0] = str(ROOT)
 
 from grader import linux  # noqa: E402
-from grader.scenes.package import inspection, trace  # noqa: E402
+from grader.scenes.package import inspection  # noqa: E402
 from grader.scenes.package.examining import layout, leftovers, packages, setup_call  # noqa: E402
+from grader.scenes.package.examining.layout import Workspace  # noqa: E402
 from grader.scenes.package.examining.looking import Looking  # noqa: E402
-from grader.scenes.package.examining.place import Place  # noqa: E402
 from grader.scenes.package.examining.steps import Ended, attempt, open_account  # noqa: E402
 from grader.scenes.package.inspection import Inspection, SetUp  # noqa: E402
 from grader.scenes.package.trace import FAILED, PackageTrace  # noqa: E402
@@ -47,58 +46,51 @@ def _main() -> None:
     linux.control(linux.PR_SET_DUMPABLE, 0)  # no copy opens our descriptors by /proc
     leftovers.adopt()
     with tempfile.TemporaryDirectory(prefix="package-", ignore_cleanup_errors=True) as scratch:
-        folder = Path(order["folder"]) if "folder" in order else None
-        root, place = Path(order["root"]), Path(scratch).resolve()
-        if "set_ups" in order:
-            asked = (order["set_ups"], order["program"])
-            data = inspection.encode(inspect(root, *asked, place, is_whole=order["is_whole"]))
-        else:
-            data = trace.encode(look(root, order["package"], place, folder))
-    with open(order["leaves"], "wb") as left:
+        root, leaves = Path(order.pop("root")), order.pop("leaves")
+        for each in order.pop("added", ()):
+            (root / each).unlink()
+        data = inspection.encode(inspect(root, Path(scratch).resolve(), **order))
+    with open(leaves, "wb") as left:
         left.write(data)
 
 
 def inspect(
-    root: Path, folders: list[str], program: str, scratch: Path, *, is_whole: bool
+    root: Path,
+    scratch: Path,
+    *,
+    set_ups: Sequence[str] = (),
+    program: str = "",
+    package: str = "",
+    folder: str = "",
+    is_whole: bool = True,
 ) -> Inspection:
-    """What set-ups name to be started, and what there is of the package that has it.
+    """What set-ups name to be started, and what there is of one package.
 
     Args:
-        folders: those that hold set-up files, below the root.
+        set_ups: folders that hold set-up files, below the root; the package that counts is then
+            the one that has the program.
         program: the console script that is asked for.
+        package, folder: which package counts otherwise, by its name or by where it lies; '' for
+            the one that describes a robot.
         is_whole: whether more is looked at than launch files.
     """
     root = root.resolve()
-    set_ups = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in folders)
-    known = {root / each.folder: (each.told, each.problem) for each in set_ups}
+    said = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in set_ups)
+    known = {root / each.folder: (each.told, each.problem) for each in said}
 
     def worth(set_up: SetUp) -> tuple[bool, bool]:
         names = [line.partition("=")[0].strip() for line in set_up.told.scripts]
         return program in names, bool(names)
 
-    best = max(set_ups, key=worth, default=None)
-    if best is None:
-        return Inspection()
-    folder = root / best.folder
-    found, plain = _attempted(lambda: _look(root, "", scratch, folder, known, is_whole=is_whole))
-    return Inspection(set_ups, best.folder, found, plain)
-
-
-def look(root: Path, asked: str, scratch: Path, folder: Path | None = None) -> PackageTrace:
-    """What there is to be found in a folder with packages.
-
-    Args:
-        asked, folder: which of them counts, by its name or by where it lies; '' and None for the
-            one that describes a robot.
-    """
-    return _attempted(lambda: _look(root, asked, scratch, folder, {}, is_whole=True))[0]
-
-
-def _attempted(work: Callable[[], Seen]) -> Seen:
+    best = max(said, key=worth).folder if said else ""
+    judged = root / best if said else Path(folder).resolve() if folder else None
     try:
-        return attempt(work)
+        found, plain = attempt(
+            lambda: _look(root, package, scratch, judged, known, is_whole=is_whole)
+        )
     except Ended as ended:  # nothing that a step was made of: so much can be said
-        return PackageTrace(setup=layout.nothing("", ended.problem)), ()
+        found, plain = PackageTrace(setup=layout.nothing("", ended.problem)), ()
+    return Inspection(said, best, found, plain)
 
 
 def _look(
@@ -109,7 +101,7 @@ def _look(
     known: layout.Known,
     *,
     is_whole: bool,
-) -> Seen:
+) -> tuple[PackageTrace, tuple[str, ...]]:
     """What was found, and launch files in which there is nothing but nodes.
 
     Args:
@@ -117,8 +109,8 @@ def _look(
         is_whole: whether more is looked at than launch files.
     """
     open_account()
-    found = packages.find(root.resolve())
-    one = packages.judged(found, asked, folder and folder.resolve())
+    found = packages.find(root)
+    one = packages.judged(found, asked, folder)
     if one is None:
         return PackageTrace(), ()
     with suppress(ImportError):  # once, and not by each copy that runs it
@@ -128,9 +120,9 @@ def _look(
     declared = {name for each in found for name in each.depends}
     layout.make_stubs(stubs, declared, {each.name for each in found})
     (empty / "home").mkdir(parents=True)
-    laid = {id(each): layout.lay_out(each, root.resolve(), prefix, known) for each in found}
+    laid = {id(each): layout.lay_out(each, root, prefix, known) for each in found}
     judged, everything = laid[id(one)], tuple(laid.values())
-    place = Place(prefix, stubs, empty, scratch / "asked", judged, everything, root.resolve())
+    place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
     looking = Looking(place, scratch)
     return looking.trace(is_whole=is_whole), tuple(looking.plain)
 

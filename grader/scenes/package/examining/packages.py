@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
+from grader.message import NOTHING, Message, msg
 from grader.scenes.package.examining import paths
+from grader.scenes.package.examining.steps import it
 
 MANIFEST = "package.xml"
 _SKIPPED = {"build", "install", "log", "__pycache__", "venv", "env", "node_modules"}
@@ -19,7 +21,7 @@ _MOST_DEPENDS, _LONGEST = 500, 500
 
 
 @dataclass(frozen=True)
-class Package:
+class SourcePackage:
     """A package.
 
     Attributes:
@@ -32,7 +34,7 @@ class Package:
     folder: Path
     name: str = ""
     build_type: str = ""
-    manifest: str = ""
+    manifest: Message = NOTHING
     depends: tuple[str, ...] = ()
     files: tuple[str, ...] = field(default=(), repr=False)
 
@@ -77,9 +79,9 @@ def is_launch_file(name: str) -> bool:
     return name.endswith(endings)
 
 
-def find(root: Path) -> list[Package]:
+def find(root: Path) -> list[SourcePackage]:
     """All packages, in the order of their paths."""
-    found: list[Package] = []
+    found: list[SourcePackage] = []
     for at, folders, files in os.walk(root):
         folders[:] = sorted(
             each for each in folders if each not in _SKIPPED and not each.startswith(".")
@@ -90,26 +92,28 @@ def find(root: Path) -> list[Package]:
     return found
 
 
-def read(folder: Path) -> Package:
+def read(folder: Path) -> SourcePackage:
     """What the package in a folder says of itself."""
     files = _files(folder)
     if not (folder / MANIFEST).is_file():
-        return Package(folder, manifest="there is none", files=files)
+        return SourcePackage(folder, manifest=msg("there is none"), files=files)
     try:
         data = paths.read(folder / MANIFEST, _MOST_BYTES + 1)
         if len(data) > _MOST_BYTES or b"<!DOCTYPE" in data:
             raise ValueError("it is larger than any, or has a DOCTYPE")
         root = ElementTree.fromstring(data)
     except (OSError, ValueError, LookupError, ElementTree.ParseError) as error:
-        return Package(folder, manifest=f"it does not parse: {error}"[:300], files=files)
+        return SourcePackage(
+            folder, manifest=it(msg("does not parse: {error}", error=str(error)[:280])), files=files
+        )
     name = (root.findtext("name") or "").strip()[:_LONGEST]
     lacking = [tag for tag in _REQUIRED if root.find(tag) is None]
     types = root.findall("export/build_type")
-    return Package(
+    return SourcePackage(
         folder,
         name=name,
         build_type="".join((types[0].text or "").split())[:_LONGEST] if types else "",
-        manifest=f"it has no <{lacking[0]}>" if lacking else "",
+        manifest=it(msg("has no <{tag}>", tag=lacking[0])) if lacking else NOTHING,
         depends=tuple(
             dict.fromkeys(
                 each.text.strip()[:_LONGEST] for each in root if each.tag in _DEPENDS and each.text
@@ -119,14 +123,16 @@ def read(folder: Path) -> Package:
     )
 
 
-def judged(found: list[Package], asked: str, folder: Path | None = None) -> Package | None:
+def judged(
+    found: list[SourcePackage], asked: str, folder: Path | None = None
+) -> SourcePackage | None:
     """The package that describes a robot; the one that is asked for, by its name or its folder."""
     if folder is not None:
         return next((each for each in found if each.folder == folder), None)
     if asked:
         return next((each for each in found if each.name == asked), None)
 
-    def worth(package: Package) -> tuple[bool, bool, bool, int]:
+    def worth(package: SourcePackage) -> tuple[bool, bool, bool, int]:
         robots = package.descriptions
         named = package.name.endswith("_description")
         return bool(robots), bool(package.launch_files), named, len(robots)

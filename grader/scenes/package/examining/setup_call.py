@@ -20,9 +20,9 @@ from typing import Any, Final
 
 from grader import strict_json
 from grader.scenes.package.examining import paths
-from grader.scenes.package.examining.steps import NONSENSE, Ended, in_folder, step
+from grader.scenes.package.examining.steps import NONSENSE, Ended, in_folder, it, step
 from grader.scenes.package.inspection import DataFiles, Told
-from grader.scenes.package.trace import Problem
+from grader.scenes.package.trace import Obstacle
 
 #: What a package may set for setuptools, which learns of these by entry points.
 _KEYWORDS: Final = (
@@ -34,7 +34,7 @@ _KEYWORDS: Final = (
 _OFFLINE: Final = ("VALIDATE_PYPROJECT_NO_NETWORK", "NO_NETWORK")
 
 
-def evaluate(folder: Path) -> tuple[Told, Problem | None]:
+def evaluate(folder: Path) -> tuple[Told, Obstacle | None]:
     """What the set-up of a folder says; and what ended it, where it came to no end."""
 
     def own(path: str) -> str:
@@ -46,7 +46,7 @@ def evaluate(folder: Path) -> tuple[Told, Problem | None]:
     except Ended as ended:
         problem = ended.problem
     except ValueError:
-        problem = Problem("limit", NONSENSE)
+        problem = Obstacle("limit", it(NONSENSE))
     if not problem.file and not paths.is_file(folder / "setup.py"):
         names = ("pyproject.toml", "setup.cfg")
         problem = replace(problem, file=next(n for n in names if paths.is_file(folder / n)))

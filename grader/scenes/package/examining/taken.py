@@ -4,12 +4,25 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
+from grader.message import Message, msg
 from grader.scenes.package.examining import commands, foreign, known, paths
-from grader.scenes.package.examining.place import Place
-from grader.scenes.package.examining.steps import NotKnown, end_of
+from grader.scenes.package.examining.layout import Workspace
+from grader.scenes.package.examining.steps import LIMITS, NotKnown, end_of, it
+from grader.scenes.package.trace import (
+    Include,
+    Lacking,
+    LaunchedNode,
+    LaunchFile,
+    Obstacle,
+    Parameter,
+    Skipped,
+)
+from grader.strict_json import STRANGERS
 
 #: A text that is longer is no name or number, but a description.
 LONG: Final = 300
@@ -24,44 +37,93 @@ SUFFIXES: Final = (
 )
 
 
+@dataclass(frozen=True)
+class Evaluated:
+    """What was taken down of a launch file.
+
+    Attributes:
+        launch: as far as this file tells alone; `packages` are those that are there.
+        texts: what the numbers of its texts stand for.
+        sources: descriptions that were read, in their order.
+        refused: what xacro said where it made nothing.
+        borrowed: packages that are not there, with files of the submission's.
+        missing: packages that were asked for, and are not there.
+        others: kinds of actions, but for nodes.
+    """
+
+    launch: LaunchFile
+    texts: Annotated[tuple[str, ...], STRANGERS._replace(characters=LIMITS.answer_bytes)]
+    sources: tuple[str, ...]
+    refused: tuple[str, ...]
+    borrowed: tuple[str, ...]
+    missing: tuple[str, ...]
+    others: tuple[str, ...]
+
+
 class Taken:
     """What is taken down of a launch file; the `record` of a double's context."""
 
-    def __init__(self, place: Place) -> None:
+    def __init__(self, place: Workspace) -> None:
         self._place = place
         self.context: Any = None
-        self.found: dict[str, list[Any]] = {
-            key: []
-            for key in (
-                "nodes",
-                "processes",
-                "includes",
-                "declared",
-                "lacking",
-                "remarks",
-                "refused",
-                "borrowed",
-                "skipped",
-                "others",
-            )
-        }
-        self.texts: list[str] = []
+        self._nodes: list[LaunchedNode] = []
+        self._processes: list[str] = []
+        self._includes: list[Include] = []
+        self._declared: list[str] = []
+        self._lacking: list[Lacking] = []
+        self._remarks: list[Message] = []
+        self._refused: list[str] = []
+        self._borrowed: list[str] = []
+        self._skipped: list[Skipped] = []
+        self._others: list[str] = []
+        self._texts: list[str] = []
         self._depth = 0
         #: descriptions that were read, in their order
         self.sources: list[str] = []
+
+    def evaluated(
+        self, file: str, problem: Obstacle | None, there: Sequence[str], missing: Sequence[str]
+    ) -> Evaluated:
+        """All of it; with packages that were asked for, those that are there and the others."""
+        launch = LaunchFile(
+            file=file,
+            problem=problem,
+            nodes=tuple(self._nodes),
+            processes=tuple(self._processes),
+            includes=tuple(self._includes),
+            declared=tuple(self._declared),
+            packages=tuple(there),
+            lacking=tuple(self._lacking),
+            remarks=tuple(self._remarks),
+            moved="",
+            skipped=tuple(self._skipped),
+        )
+        return Evaluated(
+            launch,
+            tuple(self._texts),
+            tuple(self.sources[:20]),
+            tuple(self._refused),
+            tuple(self._borrowed),
+            tuple(missing),
+            tuple(self._others),
+        )
 
     # Called by the doubles ----------------------------------------------------------------------
 
     def node(self, node: dict[str, Any]) -> None:
         """A node that would start."""
         given = [*node["parameters"], *self._by_argument(node)]
-        parameters = [self._parameter(each) for each in given]
+        parameters = tuple(self._parameter(each) for each in given)
         self._look_for_paths(node["arguments"])
-        self._add("nodes", {**self._from_where(node), "parameters": parameters})
+        words = {each: tuple(node[each]) for each in ("arguments", "remappings")}
+        _add(
+            self._nodes,
+            LaunchedNode(**{**self._from_where(node), **words, "parameters": parameters}),
+        )
 
     def skipped(self, node: dict[str, Any]) -> None:
         """A node that would start on a condition that is not met."""
-        self._add("skipped", self._from_where(node))
+        _add(self._skipped, Skipped(**self._from_where(node)))
 
     def _from_where(self, node: dict[str, Any]) -> dict[str, Any]:
         """A node with the file and line that say that it starts."""
@@ -79,7 +141,7 @@ class Taken:
     def visited(self, kind: str) -> None:
         """An action of whatever kind."""
         if kind not in ("LaunchDescription", "Node"):
-            self._add("others", kind[:LONG])
+            _add(self._others, kind[:LONG])
 
     def process(self, words: list[str]) -> None:
         """Another program that would start; a node, where it is plainly one."""
@@ -97,16 +159,15 @@ class Taken:
             self.node({**told, "later": self.context.is_later})
             return
         self._look_for_paths(words)
-        self._add("processes", " ".join(words)[:1000])
+        _add(self._processes, " ".join(words)[:1000])
 
     def declared(self, name: str) -> None:
         """An argument."""
-        self._add("declared", name)
+        _add(self._declared, name)
 
-    def remark(self, text: str) -> None:
+    def remark(self, remark: Message) -> None:
         """What works, and need not."""
-        if text not in self.found["remarks"]:
-            self._add("remarks", text)
+        _add(self._remarks, remark)
 
     def executable(self, package: str, name: str) -> None:
         """A program of a package is wanted."""
@@ -125,9 +186,9 @@ class Taken:
             programs_of = (self._place.prefix / "lib" / each / name for each in ours)
             is_known = self._place.knows(package)
             if not is_known and any(map(paths.is_file, programs_of)):
-                self._add("borrowed", package)
+                _add(self._borrowed, package)
         if not there:
-            self._lack("executable", f"{package} {name}", "")
+            self.lack("executable", f"{package} {name}", "")
 
     def path(self, wanted: str) -> str:
         """Where a file is, or the one that was meant.
@@ -139,12 +200,13 @@ class Taken:
             return wanted
         package, own = self._place.borrowed(wanted)
         if package:
-            self._add("borrowed", package)
+            _add(self._borrowed, package)
             return self.path(own)
         if wanted.startswith(f"{self._place.stubs}/"):
-            raise NotKnown(f"it needs {self._place.told(wanted)}, a file of another package")
+            name = self._place.told(wanted)
+            raise NotKnown(it(msg("needs {name}, a file of another package", name=name)))
         meant = self._place.meant(wanted)
-        self._lack("file", wanted, meant)
+        self.lack("file", wanted, meant)
         return meant or wanted
 
     def include(self, path: str, arguments: dict[str, str]) -> bool:
@@ -168,8 +230,8 @@ class Taken:
         package, _, file = path.removeprefix(f"{self._place.stubs}/share/").partition("/")
         given = [f"{name}:={value}"[:1000] for name, value in arguments.items()]
         if file not in known.FILES.get(package, (file,)):
-            self._lack("file", path, "")
-        self._add("includes", {"package": package, "file": file, "arguments": given})
+            self.lack("file", path, "")
+        _add(self._includes, Include(package, file, tuple(given)))
 
         def expand(model: str) -> str:
             return self.command(["xacro", model], "fail")
@@ -180,7 +242,7 @@ class Taken:
 
     def foreign(self, package: str, name: str) -> None:
         """An action of another package, of which no more is known."""
-        self._add("includes", {"package": package, "file": f"{name}()"[:1000], "arguments": []})
+        _add(self._includes, Include(package, f"{name}()"[:1000], ()))
 
     def command(self, words: list[str], on_stderr: str) -> str:
         """What a `Command` prints.
@@ -196,13 +258,17 @@ class Taken:
         if words[:1] == ["ros2"]:
             said = commands.ros2(words, get_package_prefix)
             if said is None:
-                self.remark(f"`{' '.join(words[:3])}` asks a running system, which nobody has here")
+                command = " ".join(words[:3])
+                asks = msg(
+                    "`{command}` asks a running system, which nobody has here", command=command
+                )
+                self.remark(asks)
             return said or ""
         shown = self._place.told(" ".join(words))
         if words and os.path.basename(words[0]) == "xacro":
             code, out, errors = self.xacro(words[1:])
             if code:  # the launch file has done what it should
-                self._add("refused", f"xacro: {_end(errors)}")
+                _add(self._refused, f"xacro: {_end(errors)}")
                 return ""
         else:
             code, out, errors = commands.other(words, self.path)
@@ -248,8 +314,10 @@ class Taken:
         if has_one or not files or node["executable"] != "robot_state_publisher":
             return []
         self.remark(
-            "robot_state_publisher gets the description as a file, which it still reads, with a "
-            "warning: give it the parameter robot_description"
+            msg(
+                "robot_state_publisher gets the description as a file, which it still reads, with "
+                "a warning: give it the parameter robot_description"
+            )
         )
         try:
             with open(os.path.abspath(files[0]), encoding="utf-8") as file:
@@ -258,17 +326,16 @@ class Taken:
             return []
         return [{"name": "robot_description", "value": text, "wrapped": True}]
 
-    def _parameter(self, given: dict[str, Any]) -> dict[str, Any]:
+    def _parameter(self, given: dict[str, Any]) -> Parameter:
         value, name = given["value"], str(given["name"])[:LONG]
         if isinstance(value, str) and (len(value) > LONG or name == "robot_description"):
-            if value not in self.texts:
-                self.texts.append(value)
-            number = self.texts.index(value)
-            return {"name": name, "value": "", "text": number, "wrapped": given["wrapped"]}
+            if value not in self._texts:
+                self._texts.append(value)
+            return Parameter(name, "", self._texts.index(value), given["wrapped"])
         if isinstance(value, str):
             self._look_for_paths([value])
         told = value if isinstance(value, str) else json.dumps(value, default=str)
-        return {"name": name, "value": told[:1000], "text": -1, "wrapped": given["wrapped"]}
+        return Parameter(name, told[:1000], -1, given["wrapped"])
 
     def _look_for_paths(self, words: list[str]) -> None:
         """Files that a node is told to read have to be there."""
@@ -281,20 +348,15 @@ class Taken:
                     continue
                 self.path(path)
 
-    def _lack(self, kind: str, name: str, source: str) -> None:
-        self._add(
-            "lacking",
-            {
-                "kind": kind,
-                "name": name[:1000],
-                "source": self._place.own(source) if source else "",
-                "by": "",
-            },
-        )
+    def lack(self, kind: str, name: str, source: str) -> None:
+        """Something is named that is not there; `source` is where the file lies that was meant."""
+        own = self._place.own(source) if source else ""
+        _add(self._lacking, Lacking(kind, name, own, ""))
 
-    def _add(self, what: str, entry: Any) -> None:
-        if entry not in self.found[what] and len(self.found[what]) < _MOST:
-            self.found[what].append(entry)
+
+def _add(to: list[Any], entry: Any) -> None:
+    if entry not in to and len(to) < _MOST:
+        to.append(entry)
 
 
 def _python(path: str, read: str) -> Any:

@@ -26,7 +26,7 @@ WIPED: Final = -1
 
 
 @dataclass
-class _Part:
+class _TurtleFrames:
     """What is known of one turtle, frame by frame; there may be gaps."""
 
     stretches: list[list[int]] = field(default_factory=list)
@@ -39,7 +39,7 @@ class Reel:
     """Takes a run down; frames come in their order."""
 
     def __init__(self) -> None:
-        self._parts: dict[str, _Part] = {}
+        self._parts: dict[str, _TurtleFrames] = {}
         self._backgrounds: list[list[Any]] = []
         self._colors: dict[Color, int] = {}
         self._ops: list[list[int]] = []
@@ -79,7 +79,7 @@ class Reel:
 
     def turtle(self, frame: int, name: str, place: Place, pose: Pose) -> None:
         """Where a turtle is in this frame: centre [px, y down] and heading [rad], and its pose."""
-        part = self._parts.setdefault(name, _Part())
+        part = self._parts.setdefault(name, _TurtleFrames())
         if part.stretches and part.stretches[-1][1] == frame - 1:
             part.stretches[-1][1] = frame
         else:

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from grader.batch.find import Found, find
-from grader.batch.hand_in import HandIn
+from grader.batch.entry import HandIn
+from grader.batch.find.finding import Found, find
 
 NODE = "def main():\n    pass\n"
 
@@ -94,4 +94,4 @@ def content(hand_in: HandIn) -> set[str]:
 
 def noted(found: Found, *words: str) -> bool:
     """Whether one of the notes has all these words."""
-    return any(all(word in note for word in words) for note in found.notes)
+    return any(all(word in note for word in words) for note in map(str, found.notes))

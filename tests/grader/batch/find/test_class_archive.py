@@ -44,7 +44,7 @@ def test_one_bad_member_keeps_nobody_else_out(tmp_path: Path, finder: Finder) ->
     alice, bob, _, empty = found.hand_ins
     assert alice.path and alice.path.read_text() == NODE
     assert content(bob) == {"node.py"}
-    assert empty.problem == "What was handed in is an empty folder."
+    assert str(empty.problem) == "What was handed in is an empty folder."
     assert noted(found, "outside of its folder", "../outside.py", "/etc/absolute.py")
     assert noted(found, "link", "bob/passwd")
     assert noted(found, "cannot be written here", "alice.py", "bob/node.py/inside.py")
@@ -168,7 +168,7 @@ def test_names_that_are_too_long_keep_their_ends(tmp_path: Path, finder: Finder)
 
 
 def test_what_was_unpacked_goes_with_the_context(tmp_path: Path) -> None:
-    from grader.batch.find import find
+    from grader.batch.find.finding import find
 
     archive = tmp_path / "class.zip"
     archive.write_bytes(packed({"a.py": NODE, "b.py": NODE}))

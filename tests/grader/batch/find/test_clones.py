@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.batch.find import git_time
+from grader.batch.find import clones
 from tests.grader.batch.find.exports import (
     NODE,
     Finder,
@@ -64,7 +64,7 @@ def test_classroom_50_says_who_was_to_hand_in_and_when(tmp_path: Path, finder: F
         "dora": "Dora Dee",
     }
     assert str(by_id["anna-b"].at) == "2026-10-31 09:00:00+00:00"
-    assert by_id["dora"].problem == "Nothing was handed in."
+    assert str(by_id["dora"].problem) == "Nothing was handed in."
 
 
 def test_nothing_of_a_repository_is_run_and_no_link_followed(
@@ -105,7 +105,7 @@ def test_git_is_not_asked_where_it_would_wait_for_a_pipe(
     pipe = tmp_path / "class" / "spiral-anna" / ".git" / "objects" / name
     pipe.parent.mkdir(exist_ok=True)
     os.mkfifo(pipe)
-    monkeypatch.setattr(git_time.subprocess, "run", lambda *_, **__: pytest.fail("git was asked"))
+    monkeypatch.setattr(clones.subprocess, "run", lambda *_, **__: pytest.fail("git was asked"))
     (found,) = finder(tmp_path / "class").hand_ins
     assert found.at is None
 

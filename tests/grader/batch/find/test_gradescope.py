@@ -78,8 +78,8 @@ def test_the_metadata_say_who_and_when(tmp_path: Path, finder: Finder) -> None:
     assert content(zoe) == {"node.py"}
     assert [person.name for person in group.people] == ["Ann", "Bob"]
     assert group.at == datetime(2026, 11, 2, 8, tzinfo=UTC)
-    assert by_id["gone@example.org"].problem.startswith("Gradescope's export holds no file")
-    assert by_id["105"].problem == "What was handed in is an empty folder."
+    assert str(by_id["gone@example.org"].problem).startswith("Gradescope's export holds no file")
+    assert str(by_id["105"].problem) == "What was handed in is an empty folder."
     assert noted(found, "Several attempts", "Ann")
 
 

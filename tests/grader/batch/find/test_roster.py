@@ -10,6 +10,7 @@ import pytest
 from grader.batch.find.joining import UNCLEAR
 from grader.batch.find.roster import Roster, read_roster
 from grader.errors import UsageError
+from grader.message import NOTHING
 from tests.grader.batch.find.exports import NODE, Finder, lay, noted
 
 FILES = {"alice.py": NODE, "bob.py": NODE}
@@ -86,7 +87,7 @@ def test_a_table_that_is_none_says_so(tmp_path: Path) -> None:
 def test_a_roster_adds_names_and_whoever_handed_in_nothing(tmp_path: Path, finder: Finder) -> None:
     table = "id,name,at\nALICE,Alice A,2026-11-01T12:00:00Z\ncarol,Carol C,\ncarol,Twice,\n,,x\n"
     found = finder(lay(tmp_path / "c", {**FILES, "Roster.csv": table}))
-    assert [(each.id, each.name, each.problem) for each in found.hand_ins] == [
+    assert [(each.id, each.name, str(each.problem)) for each in found.hand_ins] == [
         ("ALICE", "Alice A", ""),
         ("bob", "bob", ""),
         ("carol", "Carol C", "Nothing was handed in."),
@@ -114,7 +115,7 @@ def test_two_of_one_student_are_kept_apart_where_nothing_tells_which_is_newer(
     table = "id,name,email\ns1,Alice,alice@x.org\n"
     files = {**dict.fromkeys(names, NODE), "roster.csv": table}
     found = finder(lay(tmp_path / "c", files))
-    assert [each.problem for each in found.hand_ins if each.path] == ["", ""]
+    assert [each.problem for each in found.hand_ins if each.path] == [NOTHING, NOTHING]
     assert [each.name for each in found.hand_ins if each.problem == UNCLEAR] == ["Alice"]
     assert not noted(found, "Several attempts")
     assert noted(found, "Ambiguous", "may be Alice (s1)")
@@ -190,7 +191,7 @@ def test_two_of_one_name_are_told_to_be_ambiguous(tmp_path: Path, finder: Finder
 
 def test_times_that_cannot_be_read_are_told(tmp_path: Path) -> None:
     found = roster(tmp_path, "id,at\nzoe,2026-11-30T23:00:00\nbob,yesterday\n7,2026-13-45\nx,\n")
-    (note,) = found.notes
+    (note,) = map(str, found.notes)
     assert "bob: yesterday, 7: 2026-13-45" in note
     assert "Expected one such as 2026-11-01T12:30:00+01:00" in note
     assert "local time" in note

@@ -8,10 +8,9 @@ from typing import Any
 
 from PIL import Image
 
-from grader.batch.entry import Entry
-from grader.batch.hand_in import HandIn, Person
-from grader.result.handed_in import HandedIn
-from grader.result.result import Result
+from grader.batch.entry import Entry, HandIn, Person
+from grader.message import plain_text
+from grader.result.result import HandedIn, Result
 from grader.strict_json import to_json
 from tests.grader.reports import samples
 
@@ -85,4 +84,4 @@ def judged(folder: Path, *people: Person, deducted: float = 0.0, **more: Any) ->
 
 
 def without_result(state: Any, *people: Person, message: str = "") -> Entry:
-    return Entry(HandIn(people[0].id, people), state, MAXIMUM, message=message)
+    return Entry(HandIn(people[0].id, people), state, MAXIMUM, message=plain_text(message))

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from grader.batch.entry import Person
 from grader.batch.gradebook import canvas
 from grader.batch.gradebook.grade import grades
-from grader.batch.gradebook.notes import notes
-from grader.batch.gradebook.write import CANVAS_FEEDBACK, Options, write
-from grader.batch.hand_in import Person
+from grader.batch.gradebook.write import CANVAS_FEEDBACK, notes, write
+from grader.message import plain_text
 from tests.grader.batch.gradebook import canvas_reads
 from tests.grader.batch.gradebook.people import (
     NAMES,
@@ -73,7 +73,7 @@ def test_semicolons_in_names_do_not_cut_the_table() -> None:
 def test_canvas_gives_the_feedback_to_whoever_handed_in(tmp_path: Path) -> None:
     class_ = [judged(tmp_path, in_canvas(number)) for number in CLASS]
     class_.append(judged(tmp_path, person(99)))
-    write(tmp_path, class_, Options("Spiral"))
+    write(tmp_path, class_, plain_text("Spiral"))
     content = (tmp_path / "export" / CANVAS_FEEDBACK).read_bytes()
     submissions = {7000 + number: [90000 + number] for number in CLASS}
     found, ignored = canvas_reads.feedback_zip(content, submissions)
@@ -87,7 +87,7 @@ def test_canvas_gives_the_feedback_to_whoever_handed_in(tmp_path: Path) -> None:
 def test_who_handed_in_a_program_gets_text(tmp_path: Path) -> None:
     name = "doejane_7001_90001_node.py"
     entry = judged(tmp_path, in_canvas(1, **{"Exported as": name}))
-    write(tmp_path, [entry], Options("Spiral"))
+    write(tmp_path, [entry], plain_text("Spiral"))
     content = (tmp_path / "export" / CANVAS_FEEDBACK).read_bytes()
     found, _ = canvas_reads.feedback_zip(content, {7001: [90001]})
     assert found[7001][1].decode().startswith("## some\\_exercise: 18.33 of 40 points")
@@ -96,7 +96,7 @@ def test_who_handed_in_a_program_gets_text(tmp_path: Path) -> None:
 def test_a_group_has_one_file_and_a_row_for_each(tmp_path: Path) -> None:
     second = in_canvas(2, **{"Exported as": ""})
     entry = judged(tmp_path, in_canvas(1), second)
-    write(tmp_path, [entry], Options("Spiral"))
+    write(tmp_path, [entry], plain_text("Spiral"))
     with zipfile.ZipFile(tmp_path / "export" / CANVAS_FEEDBACK) as archive:
         assert archive.namelist() == ["obrien_LATE_7001_90001_my_1_node.zip"]
     assert list(imported([entry]).grades) == [7001, 7002]
@@ -108,7 +108,7 @@ def test_nobody_is_in_an_import_twice(tmp_path: Path) -> None:
     newer = replace(newer, hand_in=hand_in)
     found = grades([newer, older, without_result("nothing", in_canvas(1))])
     assert [grade.final for grade in found] == [18.33, None, None]
-    assert "with more than one hand-in" in notes(found, "Spiral")[0]
+    assert "with more than one hand-in" in str(notes(found, "Spiral")[0])
     assert [grade.final for grade in grades([older, older])] == [None, None]  # nothing tells
 
 

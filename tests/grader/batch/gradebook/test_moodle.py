@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from grader.batch.entry import Person
 from grader.batch.find.joining import UNCLEAR
 from grader.batch.gradebook import moodle
 from grader.batch.gradebook.feedback import Feedback
 from grader.batch.gradebook.grade import grades
-from grader.batch.gradebook.notes import notes
-from grader.batch.gradebook.write import MOODLE_FEEDBACK, Options, write
-from grader.batch.hand_in import Person
+from grader.batch.gradebook.write import MOODLE_FEEDBACK, notes, write
+from grader.message import plain_text
 from tests.grader.batch.gradebook import moodle_reads
 from tests.grader.batch.gradebook.people import (
     MAXIMUM,
@@ -65,8 +65,8 @@ def test_a_groups_number_is_not_taken_for_that_of_a_student_in_the_worksheet(
     group = Person("1003", "Team 3", {"Identifier": "Participant 1003"})
     class_ = [judged(tmp_path, in_worksheet(1)), judged(tmp_path, group)]
     assert worksheet(class_).keys() == {1001}
-    told = write(tmp_path, class_, Options("Spiral"))
-    assert "Not in Moodle's grading worksheet and feedback: Team 3" in told[0]
+    told = write(tmp_path, class_, plain_text("Spiral"))
+    assert "Not in Moodle's grading worksheet and feedback: Team 3" in str(told[0])
     content = (tmp_path / "export" / MOODLE_FEEDBACK).read_bytes()
     assert moodle_reads.feedback_zip(content, PARTICIPANTS).keys() == {1001}
 
@@ -123,7 +123,7 @@ def test_an_id_that_only_begins_like_a_formula_stays_what_it_is(tmp_path: Path) 
 def test_moodle_gives_each_student_the_page_and_nobody_anothers(tmp_path: Path) -> None:
     class_ = [judged(tmp_path, in_worksheet(number)) for number in CLASS[2:]]
     class_.append(judged(tmp_path, in_worksheet(0), in_worksheet(1)))
-    write(tmp_path, class_, Options("Spiral"))
+    write(tmp_path, class_, plain_text("Spiral"))
     content = (tmp_path / "export" / MOODLE_FEEDBACK).read_bytes()
     found = moodle_reads.feedback_zip(content, PARTICIPANTS)
     assert found.keys() == PARTICIPANTS
@@ -132,7 +132,7 @@ def test_moodle_gives_each_student_the_page_and_nobody_anothers(tmp_path: Path) 
 
 
 def test_no_name_in_the_zip_leads_anywhere_else(tmp_path: Path) -> None:
-    write(tmp_path, [judged(tmp_path, in_worksheet(n)) for n in CLASS], Options("Spiral"))
+    write(tmp_path, [judged(tmp_path, in_worksheet(n)) for n in CLASS], plain_text("Spiral"))
     content = (tmp_path / "export" / MOODLE_FEEDBACK).read_bytes()
     names = zipfile.ZipFile(io.BytesIO(content)).namelist()
     assert not [name for name in names if set('/\\:*?"<>|\n') & set(name) or name[0] in ".~"]
@@ -149,4 +149,4 @@ def test_whose_hand_in_is_not_clear_gets_no_grade() -> None:
     table = moodle.grade_import(everybody, "Spiral", Feedback())
     assert "900" in table
     assert "901" not in table
-    assert "Mia without a grade, and in no import" in notes(everybody, "Spiral")[0]
+    assert "Mia without a grade, and in no import" in str(notes(everybody, "Spiral")[0])

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import zipfile
 from pathlib import Path
 
+import pytest
+
+from grader.batch.entry import Person
 from grader.batch.gradebook.feedback import Feedback
 from grader.batch.gradebook.grade import grades
-from grader.batch.gradebook.write import Options, write
-from grader.batch.hand_in import Person
+from grader.batch.gradebook.write import as_csv, as_lines, write
+from grader.message import plain_text
 from tests.grader.batch.gradebook.people import (
+    NAMES,
     in_canvas,
     in_worksheet,
     judged,
@@ -20,7 +25,7 @@ from tests.grader.batch.gradebook.people import (
 )
 from tests.grader.reports.samples import MIXED, run, verdict
 
-OPTIONS = Options("Spiral")
+TITLE = plain_text("Spiral")
 
 
 def written(out: Path) -> dict[str, bytes]:
@@ -33,24 +38,24 @@ def test_the_same_class_gives_the_same_bytes(tmp_path: Path) -> None:
     for name, wall_s, isolation in (("a", 4.25, "domain 17"), ("b", 9.5, "domain 3")):
         circumstances = {"run": run(wall_s=wall_s, isolation=isolation)}
         class_ = [judged(tmp_path / name, each, **circumstances) for each in people]
-        write(tmp_path / name, class_, OPTIONS)
+        write(tmp_path / name, class_, TITLE)
     assert written(tmp_path / "a") == written(tmp_path / "b")
     assert len(written(tmp_path / "a")) == 8
 
 
 def test_an_export_that_there_is_no_more_goes(tmp_path: Path) -> None:
-    write(tmp_path, [judged(tmp_path, in_worksheet(0))], OPTIONS)
+    write(tmp_path, [judged(tmp_path, in_worksheet(0))], TITLE)
     assert "export/moodle-feedback.zip" in written(tmp_path)
-    notes = write(tmp_path, [judged(tmp_path, person(0))], OPTIONS)
+    notes = write(tmp_path, [judged(tmp_path, person(0))], TITLE)
     assert written(tmp_path).keys() == {
         *("gradebook.csv", "gradebook.jsonl", "export/feedback.zip", "export/notes.txt")
     }
     assert len(notes) == 1
-    assert "--roster" in notes[0]
+    assert "--roster" in str(notes[0])
 
 
 def test_nobody_at_all_is_a_class_too(tmp_path: Path) -> None:
-    assert write(tmp_path, [], OPTIONS) == []
+    assert write(tmp_path, [], TITLE) == []
     assert written(tmp_path).keys() == {"gradebook.csv", "gradebook.jsonl"}
 
 
@@ -58,27 +63,27 @@ def test_who_is_left_out_is_told(tmp_path: Path) -> None:
     lower = in_worksheet(0, **{"Maximum Grade": "20,00"})
     others = [judged(tmp_path, person(number)) for number in range(1, 6)]
     failed = without_result("failed", in_worksheet(7))
-    notes = write(tmp_path, [judged(tmp_path, lower), *others, failed], OPTIONS)
-    told = "\n".join(notes)
+    notes = write(tmp_path, [judged(tmp_path, lower), *others, failed], TITLE)
+    told = "\n".join(map(str, notes))
     assert "and 2 more, of whom the participant number is not known" in told
     assert "a maximum of 20,00, the exercise of 40" in told
     assert "../../etc/passwd" not in told
     assert "two lines and a tab without" not in told
     assert "without a grade: the grader failed" in told
-    assert (tmp_path / "export/notes.txt").read_text().splitlines() == notes
+    assert (tmp_path / "export/notes.txt").read_text().splitlines() == list(map(str, notes))
 
 
 def test_numbers_that_may_be_those_of_groups_are_told(tmp_path: Path) -> None:
     by_name = Person("1", "Team 1", {"Identifier": "Participant 17"})
-    (note,) = write(tmp_path, [judged(tmp_path, by_name)], OPTIONS)
-    assert "numbers of groups" in note
+    (note,) = write(tmp_path, [judged(tmp_path, by_name)], TITLE)
+    assert "numbers of groups" in str(note)
 
 
 def test_of_canvas_it_is_told_what_is_missing(tmp_path: Path) -> None:
     nameless = Person("x", "Xaver", {"SIS User ID": "sis-9"})
-    note, other = write(tmp_path, [judged(tmp_path, nameless)], OPTIONS)
-    assert "which assignment 'Spiral' is" in note
-    assert "Not in Canvas's feedback: Xaver" in other
+    note, other = write(tmp_path, [judged(tmp_path, nameless)], TITLE)
+    assert "which assignment 'Spiral' is" in str(note)
+    assert "Not in Canvas's feedback: Xaver" in str(other)
 
 
 def test_a_student_reads_nothing_of_what_is_hidden(tmp_path: Path) -> None:
@@ -119,7 +124,7 @@ def test_a_page_does_not_tell_when_a_line_was_logged_or_where_an_object_lay(
 
 
 def test_zips_have_no_dates_and_are_whole(tmp_path: Path) -> None:
-    write(tmp_path, [judged(tmp_path, in_worksheet(n)) for n in (3, 1, 2)], OPTIONS)
+    write(tmp_path, [judged(tmp_path, in_worksheet(n)) for n in (3, 1, 2)], TITLE)
     with zipfile.ZipFile(tmp_path / "export/moodle-feedback.zip") as archive:
         assert archive.testzip() is None
         assert {member.date_time for member in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
@@ -129,7 +134,7 @@ def test_zips_have_no_dates_and_are_whole(tmp_path: Path) -> None:
 def test_every_table_has_as_many_cells_in_each_row(tmp_path: Path) -> None:
     class_ = [judged(tmp_path, in_worksheet(n)) for n in range(12)]
     class_ += [judged(tmp_path, in_canvas(n)) for n in range(12, 24)]
-    write(tmp_path, class_, OPTIONS)
+    write(tmp_path, class_, TITLE)
     tables = {name: data for name, data in written(tmp_path).items() if name.endswith(".csv")}
     assert len(tables) == 4
     for content in tables.values():
@@ -144,8 +149,65 @@ def test_no_link_in_the_place_of_an_export_is_followed(tmp_path: Path) -> None:
     (elsewhere / "notes.txt").write_text("mine")
     everybody = [judged(out, person(0))]
     (out / "export").symlink_to(elsewhere)
-    write(out, everybody, OPTIONS)
+    write(out, everybody, TITLE)
     (out / "export" / "moodle-grade-import.csv").symlink_to(elsewhere / "notes.txt")
-    write(out, everybody, OPTIONS)
+    write(out, everybody, TITLE)
     assert sorted(path.name for path in (out / "export").iterdir()) == ["feedback.zip", "notes.txt"]
     assert [path.read_text() for path in elsewhere.iterdir()] == ["mine"]
+
+
+def rows(entries, **options):
+    text = as_csv(grades(entries, **options))
+    assert text.startswith("\ufeff")  # for Excel; every reader of utf-8-sig takes it away
+    return list(csv.DictReader(io.StringIO(text[1:]), strict=True))
+
+
+def test_each_member_of_a_group_has_a_row(tmp_path: Path) -> None:
+    first, second = rows([judged(tmp_path, person(0), person(2), deducted=3)])
+    assert (first["id"], second["id"], second["name"]) == ("s0", "s2", "李小龙")
+    assert {first["group"], second["group"]} == {"s0; s2"}
+    assert (first["score"], first["late_deduction"], first["final"]) == ("18.33", "3.00", "15.33")
+    assert (first["max_score"], first["state"], first["attempt"]) == ("40.00", "judged", "2")
+    assert first["handed_in"] == "2026-11-02T09:15:00+00:00"
+    assert [first[check] for check in ("starts", "draws", "rests")] == ["10.00", "8.33", "0.00"]
+
+
+def test_nobody_pays_for_the_grader_and_nothing_is_worth_nothing() -> None:
+    class_ = [
+        without_result("nothing", person(0)),
+        without_result("unusable", person(1), message="No Python file."),
+        without_result("failed", person(2), message="The grader failed."),
+    ]
+    assert [row["final"] for row in rows(class_)] == ["0.00", "0.00", ""]
+    assert [row["final"] for row in rows(class_, nothing_is_zero=False)] == ["", "0.00", ""]
+    assert rows(class_)[1]["message"] == "No Python file."
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_name_is_a_formula_or_breaks_a_row(name: str) -> None:
+    (row,) = rows([without_result("nothing", Person("s1", name))])
+    assert not row["name"].startswith(tuple("=+-@\t"))
+    assert row["name"].removeprefix("'") == " ".join(name.split())
+    assert None not in row
+
+
+def test_a_check_may_be_called_as_a_column_is(tmp_path: Path) -> None:
+    from tests.grader.reports.samples import verdict
+
+    listed = [verdict("final"), verdict("=1+1")]
+    entry = judged(tmp_path, person(0), verdicts=listed, score=20, max_score=20)
+    (row,) = rows([entry])
+    assert (row["final"], row["final (check)"], row["'=1+1"]) == ("20.00", "10.00", "10.00")
+
+
+def test_lines_of_json_have_everything_as_it_is(tmp_path: Path) -> None:
+    class_ = [
+        judged(tmp_path, person(3), person(6), deducted=30),
+        without_result("failed", person(1), message="Why."),
+    ]
+    found = [json.loads(line) for line in as_lines(grades(class_)).splitlines()]
+    first, second, third = found
+    assert (first["name"], second["name"]) == (NAMES[3], NAMES[6])
+    assert (first["score"], first["late_deduction"], first["final"]) == (18.33, 18.33, 0.0)
+    assert first["checks"] == {"starts": 10, "draws": 8.33, "stops": 0, "rests": 0}
+    assert (third["final"], third["state"], third["message"]) == (None, "failed", "Why.")

@@ -3,29 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from grader.batch.entry import Entry, State
-from grader.batch.hand_in import HandIn, Person
+from grader.batch.entry import Entry, HandIn, Person, State
 from grader.batch.page.students import Student, students
+from grader.message import Message, as_message, msg
 from grader.result.result import Result
 from tests.grader.reports import samples
 from tests.grader.reports.samples import verdict
 
+OFF = msg("It is {metres} m off.", metres=1)
 
-def result(points: Mapping[str, float], rationale: str = "It is 1 m off.", **more: Any) -> Result:
+
+def result(points: Mapping[str, float], rationale: str | Message = OFF, **more: Any) -> Result:
     """Ten points a check; what has less failed, what is negative was not judged."""
     listed = [
         verdict(check, "passed")
         if earned == 10
         else verdict(check, "not_judged", 0)
         if earned < 0
-        else verdict(check, "failed", earned, rationale=rationale)
+        else verdict(check, "failed", earned)
         for check, earned in points.items()
     ]
-    return Result.from_json(samples.result(*listed, **more))
+    made = Result.from_json(samples.result(*listed, **more))
+    said = as_message(rationale)
+    verdicts = (replace(v, rationale=said) if v.status == "failed" else v for v in made.verdicts)
+    return replace(made, verdicts=tuple(verdicts))
 
 
 def entry(
@@ -34,13 +40,13 @@ def entry(
     *,
     name: str = "",
     state: State = "judged",
-    message: str = "",
+    message: str | Message = "",
     at: datetime | None = None,
     folder: Path = Path("/nowhere"),
 ) -> Entry:
     """A hand-in; judged where there is a result."""
     hand_in = HandIn(id, (Person(id, name),), at=at)
-    return Entry(hand_in, state, 20.0, message=message, result=judged, folder=folder)
+    return Entry(hand_in, state, 20.0, message=as_message(message), result=judged, folder=folder)
 
 
 def student(judged: Result | None = None, **more: Any) -> Student:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 
 from grader.batch.page.students import evenly, students
-from grader.result.handed_in import HandedIn
+from grader.result.result import HandedIn
 from tests.grader.batch.page.classes import entry, result, student
 
 GOOD = {"a": 10.0}
@@ -58,5 +58,5 @@ def test_the_time_keeps_its_own_zone():
 
 def test_few_of_many_are_spread_over_all_scores():
     everybody = students(entry(f"s{k}", result({"a": k / 10})) for k in range(100))
-    assert [one.score for one in evenly(everybody, 4)] == [9.9, 7.4, 4.9, 2.4]
+    assert [one.entry.score for one in evenly(everybody, 4)] == [9.9, 7.4, 4.9, 2.4]
     assert len(evenly(everybody, 200)) == 100

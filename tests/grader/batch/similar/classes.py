@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from grader.batch.entry import SUBMISSIONS, Entry, entries
-from grader.batch.hand_in import HandIn, Person
+from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person, entries
 from grader.batch.similar import behaviour, sources
-from grader.batch.similar.look import look_together
-from grader.batch.similar.shown import Class
+from grader.batch.similar.page import Class, look_together
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording
 

@@ -3,15 +3,14 @@
 import pytest
 
 from grader.batch.similar.behaviour import POINTS, Asked, Behaved
-from grader.batch.similar.commands import equal
-from grader.batch.similar.compare import LARGE_CLASS, HandedIn, compare
+from grader.batch.similar.compare import LARGE_CLASS, Compared, compare, equal
 
 
 def behaves(number, end_mm=4000, step=31):
     """Somebody with commands and a way of his own kind, and nothing else."""
     commands = tuple(Asked(step * n, 100 * number + n) for n in range(20))
     path = tuple(value for n in range(POINTS) for value in (n * end_mm // POINTS, number * n))
-    return HandedIn("", Behaved((), commands, path))
+    return Compared("", Behaved((), commands, path))
 
 
 def listed(handed_in):
@@ -37,21 +36,21 @@ def test_in_a_small_class_it_lists_nobody():
 
 def test_ways_that_are_nearly_the_same_are_found_though_no_command_is():
     near = behaves(50)
-    other = HandedIn("", Behaved((), behaves(51).behaved.commands, near.behaved.path))
+    other = Compared("", Behaved((), behaves(51).behaved.commands, near.behaved.path))
     (pair,) = compare([*usual(60), near, other]).pairs
     assert (pair.first, pair.second, pair.path_mm, pair.equal_commands) == (60, 61, 0, 0.0)
 
 
 def test_who_did_nothing_is_like_nobody():
-    nothing = HandedIn("", Behaved())
-    assert listed([*usual(60), nothing, nothing, HandedIn("", None)]) == []
+    nothing = Compared("", Behaved())
+    assert listed([*usual(60), nothing, nothing, Compared("", None)]) == []
 
 
 def test_commands_of_which_nearly_all_are_the_same_are_alike():
     one = behaves(50).behaved.commands
     other = (*one[:19], Asked(31 * 19, 7))
     other_way = behaves(51, 8000).behaved.path
-    changed = HandedIn("", Behaved((), other, other_way))
+    changed = Compared("", Behaved((), other, other_way))
     (pair,) = compare([*usual(60), behaves(50), changed]).pairs
     assert (pair.first, pair.second, pair.commands_hands) == (60, 61, 2)
 
@@ -66,15 +65,15 @@ def test_how_many_others_behave_so_is_told():
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "ticks", "share"),
+    ("one", "other", "time_ns", "share"),
     [
-        ([(0, 1), (31, 2), (62, 3)], [(0, 1), (31, 2), (62, 3)], 63, 1.0),
+        ([(0, 1), (31, 2), (62, 3)], [(0, 1), (31, 2), (62, 3)], 62, 1.0),
         ([(0, 1), (31, 2), (62, 3)], [(0, 1), (31, 2), (62, 4)], 62, 0.6667),
         ([(0, 1), (31, 2), (62, 3)], [(0, 1), (30, 2), (62, 3)], 30, 0.6667),
         ([(0, 1), (31, 2)], [(0, 1)], 31, 0.5),
         ([], [(0, 1)], 0, 0.0),
     ],
 )
-def test_commands_are_compared_tick_by_tick(one, other, ticks, share):
+def test_commands_are_compared_one_by_one(one, other, time_ns, share):
     both = ([Asked(*each) for each in commands] for commands in (one, other))
-    assert equal(*both) == (ticks, share)
+    assert equal(*both) == (time_ns / 1e9, share)

@@ -12,7 +12,7 @@ from grader.recording.recording import Recording, Recordings
 from grader.strict_json import to_json
 from grader.testing import drive, pen, twist
 from tests.grader.driving import CENTRE, RED, WHITE, Spiral
-from tests.grader.language.known import unknown
+from tests.grader.languages.holes import unknown
 
 FULL = {
     "moves": 5,
@@ -159,7 +159,7 @@ def test_an_empty_recording_says_that_no_command_came():
     exercise = load_exercise("turtlesim_challenge")
     recording = drive(lambda *_: None, ticks=900)
     first = judge(Recordings(recording), exercise.checks, exercise.points, exercise.tolerances)[0]
-    assert first.rationale.startswith(
+    assert str(first.rationale).startswith(
         "Your node published no velocity command on /turtle1/cmd_vel in 14.4 s"
     )
 
@@ -188,7 +188,7 @@ def test_a_velocity_that_is_no_number_is_named_and_leaves_finite_evidence():
     recordings = Recordings(drive(SendsNotANumber(), ticks=2500))
     verdicts = judge(recordings, exercise.checks, exercise.points, exercise.tolerances)
     stop = next(verdict for verdict in verdicts if verdict.check == "edge_stop")
-    assert "not a number" in stop.rationale
+    assert "not a number" in str(stop.rationale)
     json.dumps([to_json(verdict) for verdict in verdicts], allow_nan=False)
 
 

@@ -13,7 +13,7 @@ from grader.exercises.turtlesim_challenge import colours
 from grader.recording.recording import Recordings
 from grader.testing import drive, pen, twist
 from tests.grader.driving import BLUE, CENTRE, GREEN, RED, WHITE, Spiral
-from tests.grader.language.known import unknown
+from tests.grader.languages.holes import unknown
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 EXERCISE = load_exercise("turtlesim_challenge")
@@ -92,7 +92,7 @@ def test_who_stops_by_turning_and_then_stands_has_stopped_by_a_command():
     ("controller", "told"),
     [
         (TurnsForEver, "turned on the spot until the run was over"),
-        (TurnsAndFallsSilent, "to turn on the spot; that ended only because no more commands came"),
+        (TurnsAndFallsSilent, "turn on the spot; that ended only because no more commands came"),
         (FallsSilent, "because no more commands came"),
     ],
 )
@@ -100,16 +100,16 @@ def test_a_stop_that_is_not_quite_one_is_worth_half_as_in_the_square(controller,
     # from where others start, a turtle that nobody stops may roll on into the wall
     found = verdicts(controller, varied=controller is not TurnsForEver, seed=1946)["edge_stop"]
     assert found.score == 12.5
-    assert told in found.rationale
-    assert "half of the points" in found.rationale
+    assert told in str(found.rationale)
+    assert "half of the points" in str(found.rationale)
 
 
 def test_who_stops_and_then_drives_on_is_told_when():
     found = verdicts(TimerGoesOn, varied=False)["edge_stop"]
     assert found.score == 0
-    assert "your node stopped it at 50.19 s" in found.rationale
-    assert "then sent another command" in found.rationale
-    assert "what else in your node publishes" in found.help
+    assert "your node stopped it at 50.19 s" in str(found.rationale)
+    assert "then sent another command" in str(found.rationale)
+    assert "What else in your node publishes" in str(found.help)
 
 
 class ForgetsToReturn(Spiral):
@@ -131,15 +131,15 @@ class SilentAtTheEdge(ForgetsToReturn):
 
 def test_who_drives_on_in_the_moment_of_the_stop_is_asked_for_a_return():
     found = verdicts(ForgetsToReturn)["edge_stop"]
-    assert "was told to stop at" in found.rationale
-    assert "in the same moment to drive on" in found.rationale
-    assert "is a `return` missing" in found.help
+    assert "was told to stop at" in str(found.rationale)
+    assert "in the same moment to drive on" in str(found.rationale)
+    assert "is a `return` missing" in str(found.help)
 
 
 def test_who_falls_silent_is_told_to_publish_zeros_wherever_that_carries_the_turtle():
     found = verdicts(SilentAtTheEdge)["edge_stop"]
-    assert found.rationale.startswith("The turtle came to rest because no more commands came")
-    assert found.help == "Publish a Twist of zeros to stop."
+    assert str(found.rationale).startswith("The turtle came to rest because no more commands came")
+    assert str(found.help) == "Publish a Twist of zeros to stop."
 
 
 class NeverStops(Spiral):
@@ -149,8 +149,8 @@ class NeverStops(Spiral):
 
 def test_who_runs_into_a_wall_without_any_stop_is_asked_whether_the_condition_is_ever_true():
     found = verdicts(NeverStops, varied=False)["edge_stop"]
-    assert "no Twist of zeros was ever sent" in found.rationale
-    assert "`and` or `or`" in found.help
+    assert "no Twist of zeros was ever sent" in str(found.rationale)
+    assert "`and` or `or`" in str(found.help)
 
 
 class PausesEachTime(Spiral):
@@ -200,10 +200,10 @@ class TwoTimers(Spiral):
 )
 def test_who_never_comes_near_a_wall_is_told_what_the_commands_show(controller, told, help_):
     found = verdicts(controller, varied=False, ticks=LIMIT // 2)
-    assert told in found["edge_stop"].rationale.partition(". ")[0]
-    assert help_ in found["edge_stop"].help
-    assert "came to rest" not in found["edge_stop"].rationale
-    assert "-0.00" not in found["spiral"].rationale
+    assert told in str(found["edge_stop"].rationale).partition(". ")[0]
+    assert help_ in str(found["edge_stop"].help)
+    assert "came to rest" not in str(found["edge_stop"].rationale)
+    assert "-0.00" not in str(found["spiral"].rationale)
 
 
 class WatchesTheRightWallOnly(Spiral):
@@ -261,14 +261,16 @@ class WatchesLeftAndBottomOnly(Spiral):
 def test_who_watches_one_wall_only_is_told_which_one_is_not_watched(controller):
     found = verdicts(controller)["edge_stop"]
     assert found.score == 0
-    assert "It stopped at the" in found.rationale
-    assert found.help.endswith("There are four: x and y each have a smallest and a largest value.")
+    assert "It stopped at the" in str(found.rationale)
+    assert str(found.help).endswith(
+        "There are four: x and y each have a smallest and a largest value."
+    )
 
 
 def test_who_forgets_the_upper_bounds_is_found_from_starts_on_the_other_side():
     found = verdicts(WatchesLeftAndBottomOnly, seed=1946)["edge_stop"]
     assert found.score == 0
-    assert "It stopped at the" in found.rationale
+    assert "It stopped at the" in str(found.rationale)
 
 
 class CountsItsSteps(Spiral):
@@ -287,13 +289,13 @@ class CountsToASmallerCircle(Spiral):
 def test_a_stop_by_the_commands_is_none_by_the_pose(controller):
     found = verdicts(controller)["edge_stop"]
     assert found.score == 0
-    assert "at the same moment" in found.rationale
+    assert "at the same moment" in str(found.rationale)
 
 
 def test_a_stop_by_the_commands_that_is_near_a_wall_by_chance_is_none_either():
     found = verdicts(CountsToASmallerCircle, seed=1946)["edge_stop"]
     assert found.score == 0
-    assert "near a wall each time is chance" in found.rationale
+    assert "near a wall each time is chance" in str(found.rationale)
 
 
 class Slow(Spiral):
@@ -311,13 +313,13 @@ class VerySlow(Spiral):
 def test_a_slow_right_spiral_is_judged_by_the_runs_that_come_near_a_wall():
     found = verdicts(Slow, ticks=LIMIT)
     assert total(found) == 100
-    assert "the time, 180 s, was up" in found["edge_stop"].rationale
+    assert "the time, 180 s, was up" in str(found["edge_stop"].rationale)
 
 
 def test_a_spiral_too_slow_for_any_run_is_told_the_limit_and_nothing_of_windows():
     found = verdicts(VerySlow, varied=False, ticks=LIMIT)["edge_stop"]
-    assert "A run lasts 180 s" in found.rationale
-    assert "grow faster" in found.help
+    assert "A run lasts 180 s" in str(found.rationale)
+    assert "grow faster" in str(found.help)
 
 
 class OneTimer(Spiral):
@@ -396,27 +398,27 @@ def test_a_loop_that_only_publishes_earns_a_quarter():
 def test_what_was_hardly_driven_earns_next_to_nothing_for_how_it_was_driven():
     found = verdicts(CrashesAtSixSeconds, varied=False)
     assert found["steady_rate"].score + found["no_redundant_calls"].score < 2
-    assert "fewer than the 2 turns" in found["no_redundant_calls"].rationale
+    assert "fewer than the 2 turns" in str(found["no_redundant_calls"].rationale)
 
 
 def test_two_quadrants_are_not_four():
     found = verdicts(HalfATurn, varied=False)
     assert found["pen_per_quadrant"].score == 10
-    assert "Of the four quadrants 2 were entered" in found["pen_per_quadrant"].rationale
+    assert "Of the four quadrants 2 were entered" in str(found["pen_per_quadrant"].rationale)
     assert total(found) < 55
 
 
 def test_a_pen_that_is_off_is_told_first_and_its_calls_are_worth_nothing():
     found = verdicts(PenOff)
     assert total(found) == 65
-    assert "The pen is off everywhere" in found["pen_per_quadrant"].rationale
-    assert "`off`" in found["no_redundant_calls"].help
+    assert "The pen is off everywhere" in str(found["pen_per_quadrant"].rationale)
+    assert "`off`" in str(found["no_redundant_calls"].help)
 
 
 def test_several_commands_in_each_step_are_no_rate():
     found = verdicts(FloodsCommands, varied=False)["steady_rate"]
     assert found.score == 0
-    assert "nothing makes your node wait" in found.rationale
+    assert "nothing makes your node wait" in str(found.rationale)
 
 
 # Colours ------------------------------------------------------------------------------------------
@@ -437,9 +439,9 @@ class FourShades(Spiral):
 def test_two_quadrants_of_one_colour_are_named_with_it():
     found = verdicts(TwoAlike)
     told = "Quadrants II and IV are both red (255, 0, 0)."
-    assert told in found["pen_per_quadrant"].rationale
-    assert told in found["picture"].rationale
-    assert found["pen_per_quadrant"].rationale.endswith("times 3/4 (colours).")
+    assert told in str(found["pen_per_quadrant"].rationale)
+    assert told in str(found["picture"].rationale)
+    assert str(found["pen_per_quadrant"].rationale).endswith("times 3/4 (colours).")
     assert found["pen_per_quadrant"].score == 15
 
 
@@ -457,8 +459,8 @@ def test_an_exercise_may_ask_for_its_own_colours():
     assert total(found) == 100
     found = verdicts(Spiral, varied=False, colours=ASKED)["pen_per_quadrant"]
     assert 14 < found.score < 16
-    assert "Quadrant IV is to be yellow (255, 255, 0)." in found.rationale
-    assert "draws in blue (0, 0, 255) there, not in yellow" in found.evidence[0].note
+    assert "Quadrant IV is to be yellow (255, 255, 0)." in str(found.rationale)
+    assert "draws in blue (0, 0, 255) there, not in yellow" in str(found.evidence[0].note)
 
 
 class Late(Spiral):
@@ -491,9 +493,9 @@ class NineTenthsLate(Late):
 def test_a_colour_that_is_late_is_told_how_late_and_what_is_allowed():
     found = verdicts(NineTenthsLate, varied=False)["pen_per_quadrant"]
     assert found.score < 5
-    assert "The colour comes 0.8" in found.rationale
-    assert "0.61 s are allowed" in found.rationale
-    note = found.evidence[0].note
+    assert "The colour comes 0.8" in str(found.rationale)
+    assert "0.61 s are allowed" in str(found.rationale)
+    note = str(found.evidence[0].note)
     assert note.startswith("enters quadrant IV (bottom right); blue (0, 0, 255) comes 0.67 s later")
     assert note.endswith("until then green (0, 255, 0)")
 
@@ -544,15 +546,15 @@ class LooksOnceASecond(Spiral):
 )
 def test_wrong_colours_are_told_by_their_cause_first(controller, told, help_):
     found = verdicts(controller)["pen_per_quadrant"]
-    assert found.rationale.startswith(told)
-    assert help_ in found.help
-    assert found.rationale.endswith("(colours).")  # how the points come about is told last
+    assert str(found.rationale).startswith(told)
+    assert help_ in str(found.help)
+    assert str(found.rationale).endswith("(colours).")  # how the points come about is told last
 
 
 def test_the_colour_of_the_quadrant_before_is_told_as_that():
     found = verdicts(ColourOfTheQuadrantBefore, seed=2022)["pen_per_quadrant"]
-    assert "the quadrant that the turtle came from" in found.rationale
-    assert "for which does it ask the colour" in found.help
+    assert "the quadrant that the turtle came from" in str(found.rationale)
+    assert "for which does it ask the colour" in str(found.help)
 
 
 class ColoursByTheCommands(Spiral):
@@ -571,7 +573,7 @@ def test_colours_by_the_commands_are_right_in_the_run_from_the_centre_only():
     found = verdicts(ColoursByTheCommands)["pen_per_quadrant"]
     assert nominal.score > 15
     assert found.score < 10
-    assert found.rationale.startswith("When the turtle started elsewhere")
+    assert str(found.rationale).startswith("When the turtle started elsewhere")
 
 
 class AlmostRed(Spiral):
@@ -581,8 +583,8 @@ class AlmostRed(Spiral):
 def test_colours_that_look_the_same_are_both_named_by_their_numbers():
     found = verdicts(AlmostRed, varied=False)
     told = "I and III are red (255, 0, 0) and red (250, 0, 5): no eye tells them apart."
-    assert told in found["pen_per_quadrant"].rationale
-    assert told in found["picture"].rationale
+    assert told in str(found["pen_per_quadrant"].rationale)
+    assert told in str(found["picture"].rationale)
 
 
 @pytest.mark.parametrize(
@@ -594,7 +596,7 @@ def test_colours_that_look_the_same_are_both_named_by_their_numbers():
     ],
 )
 def test_a_colour_is_called_as_on_the_page(color, said):
-    assert colours.name(color) == said
+    assert str(colours.name(color)) == said
 
 
 class LiftsThePenFirst(Spiral):
@@ -605,13 +607,13 @@ class LiftsThePenFirst(Spiral):
 
 def test_two_calls_at_each_entry_are_told_as_one_too_many():
     found = verdicts(LiftsThePenFirst, varied=False)["no_redundant_calls"]
-    assert "more than once at each entry" in found.rationale
-    assert "One call at each entry is enough" in found.help
+    assert "more than once at each entry" in str(found.rationale)
+    assert "One call at each entry is enough" in str(found.help)
 
 
 def test_who_drives_through_few_quadrants_is_sent_to_the_spiral_first():
     found = verdicts(NeverFaster, varied=False)["pen_per_quadrant"]
-    assert found.help.startswith("Look at the spiral first")
+    assert str(found.help).startswith("Look at the spiral first")
 
 
 def test_after_a_crash_no_check_blames_what_did_not_come_any_more():
@@ -621,7 +623,7 @@ def test_after_a_crash_no_check_blames_what_did_not_come_any_more():
     found = judge(recordings, EXERCISE.checks, EXERCISE.points, EXERCISE.tolerances)
     failed = [verdict for verdict in found if verdict.status == "failed"]
     assert failed
-    assert all(verdict.help.startswith("See the error first") for verdict in failed)
+    assert all(str(verdict.help).startswith("See the error first") for verdict in failed)
 
 
 def test_an_exercise_may_allow_more_than_half_of_a_stay():
@@ -634,7 +636,7 @@ def test_the_picture_forgives_what_pen_per_quadrant_forgives():
     assert (found["pen_per_quadrant"].score, found["picture"].score) == (20, 5)
     found = verdicts(NineTenthsLate)
     assert found["picture"].score == 0
-    assert "75 % or more" in found["picture"].rationale
+    assert "75 % or more" in str(found["picture"].rationale)
 
 
 class ColoursTheBackground(Spiral):
@@ -647,7 +649,7 @@ class ColoursTheBackground(Spiral):
 
 def test_the_background_is_not_the_pen():
     found = verdicts(ColoursTheBackground, varied=False)
-    assert found["pen_per_quadrant"].rationale == "The pen was never changed."
+    assert str(found["pen_per_quadrant"].rationale) == "The pen was never changed."
 
 
 # Shapes -------------------------------------------------------------------------------------------
@@ -696,7 +698,7 @@ class ToAndFro(Spiral):
 def test_concentric_circles_are_no_spiral():
     found = verdicts(ConcentricCircles, varied=False, ticks=8000)["spiral"]
     assert found.score <= 15
-    assert "straight outwards" in found.rationale
+    assert "straight outwards" in str(found.rationale)
 
 
 @pytest.mark.parametrize("controller", [SwingsInAndOut, Backwards])
@@ -719,8 +721,8 @@ def test_who_starts_elsewhere_is_told_what_would_be_fine():
         )
 
     found = verdicts(controller, varied=False)["spiral"]
-    assert "starts 1.00 m from the centre; 0.5 m is fine" in found.rationale
-    assert "Of the points it earned 30 % for the turns and 50 % for the growth." in found.rationale
+    assert "starts 1.00 m from the centre; 0.5 m is fine" in str(found.rationale)
+    assert "It earned 30 % for the turns and 50 % for the growth." in str(found.rationale)
 
 
 class NanosecondsForSeconds(Spiral):
@@ -784,15 +786,15 @@ class GoesByTheta(Spiral):
 )
 def test_the_commands_tell_the_cause(controller, check, told, help_):
     found = verdicts(controller, varied=False)[check]
-    assert told in found.rationale
-    assert help_ in found.help
+    assert told in str(found.rationale)
+    assert help_ in str(found.help)
 
 
 def test_colours_by_the_heading_are_told_from_late_ones():
     found = verdicts(GoesByTheta)["pen_per_quadrant"]
     assert found.score < 20
-    assert "The colour changes elsewhere than at x = 5.54 or y = 5.54" in found.rationale
-    assert found.help.startswith("Is it theta, or the time")
+    assert "The colour changes elsewhere than at x = 5.54 or y = 5.54" in str(found.rationale)
+    assert str(found.help).startswith("Is it theta, or the time")
 
 
 class TurnsToAndFro(Spiral):
@@ -803,4 +805,4 @@ class TurnsToAndFro(Spiral):
 
 def test_who_turns_to_and_fro_is_not_told_of_a_speed_that_grows():
     found = verdicts(TurnsToAndFro, varied=False)["spiral"]
-    assert "linear.x grew" not in found.rationale
+    assert "linear.x grew" not in str(found.rationale)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from grader.reports import Report, terminal
+from grader.reports import read as read_report
 from grader.reports.page import html
 from grader.result.result import Result
 from tests.grader.driving import Spiral, drive, pen, twist
@@ -44,7 +45,7 @@ def page(tmp_path_factory, good):
     ]
     folder = tmp_path_factory.mktemp("graded")
     path = samples.graded(folder, good, *verdicts, varied=(good,), output="one\ntwo\n")
-    return html.render(Report.read(path))
+    return html.render(read_report(path))
 
 
 def elements(content, name):
@@ -172,7 +173,7 @@ def test_a_run_in_which_nothing_moved_says_so_and_not_that_it_went_on(tmp_path):
     for recording, words in ((still, "the turtle never moved"), (going, "still going")):
         folder = tmp_path / words
         path = samples.graded(folder, recording, run=samples.run(outcome="time_limit"))
-        report = Report.read(path)
+        report = read_report(path)
         assert f"Nominal run: {words}" in html.render(report).replace("the turtle was ", "")
         assert ("Run: nothing moved, " in terminal.render(report)) == (recording is still)
     without = samples.report(run=samples.run(outcome="time_limit"))
@@ -191,7 +192,7 @@ def test_where_the_first_thing_says_more_a_check_points_to_it():
 
 def test_on_paper_is_the_end_of_what_the_node_printed(tmp_path, good):
     lines = "".join(f"line {number}\n" for number in range(100))
-    content = html.render(Report.read(samples.graded(tmp_path, good, output=lines)))
+    content = html.render(read_report(samples.graded(tmp_path, good, output=lines)))
     (paper,) = re.findall(r'<div class="paper">(.*?)</div>', content, re.DOTALL)
     assert "the last of 100 lines" in paper
     assert "line 99" in paper
@@ -263,17 +264,17 @@ def test_a_full_recording_of_three_runs_with_noise_stays_under_two_megabytes(tmp
     drawn = drive(OtherColourEveryTick(), ticks=7500)
     worst = replace(drawn, trace=replace(drawn.trace, window=noise))
     path = samples.graded(tmp_path, worst, varied=(worst, worst), output="<" * 1_000_000)
-    readers.html(html.render(Report.read(path)))
+    readers.html(html.render(read_report(path)))
 
 
 def test_a_usual_page_of_3500_ticks_is_small(tmp_path, good):
     assert good.run.ticks > 3000
-    assert len(html.render(Report.read(samples.graded(tmp_path, good)))) < 200_000
+    assert len(html.render(read_report(samples.graded(tmp_path, good)))) < 200_000
 
 
 def test_printed_text_is_shown_and_not_obeyed(tmp_path, good):
     output = "</pre><script>alert(1)</script>{{ 7 * 7 }} \x1b[31mred\x1b[0m"
-    content = html.render(Report.read(samples.graded(tmp_path, good, output=output)))
+    content = html.render(read_report(samples.graded(tmp_path, good, output=output)))
     readers.html(content)
     printed = "".join(readers.balanced(content).text)
     assert "</pre><script>alert(1)</script>{{ 7 * 7 }} red" in printed
@@ -292,7 +293,7 @@ def test_a_turtle_that_is_not_a_number_is_left_out(tmp_path, good):
     trajectories = {"turtle1": Trajectory.of_rows(rows)}
     broken = replace(good, trace=replace(good.trace, trajectories=trajectories))
     lost = verdict("a", "failed", 0, evidence=[evidence("lost")])
-    read = Report.read(samples.graded(tmp_path, broken, lost))
+    read = read_report(samples.graded(tmp_path, broken, lost))
     # only in memory: no result file holds what is no number
     result = Result.read(read.folder / "result.json")
     (judged,) = result.verdicts
@@ -320,4 +321,4 @@ def test_the_foot_tells_where_the_result_comes_from():
 
 def test_an_empty_recording_makes_a_page(tmp_path):
     path = samples.graded(tmp_path, drive(lambda *_: None, ticks=1))
-    readers.html(html.render(Report.read(path)))
+    readers.html(html.render(read_report(path)))

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from grader.reports import Report
+from grader.reports import read as read_report
 from grader.reports.page import html
 from tests.browser import needs_browser, open_browser
 from tests.grader.driving import Spiral, drive
@@ -27,7 +27,7 @@ def page(tmp_path_factory):
         verdict("stops", "failed", 0, evidence=[evidence("too far", 30.0, run=1)]),
     ]
     folder = tmp_path_factory.mktemp("graded")
-    read = Report.read(samples.graded(folder, good, *verdicts, varied=(good, good), output="one"))
+    read = read_report(samples.graded(folder, good, *verdicts, varied=(good, good), output="one"))
     path = folder / "page.html"
     path.write_text(html.render(read))
     return path
@@ -57,7 +57,7 @@ def test_on_paper_is_the_run_with_the_fault_and_no_control(shown, tmp_path):
     listed = ["pdftotext", str(pdf), "-"]
     said = subprocess.run(listed, capture_output=True, text=True, check=True).stdout
     said = " ".join(said.split())
-    assert "First thing to mend: Title of stops" in said
+    assert "Fix this first: Title of stops" in said
     assert "Where the turtle went Varied run 1: from (4.00, 7.00)" in said
     assert "Title of stops: varied run 1, at 30.00 s" in said
     assert "top left (quadrant II): mostly red" in said

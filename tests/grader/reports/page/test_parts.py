@@ -7,18 +7,25 @@ import re
 
 import pytest
 
+from grader.message import plain_text
 from grader.recording.recording import Recording, Run
-from grader.reports import Report
+from grader.recording.view import Tree, TreeNode
+from grader.reports import read as read_report
 from grader.reports.page import html
-from grader.reports.page.trees import DEEPEST, WIDTH, drawn
-from grader.scenes.package.trace import Description, Launch, Node, PackageTrace, Parameter
-from grader.scenes.robot.driving import drive
-from grader.scenes.robot.trace import RobotTrace
-from grader.scenes.view import Tree, TreeNode
+from grader.reports.page.parts import DEEPEST, WIDTH, drawn
+from grader.scenes.package.trace import (
+    Description,
+    LaunchedNode,
+    LaunchFile,
+    PackageTrace,
+    Parameter,
+)
+from grader_robots.scene.driving import drive
+from grader_robots.scene.trace import RobotTrace
 from tests.grader.reports import readers, samples
 from tests.grader.reports.samples import evidence, verdict
-from tests.grader.scenes.robot.robots import walks
-from tests.grader.scenes.robot.test_solid import URDF
+from tests.grader_robots.scene.robots import walks
+from tests.grader_robots.scene.test_view import URDF
 
 EXPECTED = [
     {"curve": "Joint turn", "text": "turns <on>", "within": [-1, 2], "beyond": [0.5, 1.5]},
@@ -29,9 +36,9 @@ EVIL = "</script><img src=x onerror=alert(1)>"
 
 
 def page_of(folder, trace, scene, *verdicts):
-    run = Run(ticks=trace.ticks, simulated_s=trace.simulated_s, trace_sha256=trace.sha256())
+    run = Run(ticks=trace.ticks, simulated_s=trace.duration_ns / 1e9, trace_sha256=trace.sha256())
     recording = Recording(trace, run, scene=scene)
-    return html.render(Report.read(samples.graded(folder, recording, *verdicts)))
+    return html.render(read_report(samples.graded(folder, recording, *verdicts)))
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +50,10 @@ def robot(tmp_path_factory):
 def package_trace(name: str = "arm") -> PackageTrace:
     box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
     urdf = f'<robot name="{name}"><link name="base">{box}</link></robot>'
-    node = Node("rviz2", EVIL, "", "", (EVIL,), (Parameter("p", EVIL, -1, True),), (), False)
-    launch = Launch("launch/a.launch.py", None, (node,), (), (), (), (), (), (), "")
+    node = LaunchedNode(
+        "rviz2", EVIL, "", "", (EVIL,), (Parameter("p", EVIL, -1, True),), (), False
+    )
+    launch = LaunchFile("launch/a.launch.py", None, (node,), (), (), (), (), (), (), "")
     of = Description(0, EVIL, True, "urdf/a.urdf", None, (), True)
     return PackageTrace(launches=(launch,), descriptions=(of,), texts=(urdf,))
 
@@ -137,8 +146,8 @@ def test_a_page_of_turtles_has_nothing_of_it():
 
 
 def test_a_deep_tree_stays_in_its_width():
-    nodes = tuple(TreeNode(depth, "n" * 60, "t" * 200) for depth in range(40))
-    made = drawn(Tree("deep", nodes))
+    nodes = tuple(TreeNode(depth, "n" * 60, plain_text("t" * 200)) for depth in range(40))
+    made = drawn(Tree(plain_text("deep"), nodes))
     assert max(node.x for node in made.nodes) < WIDTH / 2
     assert len({node.x for node in made.nodes}) == DEEPEST + 1
     assert all(len(node.name) * 8 + node.x < WIDTH + 20 for node in made.nodes)

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from grader.reports.page.tracks import film, svg_path
+from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.scenes.turtlesim.view import view
 from tests.grader.driving import GREEN, RED, Spiral, drive, pen, twist
 from turtlesim_py.world.turtle import SIZE_M, TICK_S
 
 
 def film_of(recording):
-    return film(view(recording.trace), recording.run.ticks, TICK_S)
+    return film(view(recording.trace), recording.trace.duration_ns)
 
 
 def test_a_line_is_interrupted_where_a_place_is_missing():
@@ -24,7 +25,9 @@ def test_a_long_run_is_thinned_out_and_keeps_its_end():
     (track,) = shown.tracks
     assert 500 < len(shown.times) <= 1001
     assert shown.times[-1] == pytest.approx(recording.run.ticks * TICK_S)
-    assert track.x[-1] == pytest.approx(recording.trace.trajectory().x[-1] * 45, abs=0.01)
+    assert track.x[-1] == pytest.approx(
+        TurtleTrace.of(recording.trace).trajectory().x[-1] * 45, abs=0.01
+    )
 
 
 def test_ink_has_the_pens_colour_and_gaps_where_it_was_off():

@@ -13,13 +13,14 @@ import rclpy.task
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from grader import versions
+from grader.message import NOTHING, msg
 from grader.run.lockstep import contract
 
 GROUPS = (contract.ENTITIES, contract.PROGRAM)
 
 
 def test_the_installed_rclpy_keeps_the_contract() -> None:
-    assert contract.broken(*GROUPS) == ""
+    assert contract.broken(*GROUPS) == NOTHING
 
 
 def documented(doc: str) -> type:
@@ -57,7 +58,7 @@ def test_one_line_says_what_does_not_hold(
     else:
         monkeypatch.setattr(owner, name, value)
     found = contract.broken(*GROUPS)
-    assert found == f"virtual time does not fit rclpy {versions.rclpy()}: {line}"
+    assert str(found) == f"virtual time does not fit rclpy {versions.rclpy()}: {line}"
 
 
 def test_what_constructors_get_beyond_the_known_is_no_breach(
@@ -69,7 +70,7 @@ def test_what_constructors_get_beyond_the_known_is_no_breach(
         setattr(kind, name, getattr(_rclpy.Subscription, name))
     kind.destroy_when_not_in_use = _rclpy.Subscription.destroy_when_not_in_use  # type: ignore[attr-defined]
     monkeypatch.setattr(_rclpy, "Subscription", kind)
-    assert contract.broken(*GROUPS) == ""
+    assert contract.broken(*GROUPS) == NOTHING
 
 
 def test_the_executor_s_inside_is_in_the_contract(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,7 +78,7 @@ def test_the_executor_s_inside_is_in_the_contract(monkeypatch: pytest.MonkeyPatc
         self._pending_tasks = {}
 
     monkeypatch.setattr(rclpy.executors.Executor, "__init__", init)
-    assert contract.broken(contract.EXECUTOR).endswith(": Executor has no _tasks")
+    assert str(contract.broken(contract.EXECUTOR)).endswith(": Executor has no _tasks")
 
 
 #: Run by every Python that a run starts, before anything else.
@@ -112,8 +113,8 @@ def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time
     changed_rclpy: Callable[[str, str], None], side: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from grader.run import virtual_time
+    from grader.run.handover import Plan
     from grader.run.opening import open_submission
-    from grader.run.plan import Plan
     from grader.run.processes import levels
     from grader.scenes.scene import Limits
 
@@ -124,5 +125,6 @@ def test_a_broken_contract_on_either_side_is_why_there_is_no_run_in_virtual_time
     with open_submission(submissions / "misbehaving/exits.py") as submission:
         plan = Plan(Limits(1, 0.2, 5))
         found = virtual_time._try(submission, plan, virtual_time.PATIENCE, {}, None)
-    why = f"virtual time does not fit rclpy {versions.rclpy()}: ClockType has no STEADY_TIME"
+    fault = {"version": versions.rclpy(), "fault": "ClockType has no STEADY_TIME"}
+    why = msg("virtual time does not fit rclpy {version}: {fault}", **fault)
     assert found == (None, why)

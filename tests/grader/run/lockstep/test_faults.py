@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from grader.message import Message
 from grader.run.lockstep import faults
 from grader.run.lockstep.registry import EndpointRegistry
 
@@ -57,7 +58,7 @@ def test_running_out_of_something_is_nobody_s_line(
 def test_a_fault_is_reported_before_the_program_can_catch_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    told: list[str] = []
+    told: list[Message] = []
     monkeypatch.setattr(faults, "on_fault", told.append)
 
     class Registry(EndpointRegistry): ...
@@ -65,7 +66,7 @@ def test_a_fault_is_reported_before_the_program_can_catch_it(
     monkeypatch.setattr(Registry, "remove", faults.guarded(EndpointRegistry.remove))
     raised(Registry(lambda: 0).remove, None)
     raised(faults.guarded(faults.pass_on), int, "x")
-    assert [line.rpartition(" ")[0] for line in told] == [
+    assert [str(line).rpartition(" ")[0] for line in told] == [
         "virtual time itself failed (TypeError in registry.py, line"
     ]
 

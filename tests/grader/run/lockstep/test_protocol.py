@@ -1,9 +1,11 @@
+import json
 from contextlib import suppress
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.message import msg, plain_text
 from grader.run.lockstep.protocol import (
     TICK_NS,
     Advance,
@@ -23,6 +25,13 @@ from grader.run.lockstep.protocol import (
 from turtlesim_py.world import arena
 
 U32, U64 = st.integers(0, 2**32 - 1), st.integers(0, 2**64 - 1)
+#: What can be shown: nothing that a terminal would stumble over.
+TEXTS = st.text(st.characters(exclude_categories=("C", "Z")), max_size=100)
+NUMBERS = st.integers(-(2**60), 2**60) | st.floats(allow_nan=False, allow_infinity=False)
+CLAUSES = st.builds(msg, st.just("starts {what} {n:,} times"), what=TEXTS, n=NUMBERS)
+REMARKS = TEXTS.map(plain_text) | st.builds(
+    msg, st.just("the submission {does}"), does=TEXTS | CLAUSES
+)
 PARCELS = st.lists(st.builds(Parcel, U32, U32, U64, U64, st.binary(max_size=50)))
 
 
@@ -35,7 +44,7 @@ def test_a_tick_is_as_long_as_the_world_s() -> None:
         st.builds(Advance, U64, U32, U64, st.booleans()),
         st.builds(Mail, PARCELS),
         st.builds(Reply, U64, st.sampled_from(State), U64, PARCELS),
-        st.builds(Note, st.sampled_from(Kind), st.text(max_size=100)),
+        st.builds(Note, st.sampled_from(Kind), REMARKS),
     )
 )
 def test_packets_survive_the_link(packet: Advance | Mail | Reply | Note) -> None:
@@ -73,6 +82,31 @@ def test_names_that_ros_does_not_allow_are_no_interests(data: bytes) -> None:
 def test_a_parcel_that_is_cut_off_is_a_protocol_error() -> None:
     with pytest.raises(ProtocolError):
         decode(encode(Mail([Parcel(1, 0, 1, 5, b"12345")]))[:-1])
+
+
+def note(remark: object) -> bytes:
+    """The packet of a note with a remark that somebody has made up."""
+    return encode(Note(Kind.UNSUPPORTED)).removesuffix(b'""') + json.dumps(remark).encode()
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        *(3, None, ["a"], {}, {"key": 3}, {"key": "{a}"}, {"key": "{a:.1f}", "values": {"a": []}}),
+        *({"key": "{a[0]}", "values": {"a": "x"}}, {"key": "{a:99999d}", "values": {"a": 1}}),
+        {"key": "{a}", "values": {"a": {"key": "{b}"}}},
+    ],
+)
+def test_a_remark_that_is_no_message_is_a_protocol_error(remark: object) -> None:
+    with pytest.raises(ProtocolError):
+        decode(note(remark))
+
+
+def test_of_a_remark_that_somebody_has_made_up_so_much_is_taken_as_can_be_shown() -> None:
+    made = {"key": "starts\x1b[2J {what}", "values": {"what": "a\n" + "b" * 3000}}
+    packet = decode(note(made))
+    assert isinstance(packet, Note)
+    assert str(packet.remark) == "starts?[2J a?" + "b" * 998
 
 
 @given(st.binary(max_size=200))

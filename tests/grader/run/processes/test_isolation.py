@@ -14,7 +14,7 @@ import pytest
 from grader import scratch
 from grader.errors import NotNow
 from grader.run.processes import isolation, refusal
-from grader.run.stage import Stage, open_stage
+from grader.run.run_context import RunContext, open_context
 
 #: Publishes on /x until its standard input ends, or says what it hears there; ends without cleaning
 #: up, as a killed run does.
@@ -61,14 +61,14 @@ def inside(namespaces: Mapping[str, int]) -> list[str]:
     return ["nsenter", "--preserve-credentials", *words, "--"] if words else []
 
 
-def talk(stage: Stage, role: str, seconds: float) -> "subprocess.Popen[str]":
-    words = [*inside(stage.namespaces), sys.executable, "-c", TALK, role, str(seconds)]
-    return subprocess.Popen(words, env=dict(stage.env), text=True, **PIPES)
+def talk(context: RunContext, role: str, seconds: float) -> "subprocess.Popen[str]":
+    words = [*inside(context.namespaces), sys.executable, "-c", TALK, role, str(seconds)]
+    return subprocess.Popen(words, env=dict(context.env), text=True, **PIPES)
 
 
 def test_the_two_of_a_run_hear_each_other_and_no_other_run(kind: str) -> None:
     with ExitStack() as stack:
-        ours, other = (stack.enter_context(open_stage()) for _ in range(2))
+        ours, other = (stack.enter_context(open_context()) for _ in range(2))
         assert kind in ours.isolation
         talker = stack.enter_context(talk(ours, "talker", 60.0))
         listener = stack.enter_context(talk(ours, "listener", 20.0))
@@ -85,12 +85,13 @@ def test_both_ways_to_a_private_network(way, tmp_path: Path) -> None:
     except OSError:
         pytest.skip("this system does not allow it")
     shown = subprocess.run(
-        [*inside(namespaces.fds), "cat", "/proc/net/dev"],
+        [*inside(namespaces), "cat", "/proc/net/dev"],
         capture_output=True,
         text=True,
         check=True,
     )
-    namespaces.close()
+    for namespace in namespaces.values():
+        os.close(namespace)
     assert [line.split(":")[0].strip() for line in shown.stdout.splitlines()[2:]] == ["lo"]
 
 
@@ -116,7 +117,7 @@ def test_what_is_refused_for_good_is_not_asked_for_again_and_the_rest_is(
         try:
             assert isolation.private_network() is None
         except NotNow as error:
-            told.append(error.message)
+            told.append(str(error))
         asked.append(0)
     once = 1 if number == errno.EPERM else 2  # the same function twice
     assert asked[:2] == [each * once for each in asked_for]
@@ -147,7 +148,7 @@ except NotNow as error:
 
 @pytest.mark.parametrize(
     ("most", "told"),
-    [("0", "None"), ("1", "net): No space left on device"), ("9", "Namespaces(fds=")],
+    [("0", "None"), ("1", "net): No space left on device"), ("9", "{'")],
 )
 def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most: str, told: str) -> None:
     if isolation.private_network() is None:
@@ -162,11 +163,11 @@ def test_no_more_networks_for_now_is_not_the_same_as_none_at_all(most: str, told
     assert told in done.stdout, done.stdout + done.stderr
 
 
-def test_a_stage_leaves_nothing(kind: str) -> None:
+def test_a_run_context_leaves_nothing(kind: str) -> None:
     fds = len(list(Path("/proc/self/fd").iterdir()))
-    with open_stage() as stage:
-        assert stage.folder.is_dir()
-    assert not stage.folder.exists()
+    with open_context() as context:
+        assert context.folder.is_dir()
+    assert not context.folder.exists()
     assert len(list(Path("/proc/self/fd").iterdir())) == fds
 
 

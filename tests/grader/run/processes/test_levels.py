@@ -16,13 +16,14 @@ import pytest
 from grader import cli, scratch
 from grader.cli import run
 from grader.errors import GraderFailure, NotNow, UsageError
-from grader.run import stage
+from grader.run import run_context
 from grader.run.processes import isolation, levels, refusal
-from grader.run.processes.family import Student
-from grader.run.processes.sandbox import view
-from grader.run.processes.zygote import Zygote
+from grader.run.processes.fork_server import ForkServer
+from grader.run.processes.fork_server_main import ProcessCommand
+from grader.run.processes.started_process import SubmissionProcess
+from grader.run.sandbox import view
 from tests.children import in_child
-from tests.grader.run.processes.test_zygote import COMMAND, ENV
+from tests.grader.run.processes.test_fork_server import COMMAND, ENV
 
 TESTS = Path(__file__).parents[3]
 WEAK = levels.Level("landlock", "same", {"namespaces": "mount: Operation not permitted"})
@@ -79,7 +80,7 @@ def test_no_run_is_made_below_what_was_required(monkeypatch: pytest.MonkeyPatch)
     there_is(levels.Level("limits"), monkeypatch)
     with (
         pytest.raises(GraderFailure, match="isolation by landlock was to be had before"),
-        stage.open_stage(),
+        run_context.open_context(),
     ):
         pass
 
@@ -97,7 +98,7 @@ def _without_descriptors(free: int) -> list[str]:
         try:
             told = [levels.best(isolated).level]
         except NotNow as error:
-            told = [error.message]
+            told = [str(error)]
         finally:
             resource.setrlimit(resource.RLIMIT_NOFILE, before)
         return [*told, levels.best(isolated).level]
@@ -122,6 +123,7 @@ def test_a_slow_trial_lowers_no_level_and_is_not_remembered(
     monkeypatch.setattr(refusal, "PAUSES_S", (0.0, 0.0))
     with monkeypatch.context() as impatient:
         impatient.setattr(levels, "PATIENCE_S", 0.0)
+        impatient.setattr(levels, "TRIAL", "import signal; signal.pause()")  # never done in time
         with pytest.raises(NotNow, match="in 3 tries: a trial took 0 s"):
             levels.here()
     assert levels.here().level == there
@@ -136,9 +138,9 @@ found = []
 for wanted in sys.argv[1:]:
     try:
         there = levels.here(wanted)
-        found.append([there.level, there.refused.get("namespaces", "")])
+        found.append([there.level, str(there.refused.get("namespaces", ""))])
     except GraderError as error:
-        found.append([type(error).__name__, error.message])
+        found.append([type(error).__name__, str(error)])
 print(json.dumps(found))
 """
 
@@ -176,27 +178,28 @@ def test_what_is_refused_for_good_lowers_the_level_and_nothing_else_does(
 
 
 @pytest.fixture(params=["started", "forked"])
-def warm(request: pytest.FixtureRequest) -> Iterator[Zygote | None]:
+def warm(request: pytest.FixtureRequest) -> Iterator[ForkServer | None]:
     if request.param == "started":
         yield None
         return
-    zygote = Zygote(COMMAND, ENV)
-    yield zygote
-    zygote.close()
+    server = ForkServer(COMMAND, ENV)
+    yield server
+    server.close()
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="others have no mounts of their own here")
-def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: Zygote | None) -> None:
+def test_what_cannot_be_confined_does_not_run_and_is_our_failure(warm: ForkServer | None) -> None:
     order = {
         "level": "namespaces",
         "uid": 61184,
-        "user": "own",
+        "user": "separate",
+        "rlimits": [],
         "is_apart": True,
         "steps": [["folder", "/proc"], ["bind", "/there/is/none"]],
-        "folder": "/",
     }
     words = [sys.executable, "-c", "print('it runs')"]
-    student = Student(words, ENV, Path("/"), zygote=warm, confinement=order)
+    command = ProcessCommand(words, ENV, Path("/"), confinement=order)
+    student = SubmissionProcess(command, warm)
     with pytest.raises(GraderFailure, match="could not be started: mount: No such file"):
         student.wait(20.0)
     student.end()

@@ -82,7 +82,7 @@ def test_what_a_running_system_would_answer_is_left_open(tmp_path):
         """,
     )
     assert launch.problem is None
-    assert any("asks a running system" in remark for remark in launch.remarks)
+    assert any("asks a running system" in str(remark) for remark in launch.remarks)
     values = {each.name: each.value for each in launch.nodes[0].parameters}
     assert values["share"] == "/prefix/share/walker_description"
 
@@ -98,7 +98,7 @@ def test_an_argument_without_a_default_takes_the_first_of_its_choices(tmp_path):
     )
     assert launch.problem is None
     assert launch.nodes[0].name == "small"
-    assert "its argument kind has no default" in launch.remarks[0]
+    assert "its argument kind has no default" in str(launch.remarks[0])
 
 
 def test_a_path_below_the_home_folder_is_told_as_one(tmp_path):

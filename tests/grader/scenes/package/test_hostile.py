@@ -13,11 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.scenes.package.examining import account, main, paths, steps, surfaces
+from grader.scenes.package.examining import main, paths, steps, surfaces
 from grader.scenes.package.examining.steps import (
     NONSENSE,
     Ended,
     end_of,
+    it,
     problem_of,
     start_of,
     step,
@@ -62,8 +63,8 @@ def test_a_launch_file_that_takes_away_what_is_installed_is_named(folder, tmp_pa
     )
     first, then = found(tmp_path, {DISPLAY: before(DISPLAY, code)}).launches
     gone = "~" if "empty" in folder else "share/walker_description/package.xml"
-    assert first.problem.text == f"it takes away {gone}"
-    assert then.problem.text == f"it cannot be evaluated: {DISPLAY} has taken away {gone}"
+    assert str(first.problem.text) == f"it takes away {gone}"
+    assert str(then.problem.text) == f"it cannot be evaluated: {DISPLAY} has taken away {gone}"
 
 
 def test_names_that_no_file_can_have_are_files_that_are_not_there(tmp_path):
@@ -125,7 +126,7 @@ def test_a_description_that_is_longer_than_any_is_told_so(tmp_path):
         "        parameters=[{'robot_description': 'a' * 3_000_000}])])\n"
     )
     problem = found(tmp_path, {DISPLAY: code}).launches[0].problem
-    assert "a text of 3,000,000 characters; 2,000,000 at most" in problem.text
+    assert "a text of 3,000,000 characters; 2,000,000 at most" in str(problem.text)
 
 
 ROOT = "/".join([".."] * 40)
@@ -165,7 +166,7 @@ def test_a_mesh_counts_as_found_where_the_package_installs_it(tmp_path):
 def test_meshes_are_read_last_and_by_an_account_of_their_own(tmp_path, monkeypatch):
     monkeypatch.setattr(surfaces, "CPU_S", -1.0)
     monkeypatch.setattr(steps, "_account", None)  # as before, afterwards
-    trace = main.look(REFERENCE, "", tmp_path)
+    trace = main.inspect(REFERENCE, tmp_path).trace
     assert [each.problem for each in trace.launches] == [None, None]
     assert [each.state for each in trace.descriptions[0].meshes] == ["found"]
     assert trace.surfaces == ()
@@ -194,7 +195,7 @@ def test_an_answer_that_is_forged_is_none(forged):
 
     with pytest.raises(Ended) as ended:
         step(forge, str)
-    assert ended.value.problem.text == NONSENSE
+    assert ended.value.problem.text == it(NONSENSE)
 
 
 def test_what_a_step_forks_does_not_answer_for_it():
@@ -233,12 +234,12 @@ def test_texts_that_are_cut_have_no_part_of_a_path_and_no_address():
     assert start_of("a" * 30, 20) == end_of("a" * 30, 20) == "a" * 20
     assert start_of(path, 50) == end_of(path, 50) == path
     problem = problem_of(ValueError(f"found {object()}"), str)
-    assert problem.text == "ValueError: found <object object at 0x...>"
+    assert str(problem.text) == "ValueError: found <object object at 0x...>"
 
 
 def test_a_step_that_waits_in_vain_is_ended_and_after_some_no_other_is_tried(tmp_path, monkeypatch):
-    monkeypatch.setattr(account, "STEP_IDLE_S", 0.1)
-    monkeypatch.setattr(account, "IDLE_S", 0.6)
+    monkeypatch.setattr(steps, "STEP_IDLE_S", 0.1)
+    monkeypatch.setattr(steps, "IDLE_S", 0.6)
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     steps.open_account()
@@ -250,7 +251,7 @@ def test_a_step_that_waits_in_vain_is_ended_and_after_some_no_other_is_tried(tmp
     def why(work):
         with pytest.raises(Ended) as ended:
             step(work, str)
-        return ended.value.problem.text
+        return str(ended.value.problem.text)
 
     assert why(pipe.read_text) == "it waited for what did not come"
     assert step(lambda: sum(range(10**7)) > 0, str)  # which waits for nothing

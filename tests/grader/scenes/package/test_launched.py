@@ -12,7 +12,7 @@ def rows(folder, body: str):
     (table,) = tables(looked_at(folder))
     assert table.headings == HEADINGS
     assert all(len(row) == len(HEADINGS) for row in table.rows)
-    texts = [tuple(" | ".join(cell.lines) for cell in row) for row in table.rows]
+    texts = [tuple(" | ".join(map(str, cell.lines)) for cell in row) for row in table.rows]
     marked = [
         [cell.is_wrong for cell in row].index(True)
         for row in table.rows
@@ -73,7 +73,7 @@ def test_what_is_missing_is_marked_where_it_is_named(tmp_path):
 def test_a_launch_file_that_ends_with_an_error_says_which(tmp_path):
     table, texts, _ = rows(tmp_path, "raise ValueError('<b>')")
     assert texts == []
-    assert table.note == "It ends with ValueError: <b> (launch/display.launch.py, line 10)."
+    assert str(table.note) == "It ends with ValueError: <b> (launch/display.launch.py, line 10)."
 
 
 def test_a_launch_file_in_xml_has_its_file_without_a_line(tmp_path):

@@ -52,14 +52,14 @@ for each in before:
 BORN_WHILE_LOOKED = """
 leftovers.adopt()
 ours = born()
-look, seen = leftovers._stats, []
+look, seen = leftovers._below, []
 def too_early():
     found = look()
     if len(seen) < 2:
         del found[ours[-1]]
     seen.append(found)
     return found
-leftovers._stats = too_early
+leftovers._below = too_early
 leftovers.end()
 assert not any(map(is_there, ours)), "something is left"
 """

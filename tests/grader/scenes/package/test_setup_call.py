@@ -140,7 +140,7 @@ def test_how_a_set_up_ends_is_told_with_its_line(text, says, line, tmp_path):
     with pytest.raises(Ended) as ended:
         told(tmp_path, setup_py=text)
     problem = ended.value.problem
-    assert problem.text.startswith(says)
+    assert str(problem.text).startswith(says)
     assert (problem.file, problem.line) == ("setup.py" if line else "", line)
 
 

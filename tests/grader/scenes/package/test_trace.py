@@ -9,35 +9,44 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.message import NOTHING, plain_text
 from grader.recording.reading import load
-from grader.recording.recording import Recording, Run
-from grader.recording.saving import save
-from grader.scenes import load_scene
+from grader.recording.recording import Recording, Recordings, Run
+from grader.recording.saving import save_all
+from grader.recording.subject import load_subject
 from grader.scenes.package.trace import (
     MOST_BYTES,
     Description,
     Lacking,
-    Launch,
-    Mesh,
-    Node,
+    LaunchedNode,
+    LaunchFile,
+    NamedMesh,
+    Obstacle,
     PackageTrace,
     Parameter,
-    Problem,
     Setup,
     Varied,
     decode,
     encode,
 )
 
-SETUP = Setup("a", "a", "", "ament_python", "", ("b",), None, (), (), (), "", ("x",), ("y",), ())
-NODE = Node("p", "e", "", "", ("-d",), (Parameter("robot_description", "", 0, True),), (), False)
+SETUP = Setup(
+    "a", "a", "", "ament_python", NOTHING, ("b",), None, (), (), (), "", ("x",), ("y",), ()
+)
+NODE = LaunchedNode(
+    "p", "e", "", "", ("-d",), (Parameter("robot_description", "", 0, True),), (), False
+)
 LACKING = Lacking("file", "/prefix/x", "", "launch/a.py")
-PROBLEM = Problem("error", "NameError", "a.py", 3)
+PROBLEM = Obstacle("error", plain_text("NameError"), "a.py", 3)
 TRACE = PackageTrace(
     SETUP,
     ("other",),
-    (Launch("launch/a.py", PROBLEM, (NODE,), (), (), (), (), (LACKING,), (), ""),),
-    (Description(0, "launch/a.py", True, "a.urdf", None, (Mesh("u", "found", "p", True),), True),),
+    (LaunchFile("launch/a.py", PROBLEM, (NODE,), (), (), (), (), (LACKING,), (), ""),),
+    (
+        Description(
+            0, "launch/a.py", True, "a.urdf", None, (NamedMesh("u", "found", "p", True),), True
+        ),
+    ),
     (Varied(0, "length", 1),),
     ("<robot/>", "<robot name='é'/>"),
 )
@@ -96,14 +105,14 @@ def test_nothing_else_than_a_value_error_comes_of_nonsense(data):
 
 def test_a_recording_of_it_is_written_and_read_again(tmp_path):
     recording = Recording(TRACE, Run(trace_sha256=TRACE.sha256()), scene="package")
-    save(recording, tmp_path)
+    save_all(Recordings(recording), tmp_path)
     again = load(tmp_path)
     assert again.trace == TRACE
     assert not (tmp_path / "scenario.json").exists()
 
 
 def test_a_package_is_drawn_whatever_its_description_is():
-    scene = load_scene("package")
+    scene = load_subject("package")
     for text in ("", "<robot", "<robot><link name='a'/><link/></robot>", "<!DOCTYPE a><robot/>"):
         trace = replace(TRACE, texts=(text, text))
         assert scene.pictures(trace).window.shape == (500, 500, 3)

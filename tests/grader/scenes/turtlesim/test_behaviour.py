@@ -4,13 +4,14 @@ import numpy as np
 
 from grader.scenes.turtlesim.scene import SCENE
 from tests.grader.driving import Spiral, drive, pen, twist
+from turtlesim_py.world.arena import TICK_NS
 
 
 def behaviour(controller, ticks=50):
     return SCENE.behaviour(drive(controller, ticks).trace)
 
 
-def test_commands_have_their_tick_and_what_the_node_takes_of_them():
+def test_commands_have_their_time_and_what_the_node_takes_of_them():
     def controller(tick, pose, arena):
         if tick == 3:
             twist(arena, 2.0, 0.5)
@@ -19,8 +20,8 @@ def test_commands_have_their_tick_and_what_the_node_takes_of_them():
 
     commands = behaviour(controller).commands
     assert commands == (
-        (3, "cmd_vel", (2.0, 0.0, 0.5)),
-        (5, "set_pen", (255.0, 0.0, 0.0, 4.0, 0.0)),
+        (3 * TICK_NS, "cmd_vel", (2.0, 0.0, 0.5)),
+        (5 * TICK_NS, "set_pen", (255.0, 0.0, 0.0, 4.0, 0.0)),
     )
 
 

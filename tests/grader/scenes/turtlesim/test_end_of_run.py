@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grader.scenes.scene import Limits
-from grader.scenes.turtlesim.end_of_run import GRACE_TICKS, EndOfRun
+from grader.scenes.turtlesim.simulation import GRACE_TICKS, EndOfRun
 from turtlesim_py.world.turtle import TICK_S, Pose
 
 #: In ticks: nothing moved by 100, rested for 10, 200 at most.
@@ -15,11 +15,16 @@ def at(x: float, theta: float = 0.0, speed: float = 0.0) -> Pose:
     return Pose(x, 5.0, theta, speed, 0.0)
 
 
+def turtles(pose: Pose | None) -> dict[str, Pose]:
+    """The turtles that there are in a tick, by name."""
+    return {} if pose is None else {"turtle1": pose}
+
+
 def ends(poses, end: EndOfRun | None = None) -> tuple[int, str]:
     """The tick after which a run of these poses (tick -> pose) is over, and why."""
     end = end or EndOfRun(LIMITS)
     for tick in range(1, 1000):
-        reason = end.after(tick, poses(tick))
+        reason = end.after(tick, turtles(poses(tick)))
         if reason:
             return tick, reason
     raise AssertionError("it never ends")
@@ -74,9 +79,9 @@ def test_the_time_limit_goes_before_everything_else():
 def test_the_last_commands_of_a_submission_that_is_gone_may_still_arrive():
     end = EndOfRun(LIMITS)
     for tick in range(1, 6):
-        assert end.after(tick, at(1.0)) == ""
+        assert end.after(tick, turtles(at(1.0))) == ""
     end.submission_gone()
-    found = [end.after(tick, at(1.0)) for tick in range(6, 6 + GRACE_TICKS)]
+    found = [end.after(tick, turtles(at(1.0))) for tick in range(6, 6 + GRACE_TICKS)]
     assert found == [""] * (GRACE_TICKS - 1) + ["gone"]
 
 
@@ -103,6 +108,6 @@ def test_being_at_rest_needs_a_motion_before():
     end = EndOfRun(LIMITS)
     seen = []
     for tick, x in enumerate((1, 1, 2, 2, 3), 1):
-        end.after(tick, at(x))
+        end.after(tick, turtles(at(x)))
         seen.append(end.is_at_rest)
     assert seen == [False, False, False, True, False]

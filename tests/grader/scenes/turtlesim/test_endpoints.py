@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from grader.scenes.turtlesim.endpoints import endpoints
+from grader.scenes.turtlesim.interfaces import endpoints_of
 from grader.scenes.turtlesim.trace import TurtleTrace
 from tests.grader.driving import Spiral, drive
 from turtlesim_py.ros.interfaces import usual
@@ -12,7 +12,7 @@ from turtlesim_py.ros.node import TurtlesimNode
 def test_every_topic_service_and_action_of_the_scene_is_the_nodes_own(ros):
     node = TurtlesimNode(["--ros-args", "-r", "__ns:=/own"])
     trace = TurtleTrace.of(drive(Spiral(), ticks=2).trace)
-    found = {(e.kind, e.name, e.type) for e in endpoints(trace, usual())}
+    found = {(e.kind, e.name, e.type) for e in endpoints_of(trace, usual())}
 
     def named(kind, name, of):
         package, where = of.__module__.split(".")[:2]

@@ -45,7 +45,7 @@ def test_what_is_not_installed_is_not_chosen(monkeypatch):
 def test_both_in_any_case_run_in_no_ros():
     with pytest.raises(SubmissionError) as error:
         choose({NEWER: "a.py, line 3", "rclpy": "a.py, line 1", OLDER: "pens.py, line 7"}, {})
-    (line,) = error.value.message.splitlines()
+    (line,) = str(error.value.message).splitlines()
     assert "both turtlesim (pens.py, line 7) and turtlesim_msgs (a.py, line 3)" in line
 
 

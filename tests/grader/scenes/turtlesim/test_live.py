@@ -13,12 +13,12 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from grader.scenes import load_live
+from grader.recording.playback import JudgedCheck
+from grader.scenes import load_scene
 from grader.scenes.live import Grading
-from grader.scenes.playback import Judged
-from grader.scenes.turtlesim.live.mirror import Mirror
+from grader.scenes.turtlesim.live import Mirror
 from tests.programs import DEADLINE_S
-from turtlesim_py.live.feed import Change, Feed, Whole
+from turtlesim_py.live.feed import Feed, News
 from turtlesim_py.world.arena import Arena
 
 #: What drives, or leads to a ROS graph.
@@ -34,7 +34,7 @@ REFUSED = [
 
 @pytest.fixture
 def page():
-    served = load_live("turtlesim")(0)
+    served = load_scene("turtlesim").live_page(0)
     yield served
     served.close()
 
@@ -55,7 +55,7 @@ def heard(viewer):
 
 def news(ticks=60):
     """What a simulator tells of a turtle that turns and is given another pen."""
-    told: list[Change | Whole] = []
+    told: list[News] = []
     arena = Arena(sprite="jazzy")
     feed = Feed(arena, told.append, together=1)
     feed.is_watched = True
@@ -96,8 +96,8 @@ def test_who_comes_in_the_middle_has_the_same_picture_as_who_was_there(page, vie
 
 
 def test_what_checks_say_is_told_at_once_and_to_those_who_come_later(page, viewer):
-    passed = Judged("It moves", "passed", "passed, 5 / 5 points", "It moved.", "", ())
-    grading = Grading("zoe.py", "nominal run", "Score: 5", "Nothing to mend", (passed,))
+    passed = JudgedCheck("It moves", "passed", "passed, 5 / 5 points", "It moved.", "", ())
+    grading = Grading("zoe.py", "nominal run", "Score: 5", "Nothing to fix", (passed,))
     viewer.send(json.dumps({"op": "subscribe", "topic": "/turtlesim_live"}))
     heard(viewer)
     page.tell(grading)
@@ -139,7 +139,7 @@ def test_nobody_comes_in_without_the_token_not_even_on_this_machine(page):
 
 
 def test_a_wipe_takes_away_what_was_drawn_before_it():
-    told: list[Change | Whole] = []
+    told: list[News] = []
     mirror = Mirror(told.append)
     stroke = [[1, 2, 3], [10, 20, 30]]
     states = [{"tick": 1, "drawn": [stroke], "calls": []}]
@@ -150,6 +150,5 @@ def test_a_wipe_takes_away_what_was_drawn_before_it():
     assert not told[-1].canvas.rgba()[..., 3].any()
 
 
-@pytest.mark.parametrize("scene", ["robot", "package", "none"])
-def test_other_scenes_have_no_such_page(scene):
-    assert load_live(scene) is None
+def test_other_scenes_have_no_such_page():
+    assert load_scene("robot").live_page(0) is None

@@ -10,15 +10,16 @@ import pytest
 from hypothesis import given
 from rosbags.typesys import Stores, get_typestore
 
-from grader.scenes.cdr import string
-from grader.scenes.channel import Channel
-from grader.scenes.message_types import types_of
-from grader.scenes.scene import Message
+from grader.recording.bag import types_of
+from grader.recording.cdr import string
+from grader.recording.channel import Channel
+from grader.recording.subject import BagMessage
 from grader.scenes.turtlesim import messages
 from grader.scenes.turtlesim.scene import SCENE
 from grader.scenes.turtlesim.trace import TurtleTrace
 from tests.grader.driving import Spiral, drive
 from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_traces
+from turtlesim_py.world.arena import TICK_NS
 
 DEFINITIONS = Path(__file__).parents[4] / "interfaces" / "packages" / "turtlesim" / "msg"
 STRING = "std_msgs/msg/String"
@@ -29,22 +30,22 @@ def trace() -> TurtleTrace:
     return TurtleTrace.of(drive(Spiral(), ticks=100).trace)
 
 
-def channels_of(found: list[Message], trace: TurtleTrace) -> list[Channel]:
+def channels_of(found: list[BagMessage], trace: TurtleTrace) -> list[Channel]:
     """Messages as the columns of a bag; also the topics that have none."""
     topics = dict(SCENE.bag_topics(trace)) | {m.topic: m.msgtype for m in found}
     cdr = [m.data for m in found]
     ends = np.cumsum([len(data) for data in cdr])
-    begins, ticks = ends - [len(data) for data in cdr], np.array([m.tick for m in found])
+    begins, times_ns = ends - [len(data) for data in cdr], np.array([m.time_ns for m in found])
     made = []
     for topic, msgtype in topics.items():
         own = np.array([n for n, m in enumerate(found) if m.topic == topic], np.int64)
         data = np.frombuffer(b"".join(cdr), np.uint8)
-        made.append(Channel(topic, msgtype, ticks[own], own, data, begins[own], ends[own]))
+        made.append(Channel(topic, msgtype, times_ns[own], own, data, begins[own], ends[own]))
     return made
 
 
-def said(text: str) -> Message:
-    return Message(1, "/turtlesim/events", STRING, string(text))
+def said(text: str) -> BagMessage:
+    return BagMessage(TICK_NS, "/turtlesim/events", STRING, string(text))
 
 
 def test_the_definitions_of_turtlesim_are_those_of_our_interfaces():
@@ -85,9 +86,9 @@ def test_a_turtle_that_published_nothing_has_topics_all_the_same(trace):
     }
 
 
-def test_the_messages_stand_by_tick(trace):
-    ticks = [message.tick for message in messages.to_messages(trace)]
-    assert ticks == sorted(ticks)
+def test_the_messages_stand_by_time(trace):
+    times_ns = [message.time_ns for message in messages.to_messages(trace)]
+    assert times_ns == sorted(times_ns)
 
 
 @pytest.mark.parametrize(
@@ -99,11 +100,11 @@ def test_the_messages_stand_by_tick(trace):
         said("{}"),
         said('{"tick": "1", "op": "clear"}'),
         said('{"tick": 1, "op": "kill"}'),
-        Message(1, "/chatter", "std_msgs/msg/Int8", b"\0\1\0\0\1"),
-        Message(1, "/turtle1/cmd_vel", "geometry_msgs/msg/Twist", b"\0\1\0\0" + bytes(40)),
-        Message(1, "/turtle1/cmd_vel", "geometry_msgs/msg/Twist", b"\0\0\0\0" + bytes(48)),
-        Message(1, "/turtle1/color", "turtlesim/msg/Color", b"\0\1\0\0" + bytes(3)),
-        Message(1, "/a/picture", "sensor_msgs/msg/Image", b"\0\1\0\0"),
+        BagMessage(TICK_NS, "/chatter", "std_msgs/msg/Int8", b"\0\1\0\0\1"),
+        BagMessage(TICK_NS, "/turtle1/cmd_vel", "geometry_msgs/msg/Twist", b"\0\1\0\0" + bytes(40)),
+        BagMessage(TICK_NS, "/turtle1/cmd_vel", "geometry_msgs/msg/Twist", b"\0\0\0\0" + bytes(48)),
+        BagMessage(TICK_NS, "/turtle1/color", "turtlesim/msg/Color", b"\0\1\0\0" + bytes(3)),
+        BagMessage(TICK_NS, "/a/picture", "sensor_msgs/msg/Image", b"\0\1\0\0"),
     ],
 )
 def test_what_no_trace_says_is_refused(trace, strange):

@@ -13,13 +13,13 @@ import pytest
 from hypothesis import given
 
 from grader.errors import RecordingError
-from grader.scenes.playback import Judged, Line, Playback, Sent, Take
-from grader.scenes.scene import Start
+from grader.recording.playback import JudgedCheck, Line, Playback, Sent, Take
+from grader.recording.subject import Start
 from grader.scenes.turtlesim.driving import drive
-from grader.scenes.turtlesim.player import modules, page, sources
-from grader.scenes.turtlesim.player.differences import first_difference
+from grader.scenes.turtlesim.player import page, runs
 from grader.scenes.turtlesim.player.film import MOST_TICKS, film
 from grader.scenes.turtlesim.player.reel import WIPED
+from grader.scenes.turtlesim.player.runs import first_difference
 from grader.scenes.turtlesim.trace import TurtleTrace
 from grader.testing import pen, twist
 from tests.grader.driving import Spiral
@@ -195,7 +195,7 @@ LINES = (Line("a.py", 5, "go"), Line("a.py", 9, "stop"))
 
 
 def lines_of(sent: Sent) -> list[int | None]:
-    made = sources.of([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
+    made = runs.with_lines([{"op": "clear", "tick": 1}, *COMMANDS], [sent])
     lines = [line["line"] for line in made["lines"]]
     found = [call.get("line") for call in made["calls"]]
     return [None if each is None else lines[each] for each in found]
@@ -224,7 +224,7 @@ def test_nothing_is_known_of_what_was_sent_by_another_name():
 def test_what_stands_in_a_result_ends_no_element_of_the_page():
     evil = "</script><script>alert(1)</script><!-- $data & co"
     trace: TurtleTrace = drive(eventful, 3)[0]
-    judged = Judged(evil, "failed", evil, evil, evil, ())
+    judged = JudgedCheck(evil, "failed", evil, evil, evil, ())
     made = page.render(Playback(evil, evil, (Take(0, evil, evil, trace),), (judged,)))
     assert made.count("<script") == 2
     assert made.count("</script>") == 2
@@ -234,7 +234,7 @@ def test_what_stands_in_a_result_ends_no_element_of_the_page():
 def test_a_module_that_cannot_be_joined_is_named(tmp_path):
     (tmp_path / "a.js").write_text('import { b } from "./b.js";\nb();\n')
     with pytest.raises(ValueError, match=r"no module b\.js"):
-        modules.joined("a", [tmp_path])
+        page.join_modules("a", [tmp_path])
     (tmp_path / "b.js").write_text("export default 3;\n")
     with pytest.raises(ValueError, match=r"b\.js: cannot be joined: export default"):
-        modules.joined("a", [tmp_path])
+        page.join_modules("a", [tmp_path])

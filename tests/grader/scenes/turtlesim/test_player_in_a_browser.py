@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from grader.cli import main
-from grader.language.catalogue import ENGLISH, speak
 from grader.recording import saving
 from grader.recording.recording import Recordings
-from grader.scenes.scene import Start
+from grader.recording.subject import Start
 from grader.scenes.turtlesim.trace import TurtleTrace
+from grader.translations import ENGLISH, use
 from tests.browser import (
     WIDTHS,
     cut_off,
@@ -81,7 +81,7 @@ def page_file(tmp_path_factory, runs):
         out = folder / "graded" / ("compared.html" if language == "en" else f"{language}.html")
         words = ["--compare", str(folder / "other"), "--out", str(out), "--lang", language]
         assert main(["view", str(folder / "graded"), "--no-open", *words]) == 0
-    speak(ENGLISH)
+    use(ENGLISH)
     return folder / "graded" / "view.html"
 
 

@@ -7,9 +7,11 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.scenes.scene import Start
-from grader.scenes.turtlesim.starts import starts
+from grader.recording.subject import Start
+from grader.scenes.turtlesim.scene import SCENE
 from turtlesim_py.world.turtle import SIZE_M
+
+starts = SCENE.starts
 
 #: As every release so far has placed them.
 FIRST_OF_2026 = [

@@ -8,15 +8,17 @@ same names, arguments and refusals. Nothing is started: what would be is taken d
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
-from grader.scenes.package.examining.steps import NotKnown
+from grader.message import Message
+from grader.scenes.package.examining.steps import not_known
 
 _MOST_ENTITIES = 10_000
-NOT_KNOWN = "it uses {}, which the grader does not know"
 
 
 def unknown(module: str) -> Any:
@@ -25,9 +27,25 @@ def unknown(module: str) -> Any:
     def missing(name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        raise NotKnown(NOT_KNOWN.format(f"{module}.{name}"))
+        raise not_known(f"{module}.{name}")
 
     return missing
+
+
+def exported(name: str, *more: str) -> list[str]:
+    """What `import *` takes of a module: its own classes and functions, and more."""
+    made = vars(sys.modules[name]).items()
+    own = [each for each, value in made if getattr(value, "__module__", "") == name]
+    return [*(each for each in own if not each.startswith("_")), *more]
+
+
+def module(name: str, *given: Any, **more: Any) -> ModuleType:
+    """A module that is a file of its own in the original: classes and functions, more by name."""
+    names = {each.__name__: each for each in given} | more
+    made = ModuleType(name, f"A double of ROS's `{name}`.")
+    made.__dict__.update(names, __all__=list(names), __getattr__=unknown(name))
+    sys.modules[name] = made
+    return made
 
 
 class Record:
@@ -48,11 +66,11 @@ class Record:
         return path
 
     def command(self, words: list[str], on_stderr: str) -> str:
-        raise NotKnown(NOT_KNOWN.format("a command"))
+        raise not_known("a command")
 
     def executable(self, package: str, name: str) -> None: ...
 
-    def remark(self, text: str) -> None: ...
+    def remark(self, remark: Message) -> None: ...
 
     def declared(self, name: str) -> None: ...
 
@@ -84,7 +102,7 @@ class LaunchContext:
         return str(substitution.perform(self))
 
     def __getattr__(self, name: str) -> Any:
-        raise NotKnown(NOT_KNOWN.format(f"LaunchContext.{name}"))
+        raise not_known(f"LaunchContext.{name}")
 
 
 class Substitution:
@@ -181,6 +199,27 @@ class Action(LaunchDescriptionEntity):
         return None
 
 
+class Executable:
+    def __init__(
+        self,
+        *,
+        cmd: Any,
+        prefix: Any = None,
+        name: Any = None,
+        cwd: Any = None,
+        env: Any = None,
+        additional_env: Any = None,
+        arguments: Any = None,
+    ) -> None:
+        self.cmd = [*cmd, *(arguments or [])]
+
+
+class NeedsArgument(RuntimeError):
+    """A launch argument without a value: whoever launches it has to give one."""
+
+    kind_of_problem = "argument"
+
+
 class LaunchDescription(LaunchDescriptionEntity):
     def __init__(
         self, initial_entities: Iterable[Any] | None = None, *, deprecated_reason: str | None = None
@@ -216,6 +255,25 @@ class LaunchDescriptionSource:
     @property
     def location(self) -> str:
         return "".join(getattr(each, "text", "") for each in self.location_)
+
+
+class InvalidPythonLaunchFileError(Exception):
+    pass
+
+
+class PythonLaunchDescriptionSource(LaunchDescriptionSource):
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(None, launch_file_path, "interpreted python launch file")
+
+
+class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(None, launch_file_path, "interpreted frontend launch file")
+
+
+class AnyLaunchDescriptionSource(LaunchDescriptionSource):
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(None, launch_file_path, "interpreted launch file")
 
 
 def walk(entities: Any, context: LaunchContext, depth: int = 0) -> None:

@@ -8,25 +8,22 @@ from typing import Any
 
 import yaml
 from launch._core import (
-    NOT_KNOWN,
     Action,
+    AnyLaunchDescriptionSource,
+    Executable,
     LaunchContext,
     LaunchDescriptionSource,
+    NeedsArgument,
     Substitution,
+    exported,
     normalize_to_list_of_substitutions,
     text_of,
     unknown,
     walk,
 )
-from launch.launch_description_sources import AnyLaunchDescriptionSource
 
-from grader.scenes.package.examining.steps import NotKnown
-
-
-class NeedsArgument(RuntimeError):
-    """A launch argument without a value: whoever launches it has to give one."""
-
-    kind_of_problem = "argument"
+from grader.message import msg
+from grader.scenes.package.examining.steps import not_known
 
 
 class DeclareLaunchArgument(Action):
@@ -63,8 +60,12 @@ class DeclareLaunchArgument(Action):
             elif self.choices is not None:
                 known[self.name] = str(self.choices[0])
                 context.record.remark(
-                    f"its argument {self.name} has no default: looked at with {self.choices[0]}, "
-                    "the first of its choices"
+                    msg(
+                        "its argument {name} has no default: looked at with {value}, the first of "
+                        "its choices",
+                        name=self.name,
+                        value=str(self.choices[0]),
+                    )
                 )
             else:
                 raise NeedsArgument(f'Required launch argument "{self.name}" was not provided.')
@@ -222,8 +223,6 @@ class ExecuteProcess(ExecuteLocal):
         additional_env: Any = None,
         **kwargs: Any,
     ) -> None:
-        from launch.descriptions import Executable
-
         super().__init__(
             process_description=Executable(
                 cmd=[normalize_to_list_of_substitutions(word) for word in cmd]
@@ -338,7 +337,7 @@ class UnregisterEventHandler(Action):
 
 class PushLaunchConfigurations(Action):
     def execute(self, context: LaunchContext) -> None:
-        raise NotKnown(NOT_KNOWN.format("PushLaunchConfigurations outside of a GroupAction"))
+        raise not_known("PushLaunchConfigurations outside of a GroupAction")
 
 
 class PopLaunchConfigurations(PushLaunchConfigurations):
@@ -367,33 +366,8 @@ class ResetLaunchConfigurations(Action):
 
 class OpaqueCoroutine(Action):
     def __init__(self, *, coroutine: Any, **kwargs: Any) -> None:
-        raise NotKnown(NOT_KNOWN.format("OpaqueCoroutine"))
+        raise not_known("OpaqueCoroutine")
 
 
-__all__ = [
-    "AppendEnvironmentVariable",
-    "DeclareLaunchArgument",
-    "EmitEvent",
-    "ExecuteLocal",
-    "ExecuteProcess",
-    "GroupAction",
-    "IncludeLaunchDescription",
-    "LogInfo",
-    "OpaqueCoroutine",
-    "OpaqueFunction",
-    "PopEnvironment",
-    "PopLaunchConfigurations",
-    "PushEnvironment",
-    "PushLaunchConfigurations",
-    "RegisterEventHandler",
-    "ResetEnvironment",
-    "ResetLaunchConfigurations",
-    "SetEnvironmentVariable",
-    "SetLaunchConfiguration",
-    "Shutdown",
-    "TimerAction",
-    "UnregisterEventHandler",
-    "UnsetEnvironmentVariable",
-    "UnsetLaunchConfiguration",
-]
+__all__ = exported(__name__)
 __getattr__ = unknown("launch.actions")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from launch._core import Condition, LaunchContext, shown, text_of, unknown
+from launch._core import Condition, LaunchContext, exported, shown, text_of, unknown
 
 
 class InvalidConditionExpressionError(Exception):
@@ -53,13 +53,5 @@ def _equals(context: LaunchContext, name: str, expected: Any) -> bool:
     return value == (None if expected is None else text_of(context, expected))
 
 
-__all__ = [
-    "Condition",
-    "IfCondition",
-    "InvalidConditionExpressionError",
-    "LaunchConfigurationEquals",
-    "LaunchConfigurationNotEquals",
-    "UnlessCondition",
-    "evaluate_condition_expression",
-]
+__all__ = exported(__name__, "Condition")
 __getattr__ = unknown("launch.conditions")

@@ -13,6 +13,7 @@ from launch._core import (
     LaunchContext,
     Substitution,
     TextSubstitution,
+    exported,
     normalize_to_list_of_substitutions,
     text_of,
     unknown,
@@ -27,7 +28,7 @@ class SubstitutionFailure(RuntimeError):
 class LaunchConfiguration(Substitution):
     def __init__(self, variable_name: Any, *, default: Any = None) -> None:
         self._name = normalize_to_list_of_substitutions(variable_name)
-        self._default = None if default is None else normalize_default(default)
+        self._default = None if default is None else _normalize_default(default)
 
     @property
     def variable_name(self) -> list[Substitution]:
@@ -42,7 +43,7 @@ class LaunchConfiguration(Substitution):
         return text_of(context, self._default)
 
 
-def normalize_default(default: Any) -> list[Substitution]:
+def _normalize_default(default: Any) -> list[Substitution]:
     if isinstance(default, str | Path | Substitution):
         return normalize_to_list_of_substitutions(default)
     if isinstance(default, Iterable):
@@ -240,29 +241,5 @@ class AnySubstitution(OrSubstitution):
         self._parts = args
 
 
-__all__ = [
-    "AllSubstitution",
-    "AndSubstitution",
-    "AnonName",
-    "AnySubstitution",
-    "Command",
-    "EnvironmentVariable",
-    "EqualsSubstitution",
-    "FileContent",
-    "FindExecutable",
-    "IfElseSubstitution",
-    "LaunchConfiguration",
-    "LaunchLogDir",
-    "LocalSubstitution",
-    "NotEqualsSubstitution",
-    "NotSubstitution",
-    "OrSubstitution",
-    "PathJoinSubstitution",
-    "PythonExpression",
-    "StringJoinSubstitution",
-    "SubstitutionFailure",
-    "TextSubstitution",
-    "ThisLaunchFile",
-    "ThisLaunchFileDir",
-]
+__all__ = exported(__name__, "TextSubstitution")
 __getattr__ = unknown("launch.substitutions")

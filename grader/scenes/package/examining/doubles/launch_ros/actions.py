@@ -13,6 +13,7 @@ from launch._core import (
     Action,
     LaunchContext,
     Substitution,
+    exported,
     normalize_to_list_of_substitutions,
     text_of,
     unknown,
@@ -258,19 +259,5 @@ class ROSTimer(TimerAction):
 
 RosTimer = ROSTimer
 
-__all__ = [
-    "ComposableNodeContainer",
-    "LifecycleNode",
-    "LoadComposableNodes",
-    "Node",
-    "PushROSNamespace",
-    "PushRosNamespace",
-    "ROSTimer",
-    "RosTimer",
-    "SetParameter",
-    "SetParametersFromFile",
-    "SetROSLogDir",
-    "SetRemap",
-    "SetUseSimTime",
-]
+__all__ = exported(__name__)
 __getattr__ = unknown("launch_ros.actions")

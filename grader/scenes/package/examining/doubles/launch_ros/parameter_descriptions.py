@@ -1,4 +1,4 @@
-"""A double of ROS's `launch_ros.parameter_descriptions`."""
+"""A double of ROS's `launch_ros.parameter_descriptions`, and of `launch_ros.descriptions`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import yaml
 from launch._core import (
     LaunchContext,
     Substitution,
+    module,
     normalize_to_list_of_substitutions,
     text_of,
     unknown,
@@ -96,6 +97,29 @@ def _from_yaml(text: str, kind: Any) -> Any:
         raise TypeError(f"Unable to parse the value of parameter as yaml: found {type(value)}")
     return value
 
+
+class ComposableNode:
+    def __init__(
+        self,
+        *,
+        package: Any,
+        plugin: Any,
+        name: Any = None,
+        namespace: Any = None,
+        parameters: Any = None,
+        remappings: Any = None,
+        extra_arguments: Any = None,
+        condition: Any = None,
+    ) -> None:
+        self.package = package
+        self.plugin = plugin
+        self.name = name
+        self.parameters = parameters
+
+
+descriptions = module(
+    "launch_ros.descriptions", ComposableNode, Parameter, ParameterFile, ParameterValue
+)
 
 __all__ = [
     "Parameter",

@@ -9,6 +9,7 @@ from ament_index_python.packages import get_package_prefix, get_package_share_di
 from launch._core import (
     LaunchContext,
     Substitution,
+    exported,
     normalize_to_list_of_substitutions,
     text_of,
     unknown,
@@ -48,10 +49,5 @@ class ExecutableInPackage(Substitution):
         return os.path.join(get_package_prefix(package), "lib", package, executable)
 
 
-__all__ = [
-    "ExecutableInPackage",
-    "FindPackage",
-    "FindPackagePrefix",
-    "FindPackageShare",
-]
+__all__ = exported(__name__)
 __getattr__ = unknown("launch_ros.substitutions")

@@ -1,10 +1,13 @@
-"""A double of ROS's `launch.events`."""
+"""A double of ROS's `launch.events`, `launch.events.process` and `launch.event_handlers`.
+
+Launch files name these; none ever happens, and what would start then is taken down now.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
-from launch._core import unknown
+from launch._core import module, unknown
 
 
 class Event:
@@ -20,7 +23,82 @@ def matches_action(action: Any) -> Any:
     return lambda other: other is action
 
 
-from launch.events import process  # noqa: E402
+class _OfProcess:
+    def __init__(self, **kwargs: Any) -> None:
+        pass
+
+
+class EventHandler:
+    def __init__(self, *, matcher: Any, entities: Any = None, handle_once: bool = False) -> None:
+        self.entities = entities
+
+
+class _OfAction(EventHandler):
+    def __init__(self, entities: Any, handle_once: bool = False) -> None:
+        super().__init__(matcher=None, entities=entities, handle_once=handle_once)
+
+
+class OnProcessExit(_OfAction):
+    def __init__(
+        self, *, target_action: Any = None, on_exit: Any, handle_once: Any = False
+    ) -> None:
+        super().__init__(on_exit, handle_once)
+
+
+class OnProcessStart(_OfAction):
+    def __init__(
+        self, *, target_action: Any = None, on_start: Any, handle_once: Any = False
+    ) -> None:
+        super().__init__(on_start, handle_once)
+
+
+class OnExecutionComplete(_OfAction):
+    def __init__(
+        self, *, target_action: Any = None, on_completion: Any, handle_once: Any = False
+    ) -> None:
+        super().__init__(on_completion, handle_once)
+
+
+class OnShutdown(_OfAction):
+    def __init__(self, *, on_shutdown: Any, handle_once: Any = False) -> None:
+        super().__init__(on_shutdown, handle_once)
+
+
+class OnProcessIO(_OfAction):
+    def __init__(
+        self,
+        *,
+        target_action: Any = None,
+        on_stdin: Any = None,
+        on_stdout: Any = None,
+        on_stderr: Any = None,
+        handle_once: Any = False,
+    ) -> None:
+        super().__init__(None, handle_once)
+
+
+process = module(
+    "launch.events.process",
+    *(
+        type(name, (_OfProcess,), {})
+        for name in (
+            "ProcessExited",
+            "ProcessIO",
+            "ProcessStarted",
+            "ShutdownProcess",
+            "SignalProcess",
+        )
+    ),
+)
+event_handlers = module(
+    "launch.event_handlers",
+    EventHandler,
+    OnExecutionComplete,
+    OnProcessExit,
+    OnProcessIO,
+    OnProcessStart,
+    OnShutdown,
+)
 
 __all__ = [
     "Event",

@@ -1,0 +1,192 @@
+"""What every verb takes: `--lang`, and `--error-json FILE`, which gets what went wrong as data.
+
+That the file is there means an error: an old one is removed at the start of a call, and a new
+one is written whole or not at all.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+from itertools import zip_longest
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from grader import files
+from grader.errors import GraderError, UsageError
+from grader.message import msg, msg_many
+from grader.translations import LANGUAGES, of_environment, tr, tr_many, use
+
+if TYPE_CHECKING:
+    from grader.result.visible import View
+
+LANG = "--lang"
+#: What argparse says by itself, of Python 3.11 to 3.13; here so that it comes into the catalogues.
+ARGPARSE = (
+    msg("usage: "),
+    msg("positional arguments"),
+    msg("options"),
+    msg("show this help message and exit"),
+    msg("show program's version number and exit"),
+    msg("the following arguments are required: %s"),
+    msg("argument %(argument_name)s: %(message)s"),
+    msg("invalid choice: %(value)r (choose from %(choices)s)"),
+    msg("invalid %(type)s value: %(value)r"),
+    msg("unrecognized arguments: %s"),
+    msg("ambiguous option: %(option)s could match %(matches)s"),
+    msg("not allowed with argument %s"),
+    msg("expected one argument"),
+    msg("expected at least one argument"),
+    msg("expected at most one argument"),
+    msg("ignored explicit argument %r"),
+    msg_many("expected %s argument", "expected %s arguments", 1),
+)
+
+
+class Misuse(UsageError):
+    """The words of the call are not those of the command line."""
+
+    def __init__(self, message: str, parser: argparse.ArgumentParser) -> None:
+        super().__init__(message)
+        self.usage = parser.format_usage()
+        self.prog = parser.prog
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that raises what it has to say.
+
+    Attributes:
+        make_epilog: makes what stands below the help, where only this needs it; None: nothing.
+    """
+
+    make_epilog: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        """The help."""
+        self.epilog = self.make_epilog() if self.make_epilog else self.epilog
+        return super().format_help()
+
+    def error(self, message: str) -> NoReturn:
+        """Raise `Misuse`."""
+        raise Misuse(message, self)
+
+
+def choose_language(words: Sequence[str]) -> None:
+    """Speak what a call asks for; else what the user's locale does.
+
+    It is looked for before the call is parsed: what is wrong with the call is said in it as well.
+    """
+    _argparse_too()
+    for word, after in zip_longest(words, words[1:], fillvalue=""):
+        name, _, value = word.partition("=")
+        language = value or after
+        is_meant = len(name) > 3 and LANG.startswith(name)  # argparse takes '--la', too
+        if is_meant and language in LANGUAGES:
+            return use(language)
+    return use(of_environment())
+
+
+def _argparse_too() -> None:
+    """Its own words in our language: it looks them up by these two of gettext's names."""
+    vars(argparse).update(_=tr, ngettext=tr_many)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    _add_error_file(parser)
+    parser.add_argument(
+        LANG,
+        choices=tuple(LANGUAGES),
+        help=tr(
+            "the language of what people read (that of your locale: LANG); result files are the "
+            "same in all"
+        ),
+    )
+
+
+def _add_error_file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--error-json",
+        type=Path,
+        metavar="FILE",
+        help=tr("where to write what went wrong, if it does"),
+    )
+
+
+def add_view(parser: argparse.ArgumentParser, whole: str) -> None:
+    """Declare who looks at a result; `whole` says what a teacher sees."""
+    who = parser.add_mutually_exclusive_group()
+    who.add_argument(
+        "--after-due",
+        action="store_true",
+        help=tr("what students see when the exercise is over; default: what they see before"),
+    )
+    who.add_argument("--whole", action="store_true", help=whole)
+
+
+def view_of(args: argparse.Namespace) -> View:
+    """Return who looks, as `add_view` declares it."""
+    return "whole" if args.whole else "after_due" if args.after_due else "student"
+
+
+def look_for(words: Sequence[str]) -> argparse.Namespace:
+    """The option, and the exercise, in a call that cannot be parsed; None where they are not.
+
+    Any other word may be meant as a file to read, so it counts as one.
+    """
+    parser = Parser(add_help=False)
+    _add_error_file(parser)
+    parser.add_argument("--exercise")
+    try:
+        args, others = parser.parse_known_args(words)
+    except Misuse:
+        return argparse.Namespace(error_json=None, exercise=None)
+    args.result = [Path(word) for word in others]
+    return args
+
+
+def inputs(args: argparse.Namespace) -> Iterator[Path]:
+    """The files and folders that a call reads."""
+    for name in ("submission", "recording", "compare", "result", "exercise", "mutants"):
+        given = getattr(args, name, None)
+        for one in given if isinstance(given, list) else [given]:
+            if one is not None:
+                yield Path(one)
+
+
+def prepare(args: argparse.Namespace) -> None:
+    """Remove an old file.
+
+    Raises:
+        UsageError: no new one could be written, or what is there is something else.
+    """
+    if args.error_json is not None:
+        from grader.result.error import FAMILY
+
+        files.check_writable(args.error_json)
+        files.check_replaceable(args.error_json, FAMILY, inputs(args))
+        files.withdraw(args.error_json)
+
+
+def write(error: GraderError, args: argparse.Namespace) -> None:
+    """Write what went wrong, if it was asked for.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    if args.error_json is not None:
+        from grader.result.error import ErrorResult
+
+        ErrorResult.of(error, _max_score(args)).write(args.error_json)
+
+
+def _max_score(args: argparse.Namespace) -> float | None:
+    name = getattr(args, "exercise", None)
+    if name is None:
+        return None
+    from grader.exercise.loading import load_exercise
+
+    try:
+        return round(sum(load_exercise(name).points.values()), 2)
+    except Exception:  # it may be this that is reported
+        return None

@@ -1,0 +1,152 @@
+"""Rules about what goes wrong unnoticed: caught exceptions, idle coroutines, timers."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePath
+
+from grader.diagnosis.case import Case, after, function, is_library, line, sentences, told
+from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.usual import known, meaning
+from grader.message import NOTHING, Message, joined, msg, plain_text
+from grader.recording.observations import Caught, SourceLine
+
+#: A program that ends so soon after an exception has ended by it [s].
+_SOON_S = 1.0
+#: Exceptions that no program counts on.
+_MISTAKES = frozenset(
+    (
+        *("NameError", "UnboundLocalError", "AttributeError", "TypeError", "AssertionError"),
+        *("ZeroDivisionError", "ImportError", "ModuleNotFoundError"),
+    )
+)
+#: What is None until the first message has come is gone after so many times.
+_OFTEN = 8
+_NEVER_AWAITED = re.compile(
+    r"^(?P<file>[^\n:]{1,1000}):(?P<line>\d{1,9}): RuntimeWarning: "
+    r"coroutine '(?P<name>[\w.<>]{1,200})' was never awaited(?:\n  (?P<text>[^\n]{1,300}))?",
+    re.MULTILINE,
+)
+#: A timer that a program drives by comes sooner than that [s].
+_LONG_PERIOD_S = 5.0
+#: Who makes one after the other makes fewer a second.
+_MOST_TIMERS_PER_S = 30.0
+NOT_CAUGHT = msg("Without the try/except Python would say so itself.")
+
+
+def ended_by_caught(case: Case) -> Diagnosis | None:
+    """It came to its end by an exception that it caught itself."""
+    ended_s = case.ended_s
+    if ended_s is None or case.observed.raised is not None:
+        return None
+    for caught in case.observed.caught:
+        if 0 <= ended_s - caught.time_s <= _SOON_S:
+            cause = msg(
+                "Your program caught an exception, and so ended {after}: {error}{where}.",
+                after=after(ended_s),
+                error=_error(caught),
+                where=line(caught.place),
+            )
+            return Diagnosis(
+                "ended_by_caught", cause, _mending(caught), time_s=ended_s, place=caught.place
+            )
+    return None
+
+
+def hides_errors(case: Case) -> Diagnosis | None:
+    """A callback fails again and again, and the program goes on after it."""
+    for caught in case.observed.caught:
+        if not _is_mistake(caught):
+            continue
+        who = function(caught.place) or msg("A callback")
+        cause = msg(
+            "{who} fails, and something in your program catches that and goes on: {error}{where}.",
+            who=who,
+            error=_error(caught),
+            where=line(caught.place),
+        )
+        return Diagnosis("hides_errors", cause, _mending(caught), place=caught.place)
+    return None
+
+
+def never_awaits(case: Case) -> Diagnosis | None:
+    """It calls an `async def` like any function: nothing of it is ever run."""
+    for found in _NEVER_AWAITED.finditer(case.tail):
+        if is_library(found["file"]):
+            continue
+        text = (found["text"] or "").strip()
+        place = SourceLine(PurePath(found["file"]).name, int(found["line"]), "", text)
+        name = told(found["name"].rpartition(".")[2])
+        return Diagnosis(
+            "never_awaits",
+            msg(
+                "An `async def` that nobody awaits was called{where}: nothing of {name}() was run.",
+                where=line(place),
+                name=name,
+            ),
+            msg(
+                "Make it a plain `def {name}`: call_async(request) in it sends the "
+                "request, and you go on without waiting for the answer.",
+                name=name,
+            ),
+            place=place,
+        )
+    return None
+
+
+def waits_for_timer(case: Case) -> Diagnosis | None:
+    """It sends nothing, and has a timer whose time does not come."""
+    publishers = [end for end in case.observed.ends if end.kind == "publisher"]
+    if not publishers or any(end.used for end in publishers):
+        return None
+    run_s = case.run.simulated_s
+    timers = case.observed.timers
+    if not timers or any(timer.period_s < max(_LONG_PERIOD_S, run_s) for timer in timers):
+        return None
+    timer = timers[0]
+    cause = msg(
+        "Your timer{where} has a period of {period_s:g} s: in {run_s:.0f} s it has not come once.",
+        where=line(timer.place),
+        period_s=timer.period_s,
+        run_s=run_s,
+    )
+    help_ = msg("create_timer() takes seconds, not milliseconds: 0.1 is ten times a second.")
+    return Diagnosis("waits_for_timer", cause, help_, place=timer.place)
+
+
+def makes_timers(case: Case) -> Diagnosis | None:
+    """It makes a timer each time that something is called, and all of them go on."""
+    for timer in case.observed.timers:
+        if timer.times < _MOST_TIMERS_PER_S * max(case.run.simulated_s, 1.0):
+            continue
+        each_time = NOTHING
+        if name := function(timer.place):
+            each_time = msg(" each time that {name} is called", name=name)
+        cause = msg(
+            "You create a new timer{each_time}{where}: {times} of them, and each keeps firing.",
+            each_time=each_time,
+            where=line(timer.place),
+            times=timer.times,
+        )
+        help_ = msg("Make it once, in __init__: it calls again and again by itself.")
+        return Diagnosis("makes_timers", cause, help_, place=timer.place)
+    return None
+
+
+def _is_mistake(caught: Caught) -> bool:
+    often = _OFTEN if "NoneType" in caught.text else 2
+    return caught.times >= often and caught.type in _MISTAKES
+
+
+def _error(caught: Caught) -> Message:
+    said = known(caught)
+    text = (
+        said.text if said is not None and said.text else plain_text(told(caught.text).rstrip("."))
+    )
+    return joined([told(caught.type), text] if text else [told(caught.type)], ": ")
+
+
+def _mending(caught: Caught) -> Message:
+    said = known(caught)
+    help_ = said.help if said is not None else meaning(caught)
+    return sentences(help_, NOT_CAUGHT)

@@ -1,0 +1,66 @@
+"""What a bag holds of one topic, as columns: no object for each of thousands of messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Ints = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """The n messages of a topic, in the order of the bag.
+
+    Attributes:
+        topic: its name.
+        msgtype: their ROS type, as 'std_msgs/msg/String'.
+        times_ns: of each, from the start of the run [ns], int64 (n,).
+        places: where each stands among all messages of the bag, int64 (n,).
+        data: the bytes of the bag, uint8 (m,).
+        begins, ends: where in `data` the CDR of each is, int64 (n,).
+    """
+
+    topic: str
+    msgtype: str
+    times_ns: Ints
+    places: Ints
+    data: npt.NDArray[np.uint8]
+    begins: Ints
+    ends: Ints
+
+    def messages(self) -> Iterator[bytes]:
+        """The CDR of each."""
+        for begin, end in zip(self.begins.tolist(), self.ends.tolist(), strict=True):
+            yield self.data[begin:end].tobytes()
+
+    def rows(self, layout: np.dtype[np.void]) -> npt.NDArray[Any]:
+        """All messages of a type whose CDR has always the same length, as a structured array (n,).
+
+        Args:
+            layout: of one message, with all of its bytes.
+
+        Raises:
+            ValueError: one of them has another length.
+        """
+        sizes = self.ends - self.begins
+        other = sizes[sizes != layout.itemsize]
+        if len(other):
+            expected = f"a {self.msgtype} has {layout.itemsize} bytes"
+            raise ValueError(f"{self.topic}: {expected}, found {other[0]}")
+        return taken(self.data, self.begins, layout)
+
+    def __len__(self) -> int:
+        return len(self.times_ns)
+
+
+def taken(data: npt.NDArray[np.uint8], begins: Ints, layout: np.dtype[np.void]) -> npt.NDArray[Any]:
+    """What lies at n places, (n,); all of it is inside `data`."""
+    if not len(begins):
+        return np.empty(0, layout)
+    windows = np.lib.stride_tricks.sliding_window_view(data, layout.itemsize)
+    return windows[begins].view(layout)[:, 0]

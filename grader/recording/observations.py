@@ -1,0 +1,276 @@
+"""What a submission's process has told of itself: evidence about the submission, and nothing else.
+
+Who writes such a program may have it tell anything. A diagnosis looks at it; no verdict, no
+outcome and no point ever does.
+
+Times are those of the clock that the run lived by [s], from the start of the submission's process.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any, Literal, Self
+
+from grader.strict_json import Bounds, from_json, not_negative
+from grader.text import one_line, without_controls
+
+
+def _in_one_line(text: str) -> str:
+    """Without what a terminal, a log or XML would stumble over."""
+    return without_controls(one_line(text), "?")
+
+
+#: So many characters of a text and entries of a kind are kept; what comes later is not.
+STRANGERS = Bounds(300, 100, clean=_in_one_line)
+#: So many times of one end the line changes that it is used at.
+MOST_SENT = 200
+
+
+def _own(file: str) -> str:
+    if file.startswith("/") or ".." in file.split("/"):
+        raise ValueError(f"expected a file of the submission's own, found {file!r:.80}")
+    return file
+
+
+File = Annotated[str, _own]
+Count = Annotated[int, not_negative]
+Seconds = Annotated[float, not_negative]
+
+EndKind = Literal["subscription", "publisher", "client", "action_client"]
+StopKind = Literal["callback", "call", "loop", "init", "spin", "going"]
+LintKind = Literal[
+    "unread",
+    "local",
+    "global",
+    "uncalled",
+    "method",
+    "without_self",
+    "called",
+    "class",
+    "unsent",
+    "beside",
+    "swallows",
+]
+
+
+@dataclass(frozen=True)
+class SourceLine:
+    """A line of the submission's own files.
+
+    Attributes:
+        file: relative to what was handed in.
+        function: that the line is in; '' for none.
+        text: the line as it stands there, without the blanks round it.
+    """
+
+    file: File
+    line: Count
+    function: str = ""
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Burst:
+    """Messages or requests that were sent one after another from one line.
+
+    Attributes:
+        line: which of the end's lines, from 0.
+        times: how many.
+    """
+
+    line: Count
+    times: Count
+
+
+@dataclass(frozen=True)
+class End:
+    """One end of a topic, service or action that the submission has made.
+
+    Attributes:
+        name: with its namespace, after remapping.
+        type: as 'geometry_msgs/msg/Twist'.
+        is_met: whether anybody else had the other end of it, at the end of the run.
+        used: how many messages it has sent, received, or requests sent; of a process that was ended
+            by force, so many at least.
+        place: where it was made.
+        used_at: where it was used first, to send something.
+        lines: from where it was used to send something.
+        sent: from which of them what was sent, in order, from the first on; all of it is there only
+            if these are as many as were `used`.
+    """
+
+    kind: EndKind
+    name: str
+    type: str
+    is_met: bool
+    used: Count
+    place: SourceLine | None = None
+    used_at: SourceLine | None = None
+    lines: tuple[SourceLine, ...] = ()
+    sent: Annotated[tuple[Burst, ...], STRANGERS._replace(entries=MOST_SENT)] = ()
+
+
+@dataclass(frozen=True)
+class Wait:
+    """A wait for a service, an action server or a message that lasted.
+
+    Attributes:
+        name, type: of what was waited for.
+        since_s, lasted_s: None: until the end.
+    """
+
+    name: str
+    type: str
+    since_s: Seconds
+    lasted_s: Seconds | None
+    place: SourceLine | None = None
+
+
+@dataclass(frozen=True)
+class SlowCallback:
+    """A callback that let time pass: the node could do nothing else meanwhile.
+
+    Attributes:
+        place: the line in it that took longest.
+        longest_s, times: how long at most, and how often it let more than a tick pass.
+    """
+
+    place: SourceLine
+    longest_s: Seconds
+    times: Count
+
+
+@dataclass(frozen=True)
+class TimerLine:
+    """A line that makes a timer.
+
+    Attributes:
+        period_s: of the last that it has made.
+        times: how many it has made; of a process that was ended by force, so many at least.
+    """
+
+    place: SourceLine
+    period_s: Seconds
+    times: Count
+
+
+@dataclass(frozen=True)
+class Caught:
+    """An exception that has left a callback, and did not end the program.
+
+    Attributes:
+        type, text: as in `Raised`.
+        time_s: when it was seen first.
+        times: how often it was seen.
+        place: the last line of the submission's own that it came from.
+    """
+
+    type: str
+    text: str
+    time_s: Seconds
+    times: Count
+    place: SourceLine
+
+
+@dataclass(frozen=True)
+class LintFinding:
+    """What a look at the source shows: nothing wrong by itself, and seldom what was meant.
+
+    Attributes:
+        kind: `unread` - self.NAME is set outside of __init__ and never read, NEAR is a little
+            different and read; `local` - NAME is set in a function and not read there, NEAR
+            (self.NAME, or NAME of the module) is meant; `global` - NAME of the module is set and
+            read in a function, without `global`; `uncalled` - the method or function NAME stands
+            there without its brackets; `method` - self.NAME is set, and is a method, too;
+            `without_self` - the method NAME has no self; `called` - what was to be handed over to
+            NEAR is called at once; `class` - the class NAME is handed over to NEAR, not what is
+            made of it; `unsent` - a request of NAME is made, and nothing ever calls a service;
+            `beside` - the module NAME that is not found lies beside, and its name is NEAR;
+            `swallows` - an `except` in the callback NAME catches every error, and shows none.
+    """
+
+    kind: LintKind
+    name: str
+    near: str
+    place: SourceLine
+
+
+@dataclass(frozen=True)
+class Standstill:
+    """Where the program was when it went no further, or the run ended.
+
+    Attributes:
+        kind: `callback` - it waits in a callback for what only another could bring; `call` - it
+            waits in a call while nobody spins; `loop` - it computes without end. At the end of a
+            run, of its main thread: `init` - it was still in an `__init__`; `going` - it was in a
+            loop of its own, and did not just spin.
+        call: the last function of a library that it was in, as 'Client.call'; '' for none.
+    """
+
+    kind: StopKind
+    time_s: Seconds
+    call: str = ""
+    place: SourceLine | None = None
+
+
+@dataclass(frozen=True)
+class Raised:
+    """The exception that ended the program or its thread that spun; or a signal for a mistake in C.
+
+    Attributes:
+        type: as 'ZeroDivisionError'; 'SIGABRT' for a signal.
+        place: the last line of the submission's own; None where there is none.
+    """
+
+    type: str
+    text: str
+    time_s: Seconds
+    place: SourceLine | None = None
+
+
+@dataclass(frozen=True)
+class Observations:
+    """All of it.
+
+    Attributes:
+        is_known: whether anything was told at all; False for controllers in other languages.
+        ends: in the order in which they were made.
+        spun_s: when an executor was first spun; None for never.
+        waits: services and the like that were waited for longer than a second, or in vain.
+        slow: callbacks that let time pass.
+        timers: the lines that have made timers, in the order in which they came.
+        caught: exceptions that have left callbacks, after which the program went on.
+        lint_findings: in the files that it has loaded.
+        stop: where it got stuck.
+        raised: what ended it; of a thread that spun, the program may have gone on without it.
+        returned_s: when its program came to its end by itself, without an error.
+    """
+
+    is_known: bool = False
+    ends: tuple[End, ...] = ()
+    spun_s: Seconds | None = None
+    waits: tuple[Wait, ...] = ()
+    slow: tuple[SlowCallback, ...] = ()
+    timers: tuple[TimerLine, ...] = ()
+    caught: tuple[Caught, ...] = ()
+    lint_findings: tuple[LintFinding, ...] = ()
+    stop: Standstill | None = None
+    raised: Raised | None = None
+    returned_s: Seconds | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """As `from_json` takes it."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: Any) -> Self:
+        """What somebody has told, whoever that is.
+
+        Raises:
+            ValueError: it has another form, or is longer than it may be.
+        """
+        observations = from_json(cls, data, STRANGERS)
+        for end in observations.ends:
+            if any(each.line >= len(end.lines) for each in end.sent):
+                raise ValueError(f"expected one of {len(end.lines)} lines in {end.sent!r:.80}")
+        return observations

@@ -1,0 +1,67 @@
+"""A trace on its way from one of our processes to another: the messages that a bag would hold.
+
+The topics as JSON, behind its length in eight bytes; then of each message its time, the number of
+its topic and its length; then the CDR of all, one behind the other. Nothing is unpickled.
+"""
+
+from __future__ import annotations
+
+import json
+from struct import Struct
+
+import numpy as np
+
+from grader.recording.channel import Channel
+from grader.recording.subject import Subject, Trace
+
+_LENGTH = Struct("<Q")
+_COLUMNS = np.dtype([("time_ns", "<i8"), ("topic", "<i8"), ("size", "<i8")])
+
+
+def pack(trace: Trace, subject: Subject) -> bytes:
+    """The bytes of a trace."""
+    messages = subject.to_messages(trace)
+    topics = [*subject.bag_topics(trace), *((each.topic, each.msgtype) for each in messages)]
+    numbers = {each: number for number, each in enumerate(dict.fromkeys(topics))}
+    columns = np.array(
+        [(m.time_ns, numbers[m.topic, m.msgtype], len(m.data)) for m in messages], _COLUMNS
+    )
+    head = json.dumps(
+        {"duration_ns": trace.duration_ns, "topics": [*numbers], "messages": len(messages)}
+    )
+    data = b"".join(message.data for message in messages)
+    return _LENGTH.pack(len(head)) + head.encode("ascii") + columns.tobytes() + data
+
+
+def unpack(packed: bytes, subject: Subject) -> Trace:
+    """The trace that bytes mean.
+
+    Raises:
+        ValueError: they mean none.
+    """
+    try:
+        (length,) = _LENGTH.unpack_from(packed)
+        begin = _LENGTH.size + length
+        head = json.loads(packed[_LENGTH.size : begin].decode("ascii"))
+        columns = np.frombuffer(packed, _COLUMNS, head["messages"], begin)
+        data = np.frombuffer(packed, np.uint8, offset=begin + columns.nbytes)
+        if (columns["size"] < 0).any() or columns["size"].sum(dtype=object) != len(data):
+            raise ValueError("its messages have other lengths")
+        ends = np.cumsum(columns["size"])
+        channels = []
+        for number, (topic, msgtype) in enumerate(head["topics"]):
+            own = np.flatnonzero(columns["topic"] == number)
+            begins = ends[own] - columns["size"][own]
+            channels.append(
+                Channel(topic, msgtype, columns["time_ns"][own], own, data, begins, ends[own])
+            )
+        if sum(map(len, channels)) != len(columns):
+            raise ValueError("a message is of no topic")
+        duration_ns = head["duration_ns"]
+        if type(duration_ns) is not int:
+            raise ValueError(f"it lasts {duration_ns!r:.40} ns")
+        return subject.from_channels(channels, duration_ns)
+    except MemoryError:  # a limit
+        raise
+    except Exception as error:  # whatever it is that one of the readers raises
+        raise ValueError(f"no trace of {subject.name}: {type(error).__name__}: {error}") from error

@@ -1,0 +1,386 @@
+"""The student's end of the link to the simulator: messages, and time.
+
+Whatever the program sends goes out at once, and counts from the next request for time; whatever
+the simulator sends comes with its reply to that. Of the ticks to come the simulator says in advance
+what they will bring, if nothing is sent meanwhile; these pass without a word to it.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import socket
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NoReturn
+
+from grader.message import NOTHING, Message, msg
+from grader.run.clock.scheduler import Scheduler
+from grader.run.lockstep import real
+from grader.run.lockstep.faults import guarded
+from grader.run.lockstep.protocol import (
+    EPOCH_NS,
+    FOREVER,
+    MOST_SENT,
+    MOST_SENT_BYTES,
+    NEVER,
+    PIECE_BYTES,
+    PROGRESS,
+    PROGRESS_BYTES,
+    TICK_NS,
+    Advance,
+    Interests,
+    Kind,
+    Mail,
+    Note,
+    Packet,
+    PacketReader,
+    Parcel,
+    ProtocolError,
+    Reply,
+    State,
+    Table,
+    decode,
+    encode,
+    pieces,
+)
+from grader.run.lockstep.registry import Arrived, EndpointRegistry, Reader, Writer, policies
+
+UNBOUNDED = 0xFFFFFFFF
+#: What sending a message costs: 20 us. What counting the endpoints of a channel costs.
+SEND_UNITS = 4
+QUESTION_UNITS = 4
+#: How long we may go on without a word to the simulator, in real time [s]: it would think that the
+#: program hangs.
+LONGEST_ALONE_S = 0.25
+#: How long DDS may take to find what is there, where the program asks for it, in real time [s]. A
+#: run in which it takes longer is made again, in real time.
+DDS_PATIENCE_S = 60.0
+
+
+class SimulatorSockets:
+    """The two sockets to the simulator, and the page that both processes have.
+
+    Where the simulator has gone, this process ends: nobody would hear what it still did.
+    """
+
+    def __init__(
+        self, connection: socket.socket, page: int, refuse: Callable[[Message], None]
+    ) -> None:
+        self._refuse = refuse
+        self._connection = connection
+        self._packets = PacketReader(connection)
+        self._mailbox: socket.socket
+        self._progress = mmap.mmap(page, PROGRESS_BYTES)
+
+    def introduction(self) -> Table:
+        """Wait for the first table, and with it the mailbox."""
+        try:
+            data, descriptors, _, _ = socket.recv_fds(self._connection, PIECE_BYTES, 1)
+        except OSError:
+            data = b""
+        if not data:
+            real.leave(1)
+        packet = self._decode(data)
+        if not isinstance(packet, Table) or len(descriptors) != 1:
+            self.fail(packet, "a table")
+        os.set_inheritable(descriptors[0], False)
+        self._mailbox = socket.socket(fileno=descriptors[0])
+        self._mailbox.setblocking(False)
+        return packet
+
+    def send(self, packet: Packet) -> None:
+        """Send a packet that the simulator waits for, or does not answer."""
+        try:
+            for piece in pieces(encode(packet)):
+                self._connection.send(piece)
+        except OSError:
+            real.leave(1)
+
+    def receive(self) -> Packet:
+        """Wait for a packet."""
+        data: bytes | None = None
+        while data is None:
+            try:
+                data = self._packets.read()
+            except OSError:
+                data = b""
+        if not data:
+            real.leave(1)
+        return self._decode(data)
+
+    def mail(self, pieces: list[bytes]) -> list[bytes]:
+        """Put the pieces of a parcel into the mailbox; return those for which it is too full."""
+        for number, piece in enumerate(pieces):
+            try:
+                self._mailbox.send(piece)
+            except BlockingIOError:
+                return pieces[number:]
+            except OSError:
+                real.leave(1)
+        return []
+
+    def has_reached(self, tick: int) -> None:
+        """Note it where it is read when this process has ended without a word."""
+        PROGRESS.pack_into(self._progress, 0, tick)
+
+    def fail(self, packet: object, expected: str) -> NoReturn:
+        """Somebody else has read or written here, and only the submission can."""
+        self._break(ProtocolError(f"{packet!r:.200} where {expected} was expected"))
+
+    def _decode(self, data: bytes) -> Packet:
+        try:
+            return decode(data)
+        except ProtocolError as error:
+            self._break(error)
+
+    def _break(self, error: ProtocolError) -> NoReturn:
+        self._refuse(msg("broke our virtual time ({error})", error=f"{error!r:.200}"))
+        raise error
+
+
+@dataclass
+class Agreed:
+    """What both sides know since the simulator's last reply, and what has been mailed since.
+
+    Attributes:
+        tick: to which it has come by that reply; the program may be further by now.
+        foreseen: the tick up to which it has said in advance what comes.
+        parcels: what comes, by tick, and has not come yet.
+        said_s: when it replied, in real time [s].
+        has_mail: it was sent something since, which it does not know.
+    """
+
+    tick: int = 0
+    foreseen: int = 0
+    parcels: deque[Parcel] = field(default_factory=deque)
+    said_s: float = 0.0
+    has_mail: bool = False
+
+
+class SimulatorLink(EndpointRegistry):
+    """The student's side of the link, and all endpoints of its process.
+
+    Attributes:
+        tick: the last that has begun for the program.
+        graph_epoch: counts how often the endpoints were connected anew.
+        is_listening: whether a thread waits for what the simulator publishes.
+        on_arrival: called after something may have arrived.
+        on_standstill: called when no thread of the program has a deadline.
+        on_over: called when the run is over, before this process ends for it.
+    """
+
+    def __init__(
+        self,
+        scheduler: Scheduler,
+        connection: socket.socket,
+        page: int,
+        refuse: Callable[[Message], None],
+    ) -> None:
+        """Link a program with its simulator.
+
+        Args:
+            connection: to the simulator, which sends its first table when it is ready.
+            page: a descriptor of the page that both have.
+            refuse: called with what the program does that virtual time cannot follow.
+        """
+        super().__init__(lambda: EPOCH_NS + scheduler.now_ns)
+        self.refuse = refuse
+        self.tick = 0
+        self.graph_epoch = 0
+        self.is_listening: Callable[[], bool] = lambda: False
+        self.on_arrival: Callable[[], None] = lambda: None
+        self.on_standstill: Callable[[], None] = lambda: None
+        self.on_over: Callable[[], None] = lambda: None
+        self._scheduler = scheduler
+        self._sockets = SimulatorSockets(connection, page, refuse)
+        self._agreed = Agreed()
+        #: what the simulator knows of our endpoints; None until it has introduced itself
+        self._interests: Interests | None = None
+        self._sent = self._sent_bytes = 0
+        #: the readers for responses, by the numbers that requests carry
+        self._clients: dict[int, Reader] = {}
+        self._client_numbers: dict[Reader, int] = {}
+        #: what DDS was last waited for, at which epoch, and until when
+        self._dds_wait = ("", 0, 0.0)
+
+    # Time -------------------------------------------------------------------------------------
+
+    @guarded
+    def advance(self, deadline_ns: int) -> None:
+        """Let time move to what happens next: our deadline, or something from the simulator."""
+        scheduler = self._scheduler
+        if deadline_ns < (self.tick + 1) * TICK_NS:
+            scheduler.set_now(max(deadline_ns, scheduler.now_ns))
+            return
+        self.connect()
+        if deadline_ns == NEVER:
+            self.on_standstill()
+        target = min(deadline_ns // TICK_NS, FOREVER)
+        most = 1 if self.is_listening() else UNBOUNDED
+        if self._agreed.has_mail or not self._live_through_foreseen(target, most):
+            self._exchange(target, most)
+        scheduler.set_now(max(scheduler.now_ns, self.tick * TICK_NS))
+        self.on_arrival()
+
+    def _live_through_foreseen(self, target: int, most: int) -> bool:
+        """Let ticks pass that the simulator has foreseen; return whether any has."""
+        last = min(target, self.tick + most, self._agreed.foreseen)
+        if self.tick >= last or real.monotonic() > self._agreed.said_s + LONGEST_ALONE_S:
+            return False
+        self._live_to(last)
+        return True
+
+    def _live_to(self, tick: int) -> None:
+        """Let time pass to a tick, with the messages up to it."""
+        self.tick = tick
+        self._sockets.has_reached(tick)
+        parcels = self._agreed.parcels
+        while parcels and parcels[0].tick <= tick:
+            self._deliver(parcels.popleft())
+
+    def synchronise(self) -> None:
+        """Have the simulator come to where we are, with all that we have sent, in no time."""
+        self.connect()
+        if self._agreed.has_mail or self.tick > self._agreed.tick:
+            self._exchange(self.tick, 0)
+
+    def _exchange(self, target: int, most: int) -> None:
+        """Ask for time, and take what comes with the reply."""
+        self._sockets.send(Advance(target, most, self.tick, self._agreed.has_mail))
+        table = None
+        while not isinstance(packet := self._sockets.receive(), Reply):
+            if not isinstance(packet, Table):
+                self._sockets.fail(packet, "a reply")
+            table = packet
+            self._add(table)
+            self._connect_anew()
+        parcels = deque(packet.parcels)
+        self._agreed = Agreed(packet.tick, packet.foreseen, parcels, real.monotonic())
+        self._live_to(packet.tick)
+        if table is not None:
+            for number in table.removed:
+                self.others.pop(number, None)
+            self._connect_anew()
+        if packet.state == State.OVER:
+            self.on_over()
+            real.leave(0)
+
+    # Messages ---------------------------------------------------------------------------------
+
+    def before_question(self) -> None:
+        """Connect, and charge for it: who asks for counterparts is to see all that there are."""
+        self.connect()
+        self._scheduler.charge(QUESTION_UNITS)
+
+    def publish(self, writer: Writer, data: bytes) -> None:
+        """To readers in this process at once, to the simulator with the next request for time."""
+        super().publish(writer, data)
+        for remote in writer.remote:
+            self._mail(Parcel(remote.number, 0, writer.sent, self.tick, data))
+        self._has_sent(data, writer.local)
+
+    def ask(self, writer: Writer, client: Reader, data: bytes) -> int:
+        """Send a request, in the same way."""
+        number = super().ask(writer, client, data)
+        for remote in writer.remote:
+            client.awaited += 1
+            self._mail(Parcel(remote.number, self._number(client), number, self.tick, data))
+        self._has_sent(data, writer.local)
+        return number
+
+    def respond(self, writer: Writer, to: Arrived, data: bytes) -> None:
+        """Send a response, in the same way; the simulator never asks."""
+        super().respond(writer, to, data)
+        self._has_sent(data, [to.client])
+
+    def _has_sent(self, data: bytes, local: list[Any]) -> None:
+        self._sent += 1
+        self._sent_bytes += len(data)
+        if self._sent > MOST_SENT or self._sent_bytes > MOST_SENT_BYTES:
+            self.note(Kind.FLOODING)
+            self.on_over()
+            real.leave(0)
+        if local:
+            self.on_arrival()
+        self._scheduler.charge(SEND_UNITS)
+
+    def _number(self, client: Reader) -> int:
+        number = self._client_numbers.setdefault(client, len(self._client_numbers) + 1)
+        self._clients[number] = client
+        return number
+
+    def _mail(self, parcel: Parcel) -> None:
+        self._agreed.has_mail = True
+        rest = self._sockets.mail(list(pieces(encode(Mail([parcel])))))
+        while rest:
+            self._exchange(self.tick, 0)
+            self._agreed.has_mail = True
+            rest = self._sockets.mail(rest)
+
+    def _deliver(self, parcel: Parcel) -> None:
+        endpoint, client, number, tick, data = parcel
+        arrived = Arrived(data, EPOCH_NS + tick * TICK_NS, number)
+        if client:
+            reader = self._clients[client]
+            reader.awaited -= 1
+            reader.items.append(arrived)
+            return
+        writer = self.others[endpoint]
+        if isinstance(writer, Writer):
+            self.deliver(writer, arrived)
+
+    # Connections ------------------------------------------------------------------------------
+
+    def connect(self) -> None:
+        """Connect what belongs together, and tell the simulator what we read and publish."""
+        if self._interests is None:
+            self._interests = Interests(())
+            self._add(self._sockets.introduction())
+            self._connect_anew()
+        if not self.changed:
+            return
+        self.changed = False
+        self._connect_anew()
+        topics = {(w.name, w.type) for w in self.writers if w.kind == "topic"}
+        reads = {reader.channel for reader in self.readers if reader.kind != "request"}
+        interests = Interests(tuple(sorted(reads)), tuple(sorted(topics)))
+        if interests != self._interests:
+            self._interests = interests
+            if self.tick > self._agreed.tick:  # foreseen for the readers that there were
+                self._exchange(self.tick, 0)
+            self._agreed.parcels.clear()
+            self._agreed.foreseen = self.tick
+            self._sockets.send(interests)
+
+    def _add(self, table: Table) -> None:
+        """Note the simulator's endpoints that a table says are new."""
+        for entry in table.added:
+            kind = Writer if entry.writes else Reader
+            qos = policies(entry.reliability, entry.durability, entry.depth)
+            self.others[entry.id] = kind(entry.channel, entry.type, qos, entry.id)
+
+    def _connect_anew(self) -> None:
+        self._is_unpaired = True
+        self.pair()
+        self.count_meetings()
+        self.graph_epoch += 1
+
+    def await_dds(self, what: str) -> None:
+        """Really wait a little until DDS has found what we know to be there.
+
+        Where that is in vain, the run cannot be made here: DDS has lost something.
+        """
+        now_s = real.monotonic()
+        if self._dds_wait[:2] != (what, self.graph_epoch):
+            self._dds_wait = (what, self.graph_epoch, now_s + DDS_PATIENCE_S)
+        if now_s > self._dds_wait[2]:
+            lack = f"DDS did not tell of an {what} in {DDS_PATIENCE_S:.0f} s"
+            self.note(Kind.FAILED, msg("virtual time does not work here: {lack}", lack=lack))
+            real.leave(0)
+        real.sleep(0.0005)
+
+    def note(self, kind: Kind, remark: Message = NOTHING) -> None:
+        """Tell the simulator something about this process."""
+        self._sockets.send(Note(kind, remark))

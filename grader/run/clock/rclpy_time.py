@@ -1,0 +1,358 @@
+"""Puts rclpy into virtual time: how its wait sets and clocks wait, and what polling costs."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import sys
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import rclpy
+import rclpy.action
+import rclpy.clock
+import rclpy.executors
+import rclpy.experimental
+import rclpy.node
+import rclpy.task
+import rclpy.timer
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+from grader.message import msg
+from grader.run.clock import executor
+from grader.run.clock.link import SimulatorLink
+from grader.run.clock.scheduler import Runner, Scheduler
+from grader.run.lockstep import actions, endpoints, faults, rclpy_clocks, waitsets
+from grader.run.lockstep.protocol import NEVER
+from grader.run.lockstep.rclpy_clocks import RclpyClocks
+from grader.run.lockstep.registry import Writer
+from grader.run.lockstep.waitsets import Waiter, WaitSet
+
+#: What a wait costs, and what handing out work costs on top [units].
+WAIT_UNITS = 2
+WORK_UNITS = 8
+#: What the first, second, ... of several waits in a row costs that must not wait and found
+#: nothing [ns].
+EMPTY_NS = (*(250_000,) * 8, 2_000_000)
+#: Methods of a node's that ask about the graph.
+QUESTIONS = (
+    "count_clients",
+    "count_publishers",
+    "count_services",
+    "count_subscribers",
+    "get_client_names_and_types_by_node",
+    "get_fully_qualified_node_names",
+    "get_node_names",
+    "get_node_names_and_namespaces",
+    "get_node_names_and_namespaces_with_enclaves",
+    "get_publisher_names_and_types_by_node",
+    "get_publishers_info_by_topic",
+    "get_service_names_and_types",
+    "get_service_names_and_types_by_node",
+    "get_subscriber_names_and_types_by_node",
+    "get_subscriptions_info_by_topic",
+    "get_topic_names_and_types",
+)
+#: A node's name and namespace.
+NodeName = tuple[str, str]
+
+
+def prepare() -> None:
+    """Replace what needs neither the link nor the clocks; may come long before `install`."""
+    # first: it looks at what is replaced in `install`
+    executor.install()
+    executor.allow_nested_spins()
+
+
+def install(
+    scheduler: Scheduler,
+    link: SimulatorLink,
+    nodes: Sequence[NodeName],
+    *,
+    compares_stamps: bool,
+    on_deadlock: Callable[[], None],
+) -> None:
+    """Replace what tells or waits for time in rclpy, after `prepare`.
+
+    Args:
+        nodes: the simulator's.
+        compares_stamps: whether a node's clock tells another time each time it is asked.
+        on_deadlock: called once, when nothing can ever happen any more.
+    """
+
+    def now_ns() -> int:
+        return scheduler.now_ns
+
+    unpaid_ns = (lambda: scheduler.unpaid_ns) if compares_stamps else (lambda: 0)
+    clocks = rclpy_clocks.install(_rclpy, now_ns, scheduler.charge, unpaid_ns)
+    scheduler.clocks.append(clocks.set_now)
+    scheduler.advance = link.advance
+    _rclpy.ClockEvent = clock_event_class(scheduler)
+    waitsets.install(VirtualWaiter(scheduler, link, clocks, on_deadlock))
+    endpoints.install(link)
+    actions.install()
+    _guard_entities()
+    _replace_questions(link, nodes)
+    _order_nodes(rclpy.node.Node)
+    _charge_for(rclpy.task.Future, "done", scheduler)
+    _replace_ok(scheduler)
+    _replace_events_executor()
+    scheduler.on_unknown_thread = lambda: link.refuse(
+        msg("runs Python in a thread that a C extension has started")
+    )
+
+
+# How it waits ---------------------------------------------------------------------------------
+
+
+class VirtualWaiter(Waiter):
+    """Blocks the running thread in the scheduler."""
+
+    def __init__(
+        self,
+        scheduler: Scheduler,
+        link: SimulatorLink,
+        clocks: RclpyClocks,
+        on_deadlock: Callable[[], None],
+    ) -> None:
+        super().__init__(clocks.tell)
+        self._scheduler = scheduler
+        self._link = link
+        self._on_deadlock: Callable[[], None] | None = on_deadlock
+        self._waiting: list[tuple[WaitSet, Runner]] = []
+        self._empty = 0
+        link.is_listening = self.is_listening
+        link.on_arrival = self.on_arrival
+        link.on_standstill = self.on_standstill
+
+    @property
+    def graph_epoch(self) -> int:
+        """Counts the changes of the graph; what belongs together is connected now."""
+        self._link.connect()
+        return self._link.graph_epoch
+
+    @property
+    def is_alone(self) -> bool:
+        """Whether the program has but one thread."""
+        return len(self._scheduler.runners) == 1
+
+    def await_dds(self, what: str) -> None:
+        """Really wait a little for DDS."""
+        self._link.await_dds(what)
+
+    def look_first(self) -> None:
+        """Let others run first, if any can."""
+        self._scheduler.charge(WAIT_UNITS)
+        self._scheduler.pass_on()
+
+    def found_work(self) -> None:
+        """Charge for the work that a wait has found."""
+        self._empty = 0
+        self._scheduler.charge(WORK_UNITS)
+
+    def found_nothing(self) -> None:
+        """Charge for a wait in vain: a loop of them must not stop time."""
+        cost_ns = EMPTY_NS[min(self._empty, len(EMPTY_NS) - 1)]
+        self._empty += 1
+        self._scheduler.sleep(cost_ns)
+
+    def wait_for(self, wait_set: WaitSet, deadline_ns: int) -> None:
+        """Block until something may be ready."""
+        self._empty = 0
+        entry = (wait_set, self._scheduler.current)
+        self._waiting.append(entry)
+        try:
+            self._scheduler.block(deadline_ns)
+        finally:
+            self._waiting.remove(entry)
+
+    def deadline(self, timeout_ns: int) -> int:
+        """When a time-out from now ends; a negative one never."""
+        return NEVER if timeout_ns < 0 else min(NEVER, self._scheduler.now_ns + timeout_ns)
+
+    def poke(self, _: object) -> None:
+        """Wake all that wait: they are few."""
+        for _, runner in self._waiting:
+            self._scheduler.wake(runner)
+
+    def on_arrival(self) -> None:
+        """Wake those for whom something has come."""
+        for wait_set, runner in self._waiting:
+            for reader in wait_set.readers:
+                if reader.items:
+                    self._scheduler.wake(runner)
+                    break
+
+    def is_listening(self) -> bool:
+        """Whether a blocked wait set would hear what the simulator publishes."""
+        for wait_set, _ in self._waiting:
+            for reader in wait_set.readers:
+                if reader.hears:
+                    return True
+        return False
+
+    def on_standstill(self) -> None:
+        """All threads are blocked for good, unless something still comes from the simulator."""
+        is_hopeful = self.is_listening() or any(
+            reader.awaited > 0 for wait_set, _ in self._waiting for reader in wait_set.readers
+        )
+        if not is_hopeful and self._on_deadlock is not None:
+            on_deadlock, self._on_deadlock = self._on_deadlock, None
+            on_deadlock()
+
+
+def clock_event_class(scheduler: Scheduler) -> type:
+    """Return what `Clock.sleep_until` waits on."""
+
+    class ClockEvent:
+        def __init__(self) -> None:
+            self._is_set = False
+            self._waiting: Any = None
+
+        def wait_until_steady(self, clock: Any, until: Any) -> None:
+            if clock.is_overridden:  # and nobody publishes /clock
+                deadline_ns = scheduler.now_ns + 10**18
+            else:
+                deadline_ns = until.nanoseconds - clock.offset_ns
+            self._waiting = scheduler.current
+            while not self._is_set and scheduler.now_ns < deadline_ns:
+                scheduler.block(deadline_ns)
+
+        wait_until_system = wait_until_ros = wait_until_steady
+
+        def set(self) -> None:
+            self._is_set = True
+            if self._waiting is not None:
+                scheduler.wake(self._waiting)
+
+        def clear(self) -> None:
+            self._is_set = False
+
+        def is_set(self) -> bool:
+            return self._is_set
+
+    return ClockEvent
+
+
+# Questions about the graph --------------------------------------------------------------------
+
+
+def _replace_questions(link: SimulatorLink, nodes: Sequence[NodeName]) -> None:
+    """Have a node's questions wait, in no virtual time, until DDS has found all that is there.
+
+    Args:
+        nodes: the simulator's.
+    """
+    seen_epochs: set[int] = set()
+
+    def replace(name: str) -> None:
+        ask = getattr(rclpy.node.Node, name)
+
+        @functools.wraps(ask)
+        def asked(self: Any, *args: Any, **kwargs: Any) -> Any:
+            link.before_question()
+            if link.graph_epoch not in seen_epochs:
+                seen_epochs.add(link.graph_epoch)
+                while not _is_complete(link, self.handle, nodes):
+                    link.await_dds("graph")
+            return faults.pass_on(ask, self, *args, **kwargs)
+
+        setattr(rclpy.node.Node, name, asked)
+
+    for question in QUESTIONS:
+        if hasattr(rclpy.node.Node, question):
+            replace(question)
+
+
+def _is_complete(link: SimulatorLink, node: Any, nodes: Sequence[NodeName]) -> bool:
+    """Whether DDS shows the simulator's nodes, and each of its endpoints with those of ours."""
+    if not set(nodes) <= set(node.get_node_names_and_namespaces()):
+        return False
+    expected = Counter(
+        [(each.channel, isinstance(each, Writer)) for each in link.others.values()]
+        + [(reader.channel, False) for reader in link.readers]
+        + [(writer.channel, True) for writer in link.writers]
+    )
+    for (channel, writes), number in expected.items():
+        kind, _, name = channel.partition(" ")
+        if kind == "topic":
+            count = node.get_count_publishers if writes else node.get_count_subscribers
+        elif kind == "request" and not writes:
+            count = node.get_count_services
+        else:
+            continue
+        if count(name) != number:
+            return False
+    theirs = (each for each in link.others.values() if isinstance(each, Writer))
+    topics = {each.name for each in theirs if each.kind == "topic"}
+    ask = _rclpy.rclpy_get_publisher_names_and_types_by_node
+    return topics <= {topic for name in nodes for topic, _ in ask(node, False, *name)}
+
+
+# What else is replaced ------------------------------------------------------------------------
+
+
+def _guard_entities() -> None:
+    """A mistake of ours must not become the submission's, whatever it catches."""
+    for kind in (
+        *(endpoints.Publisher, endpoints.Subscription, endpoints.Client, endpoints.Service),
+        *(endpoints.Registered, endpoints.Node),
+        *(actions.ActionClient, actions.ActionServer, actions.ActionGoalHandle),
+        *(waitsets.Timer, waitsets.EventHandle),
+    ):
+        faults.guard_methods(kind)
+    waitsets.WaitSet.wait = faults.guarded(waitsets.WaitSet.wait)  # type: ignore[method-assign]
+
+
+def _order_nodes(node_class: Any) -> None:
+    """Have sets of nodes, as in executors, in the order of their making, not of their addresses."""
+    serials = itertools.count()
+    original = node_class.__init__
+
+    @functools.wraps(original)
+    def init(self: Any, *args: Any, **kwargs: Any) -> None:
+        self._serial_in_virtual_time = next(serials)
+        faults.pass_on(original, self, *args, **kwargs)
+
+    node_class.__init__ = init
+    node_class.__hash__ = lambda self: self._serial_in_virtual_time
+
+
+def _charge_for(owner: Any, name: str, scheduler: Scheduler) -> None:
+    """Loops that only ask this must not stop time."""
+    ask = getattr(owner, name)
+
+    @functools.wraps(ask)
+    def asked(self: Any, *args: Any) -> Any:
+        scheduler.charge()
+        return faults.pass_on(ask, self, *args)
+
+    setattr(owner, name, asked)
+
+
+def _replace_ok(scheduler: Scheduler) -> None:
+    """Charge for `Context.ok`, without rclpy's lock: executors ask three times a message."""
+
+    def ok(self: Any) -> bool:
+        scheduler.charge()
+        context = self.handle
+        if context is None:
+            return False
+        with context:
+            return bool(faults.pass_on(context.ok))
+
+    rclpy.context.Context.ok = functools.wraps(rclpy.context.Context.ok)(ok)
+
+
+def _replace_events_executor() -> None:
+    """Events come from DDS's threads, when they like; the results are those of the other one."""
+
+    class EventsExecutor(rclpy.executors.SingleThreadedExecutor):
+        """As rclpy's, but it waits for what it serves."""
+
+    if hasattr(rclpy.experimental, "EventsExecutor"):
+        rclpy.experimental.EventsExecutor = EventsExecutor
+    module = sys.modules.get("rclpy.experimental.events_executor")
+    if module is not None:
+        setattr(module, EventsExecutor.__name__, EventsExecutor)

@@ -1,0 +1,243 @@
+"""Locks and threads that hand the baton on instead of blocking.
+
+Everything of `threading`, `queue` and `concurrent.futures` is built on these few.
+"""
+
+from __future__ import annotations
+
+import _thread
+import queue
+import threading
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from grader.run.clock.scheduler import Runner, Scheduler
+from grader.run.clock.system_calls import Unsupported
+from grader.run.lockstep.faults import as_python_does
+from grader.run.lockstep.protocol import NEVER
+from grader.run.lockstep.real import get_ident
+
+SCHEDULER: Scheduler
+
+
+class Lock:
+    """As `_thread.lock`."""
+
+    __slots__ = ("__weakref__", "_locked", "_waiting")
+
+    def __init__(self) -> None:
+        self._locked = False
+        self._waiting: deque[Runner] | None = None
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock; False if it cannot be had in time."""
+        if not self._locked and timeout == -1:
+            self._locked = True
+            return True
+        if not blocking and timeout != -1:
+            as_python_does(ValueError("can't specify a timeout for a non-blocking call"))
+        if timeout < 0 and timeout != -1:
+            as_python_does(ValueError("timeout value must be a non-negative number"))
+        if self._locked and (not blocking or timeout == 0):
+            SCHEDULER.charge()
+            return False
+        return self._wait(NEVER if timeout == -1 else SCHEDULER.now_ns + int(timeout * 1e9))
+
+    def _wait(self, deadline_ns: int) -> bool:
+        me = SCHEDULER.current
+        if self._waiting is None:
+            self._waiting = deque()
+        while self._locked:
+            if SCHEDULER.now_ns >= deadline_ns:
+                return False
+            self._waiting.append(me)
+            try:
+                SCHEDULER.block(deadline_ns)
+            finally:
+                if me in self._waiting:
+                    self._waiting.remove(me)
+        self._locked = True
+        return True
+
+    def release(self) -> None:
+        """Give the lock back."""
+        if not self._locked:
+            as_python_does(RuntimeError("release unlocked lock"))
+        self._locked = False
+        if self._waiting:
+            SCHEDULER.wake(self._waiting.popleft())
+
+    def locked(self) -> bool:
+        """Whether somebody has it."""
+        return self._locked
+
+    def __enter__(self) -> bool:
+        if not self._locked:
+            self._locked = True
+            return True
+        return self.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        if self._locked and not self._waiting:
+            self._locked = False
+        else:
+            self.release()
+
+    def _at_fork_reinit(self) -> None:
+        self._locked = False
+        self._waiting = None
+
+    acquire_lock = acquire
+    release_lock = release
+    locked_lock = locked
+
+
+class RLock(threading._PyRLock):  # type: ignore[name-defined]
+    """As Python's own, with a short way where nobody else has it."""
+
+    _block: Lock
+    _owner: int | None
+    _count: int
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock, once more if this thread has it; False if it cannot be had in time."""
+        me = get_ident()
+        if self._owner == me:
+            self._count += 1
+            return True
+        block = self._block
+        if not block._locked and timeout == -1:
+            block._locked = True
+        elif not block.acquire(blocking, timeout):
+            return False
+        self._owner, self._count = me, 1
+        return True
+
+    def __enter__(self) -> bool:
+        block = self._block
+        if self._owner is None and not block._locked:
+            block._locked = True
+            self._owner, self._count = get_ident(), 1
+            return True
+        return self.acquire()
+
+    def release(self) -> None:
+        """Give the lock back, if it was taken but once."""
+        if self._owner != get_ident():
+            as_python_does(RuntimeError("cannot release un-acquired lock"))
+        self._count -= 1
+        if not self._count:
+            self._owner = None
+            self._block.release()
+
+    def __exit__(self, *_: object) -> None:
+        block = self._block
+        if self._count == 1 and not block._waiting and self._owner == get_ident():
+            self._owner, self._count = None, 0
+            block._locked = False
+        else:
+            self.release()
+
+
+class ThreadHandle:
+    """As `_thread._ThreadHandle` of CPython 3.13: what a thread is joined by."""
+
+    def __init__(self, ident: int = 0) -> None:
+        self.ident = ident
+        self._alive = Lock()
+
+    def begin(self) -> None:
+        """The thread starts."""
+        self._alive.acquire()
+
+    def is_done(self) -> bool:
+        """Whether the thread has ended."""
+        return not self._alive.locked()
+
+    def _set_done(self) -> None:
+        if self._alive.locked():
+            self._alive.release()
+
+    def join(self, timeout: float | None = None) -> None:
+        """Wait for the thread's end."""
+        if self._alive.acquire(timeout=-1 if timeout is None or timeout < 0 else timeout):
+            self._alive.release()
+
+
+def install(scheduler: Scheduler) -> None:
+    """Replace the primitives in this interpreter. Raises Unsupported where it has others."""
+    global SCHEDULER
+    SCHEDULER = scheduler
+    _thread.allocate_lock = Lock  # type: ignore[assignment]
+    _thread.allocate = Lock  # type: ignore[assignment]
+    _thread.LockType = Lock  # type: ignore[assignment, misc]
+    _thread.start_new_thread = _start_new_thread
+    _thread.start_new = _start_new_thread
+    _thread.RLock = RLock  # type: ignore[misc]
+    _replace(threading, "_allocate_lock", Lock)
+    _replace(threading, "Lock", Lock)
+    _replace(threading, "_CRLock", None)
+    _replace(threading, "_PyRLock", RLock)
+    if hasattr(threading, "_start_joinable_thread"):  # CPython 3.13
+        _replace(threading, "_start_joinable_thread", _start_joinable_thread)
+        _replace(threading, "_ThreadHandle", ThreadHandle)
+    else:
+        _replace(threading, "_start_new_thread", _start_new_thread)
+        _replace(threading, "_set_sentinel", _set_sentinel)
+    _replace(queue, "SimpleQueue", _replaced(queue, "_PySimpleQueue"))
+
+
+def join_all() -> None:
+    """Wait for the threads that are no daemons, as the interpreter does at its end."""
+    for call in reversed(_replaced(threading, "_threading_atexits")):
+        call()
+    for thread in threading.enumerate():
+        if thread is not threading.main_thread() and not thread.daemon:
+            thread.join()
+
+
+def _replace(module: Any, name: str, new: object) -> None:
+    _replaced(module, name)
+    setattr(module, name, new)
+
+
+def _replaced(module: Any, name: str) -> Any:
+    if not hasattr(module, name):
+        raise Unsupported(f"this Python has no {module.__name__}.{name}")
+    return getattr(module, name)
+
+
+def _start_new_thread(
+    function: Callable[..., object],
+    args: tuple[Any, ...],
+    kwargs: dict[str, Any] | None = None,
+) -> int:
+    return SCHEDULER.spawn(lambda: _quietly(function, *args, **(kwargs or {})))
+
+
+def _start_joinable_thread(
+    function: Callable[[], object], handle: ThreadHandle | None = None, daemon: bool = True
+) -> ThreadHandle:
+    started = handle or ThreadHandle()
+    started.begin()
+    started.ident = SCHEDULER.spawn(lambda: _quietly(function), started._set_done)
+    return started
+
+
+def _quietly(function: Callable[..., object], *args: Any, **kwargs: Any) -> None:
+    with suppress(SystemExit):
+        function(*args, **kwargs)
+
+
+def _set_sentinel() -> Lock:
+    """CPython up to 3.12: a lock that is released when the current thread ends."""
+    lock = Lock()
+
+    def release() -> None:
+        if lock.locked():
+            lock.release()
+
+    SCHEDULER.current.at_exit = release
+    return lock

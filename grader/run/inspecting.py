@@ -1,0 +1,187 @@
+"""An inspection of packages: one process of the submission's, without a clock.
+
+Nothing of the submission is started by it, but it evaluates a stranger's set-up and launch files.
+So it is confined as a submission's process is, and what it leaves is decoded as strictly as
+anything that a submission says. It is made for three things:
+
+- `run`: it is the only run where a scene has no nodes.
+- `inspect`: what there is to start of a package is known by it.
+- `inspect_beside`: it goes beside the nominal run where an exercise has the package inspected that
+  is around what is started, unless `inspect` has done so.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from grader import linux
+from grader.errors import GraderFailure
+from grader.message import Message, msg
+from grader.recording.recording import Outcome, Recording
+from grader.recording.subject import Trace, load_subject
+from grader.run import handover, run_context
+from grader.run.environment import virtual_environment
+from grader.run.finish import Ending, ended, record
+from grader.run.handover import Plan
+from grader.run.limits import INSPECTION_BYTES, INSPECTION_S, CpuBudget
+from grader.run.processes.started_process import SubmissionProcess
+from grader.scenes.package import inspection
+from grader.scenes.package.by_itself import unlike_launched
+from grader.scenes.package.inspection import Inspection, SetUp, Told
+from grader.scenes.package.trace import FAILED, PackageTrace
+from grader.submission.start import EntryPoint, Submission, Whole
+
+#: Told the simulated time [s], of which none passes here.
+Progress = Callable[[float], None]
+#: The program that examines a package, from `ROOT` on.
+EXAMINER: Final = "grader/scenes/package/examining/main.py"
+#: How often the process is checked for being stopped [s], and how many checks together decide.
+EVERY_S, STOPPED_LOOKS = 0.5, 4
+ROOT: Final = Path(__file__).resolve().parents[2]
+STOPPED: Final = msg("the package's own code has stopped (SIGSTOP) the process that looks at it")
+_LOST: Final = msg(
+    "the process that looked at the package left nothing that can be read: {why_not}"
+)
+
+
+def run(submission: Submission, plan: Plan, progress: Progress | None = None) -> Recording:
+    """Inspect a submission once, as its only run.
+
+    Raises:
+        GraderFailure: the process could not be started.
+    """
+    asked = submission.start.package if isinstance(submission.start, Whole) else ""
+    found, ending = _inspected(submission, {"package": asked}, plan.budget)
+    trace = load_subject(plan.scene).untouched(None) if found is None else found.trace
+    return record(plan, trace, (), ending)
+
+
+def inspect(
+    submission: Submission,
+    folders: Sequence[str],
+    program: str,
+    budget: CpuBudget,
+    *,
+    is_whole: bool,
+) -> tuple[Inspection, tuple[Message, ...]]:
+    """Find what of packages there is to start; with remarks on what kept it from being found.
+
+    Args:
+        submission: all that was handed in.
+        folders: those with set-up files, below its root.
+        program: the console script that is asked for.
+        is_whole: whether its package is inspected as by `inspect_beside`.
+
+    Raises:
+        GraderFailure: the process could not be started.
+    """
+    asked = {"set_ups": list(folders), "program": program, "is_whole": is_whole}
+    found, ending = _inspected(submission, asked, budget)
+    if found is None or [each.folder for each in found.set_ups] != list(folders):
+        found = Inspection(tuple(SetUp(each, Told(), None) for each in folders))
+    return found, ending.run.flags
+
+
+def inspect_beside(submission: Submission, budget: CpuBudget) -> tuple[Trace, tuple[Message, ...]]:
+    """Inspect the package in which a submission's program is, and those beside it.
+
+    Returns:
+        What was found, and remarks for the result: what kept it from being found, and what launch
+        files would have started otherwise.
+
+    Raises:
+        GraderFailure: the process could not be started.
+    """
+    found = submission.seen
+    flags: tuple[Message, ...] = ()
+    if not isinstance(found, PackageTrace):
+        whole = replace(submission, root=submission.folder, start=Whole())
+        added = [str((submission.root / each).relative_to(whole.root)) for each in submission.added]
+        inspected, ending = _inspected(whole, {"added": added}, budget)
+        found, flags = (inspected or Inspection()).trace, ending.run.flags
+    unlike: list[Message] = []
+    if isinstance(submission.start, EntryPoint):
+        unlike = unlike_launched(found, submission.start.module, submission.start.function)
+    return found, (*flags, *unlike)
+
+
+def _inspected(
+    submission: Submission,
+    asked: Mapping[str, object],
+    budget: CpuBudget,
+) -> tuple[Inspection | None, Ending]:
+    """Inspect in a process; return what it found, None where that cannot be read, and its end."""
+    started = time.monotonic()
+    with run_context.open_context(budget) as context:
+        submission, process = context.start(
+            submission,
+            lambda private: command(private, asked, context.recording),
+            (context.recording,),
+            virtual_environment({}),
+        )
+        with process.ended_at_exit(gently=False):
+            exit_code = _wait(process)
+        found, lost = _fetch(context.recording)
+    how: Outcome = "finished"
+    if exit_code is None:
+        how = "time_limit"
+    elif lost:
+        how = "killed" if exit_code < 0 else "crashed"
+    ending = ended("virtual", submission, process, context.isolation, started, how, exit_code)
+    if exit_code == FAILED:
+        raise GraderFailure(_failure(ending.output))
+    if exit_code is None:
+        return found, ending.with_flags(STOPPED)
+    remarks = (_LOST.given(why_not=lost),) if lost else ()
+    return found, ending.with_flags(*ending.run.flags, *remarks)
+
+
+def command(submission: Submission, asked: Mapping[str, object], leaves: int) -> list[str]:
+    """The command of the process; `leaves` is the descriptor of the file for its findings."""
+    order = {"root": str(submission.root), **asked, "leaves": leaves}
+    if submission.package:
+        order["folder"] = str(submission.package)
+    return [sys.executable, str(ROOT / EXAMINER), json.dumps(order)]
+
+
+def _wait(process: SubmissionProcess) -> int | None:
+    """Wait for the process; its exit code, None where its own code has stopped it.
+
+    Raises:
+        GraderFailure: it does not end.
+    """
+    end = time.monotonic() + INSPECTION_S
+    stopped = 0
+    while (left_s := end - time.monotonic()) > 0:
+        exit_code = process.wait(min(EVERY_S, left_s))
+        if exit_code is not None:
+            return exit_code
+        stopped = stopped + 1 if linux.process_stat(process.pid).is_stopped else 0
+        if stopped >= STOPPED_LOOKS:
+            return None
+    seconds = f"{INSPECTION_S:.0f}"
+    raise GraderFailure("looking at the package took more than {seconds} s", seconds=seconds)
+
+
+def _failure(output: str) -> Message:
+    """The message for a process that has failed, which no package should be able to cause."""
+    last = next((line.strip() for line in reversed(output.splitlines()) if line.strip()), "")
+    return msg(
+        "the program that looks at packages failed: {last}. That is no "
+        "fault of the package; please report it, with the package",
+        last=last[:300],
+    )
+
+
+def _fetch(file: int) -> tuple[Inspection | None, str]:
+    """Decode what the process left; None, and why, where that is impossible."""
+    try:
+        return inspection.decode(handover.read_bounded(file, INSPECTION_BYTES)), ""
+    except (OSError, ValueError, RecursionError) as error:
+        return None, f"{error!s:.200}"

@@ -1,0 +1,285 @@
+"""Has rclpy's objects call a witness: its methods work as they did, and the witness hears of it.
+
+In real time rclpy is asked, too, whether anybody has the other end of something. ROS finds that out
+in its own time, so it is asked again until somebody has.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import threading
+import time
+import weakref
+from _thread import start_new_thread
+from collections.abc import Callable
+from typing import Any
+
+from grader.run.lockstep import faults
+from grader.run.observe.account import quietly
+from grader.run.observe.witness import UsedEnd, Witness
+
+#: How rclpy tells whether there is another end: of each kind of end.
+ASKS: dict[str, Callable[[Any], bool]] = {
+    "publisher": lambda publisher: publisher.get_subscription_count() > 0,
+    "subscription": lambda subscription: subscription.get_publisher_count() > 0,
+    "client": lambda client: client.service_is_ready(),
+    "action_client": lambda client: client.server_is_ready(),
+}
+#: How often it is asked [s].
+PERIOD_S = 0.5
+#: Not the one that says how long it has waited.
+_SLEEP = time.sleep
+
+
+def install(witness: Witness) -> None:
+    """Have rclpy's objects call; `rclpy.node` is imported by now."""
+    _where_known(_install, witness)
+
+
+def install_in_threads(witness: Witness) -> None:
+    """Have threads that end by an exception call, and print it without our frames."""
+
+    def excepthook(args: threading.ExceptHookArgs) -> None:
+        if args.exc_value is not None:
+            faults.report(args.exc_value)
+            witness.ending.thread_raised(args.exc_value)
+            faults.hide_our_frames(args.exc_value)
+            traceback = args.exc_value.__traceback__
+            args = threading.ExceptHookArgs((args.exc_type, args.exc_value, traceback, args.thread))
+        threading.__excepthook__(args)
+
+    threading.excepthook = excepthook
+
+
+def install_actions(witness: Witness) -> None:
+    """Have action clients call; `rclpy.action.client` is imported by now."""
+    _where_known(_install_actions, witness)
+
+
+def _where_known(install: Callable[[Witness], None], witness: Witness) -> None:
+    """An rclpy that is made otherwise is left alone; half of what happens would be worse."""
+    try:
+        install(witness)
+    except (AttributeError, ImportError):
+        witness.is_blind()
+
+
+def _install(witness: Witness) -> None:
+    import rclpy.client
+    import rclpy.executors
+    import rclpy.publisher
+    import rclpy.subscription
+    import rclpy.task
+    import rclpy.timer
+    import rclpy.wait_for_message
+
+    publisher, client = rclpy.publisher.Publisher, rclpy.client.Client
+    subscription, executor = rclpy.subscription.Subscription, rclpy.executors.Executor
+    future, timer = rclpy.task.Future, rclpy.timer.Timer
+    made = witness.made
+
+    _after(publisher, "__init__", lambda it, _: made("publisher", it, it.topic_name, it.msg_type))
+    _after(
+        subscription,
+        "__init__",
+        lambda it, _: made("subscription", it, it.topic_name, it.msg_type),
+    )
+    _after(
+        client, "__init__", lambda it, _: made("client", it, it.handle.service_name, it.srv_type)
+    )
+    _after(timer, "__init__", lambda it, _: witness.ending.was_given(it.callback))
+    _after(timer, "__init__", lambda it, _: witness.made_timer(it))
+    _after(publisher, "publish", lambda it, _: witness.used(it, is_sent=True))
+    _after(client, "call_async", lambda it, answer: _requested(witness, it, answer))
+    _around_wait(witness, client, "wait_for_service", lambda it, _: it, lambda _, there: there)
+    # what virtual time has put round it would take time
+    is_done = inspect.unwrap(future.done)
+    _around_wait(
+        witness,
+        executor,
+        "spin_until_future_complete",
+        lambda _, args: args[0],
+        lambda awaited, _: is_done(awaited),
+    )
+    _around_callbacks(witness, rclpy.task.Task)
+    _before_done_callbacks(witness, future)
+    _around_executor(witness, executor)
+    _after_single_messages(witness, rclpy.wait_for_message)
+
+
+def _install_actions(witness: Witness) -> None:
+    from rclpy.action.client import ActionClient
+
+    def made(client: Any, _: object) -> None:
+        name = client._node.resolve_service_name(client._action_name)
+        witness.made("action_client", client, name, client._action_type)
+
+    _after(ActionClient, "__init__", made)
+    _after(ActionClient, "send_goal_async", lambda it, _: witness.used(it))
+    _around_wait(witness, ActionClient, "wait_for_server", lambda it, _: it, lambda _, there: there)
+
+
+def _after(owner: Any, name: str, call: Callable[[Any, Any], None]) -> None:
+    """Have something called after each call of a method, with its object and what it returned."""
+    method = getattr(owner, name)
+
+    @functools.wraps(method)
+    def called(self: Any, *args: Any, **kwargs: Any) -> Any:
+        returned = method(self, *args, **kwargs)
+        quietly(call, self, returned)
+        return returned
+
+    setattr(owner, name, called)
+
+
+def _requested(witness: Witness, client: Any, answer: Any) -> None:
+    """A request was sent; whoever waits for this answer waits for the service."""
+    witness.used(client, is_sent=True)
+    answer._witnessed = client._witnessed
+
+
+def _around_wait(
+    witness: Witness,
+    owner: Any,
+    name: str,
+    awaited: Callable[[Any, tuple[Any, ...]], Any],
+    has_come: Callable[[Any, Any], bool],
+) -> None:
+    """Have the witness know for how long a method waits.
+
+    Args:
+        awaited: of its object and arguments, what is waited for.
+        has_come: of that and what the method returns, whether it has waited with success.
+    """
+    method = getattr(owner, name)
+
+    @functools.wraps(method)
+    def waiting(self: Any, *args: Any, **kwargs: Any) -> Any:
+        what = quietly(awaited, self, args or tuple(kwargs.values()))
+        end: UsedEnd | None = getattr(what, "_witnessed", None)
+        if end is None:
+            return method(self, *args, **kwargs)
+        wait = quietly(witness.begins_to_wait, end)
+        returned = method(self, *args, **kwargs)
+        quietly(lambda: witness.ends_to_wait(wait, has_come=bool(has_come(what, returned))))
+        return returned
+
+    setattr(owner, name, waiting)
+
+
+def _around_callbacks(witness: Witness, task: Any) -> None:
+    """Have the witness know when the tasks that an executor runs begin and end."""
+    run = task.__call__
+
+    @functools.wraps(run)
+    def call(self: Any) -> Any:
+        if not witness.begins_callback():
+            return run(self)
+        try:
+            return run(self)
+        finally:
+            quietly(witness.ends_callback, getattr(self, "_exception", None))
+
+    task.__call__ = call
+
+
+def _before_done_callbacks(witness: Witness, future: Any) -> None:
+    add = future.add_done_callback
+
+    @functools.wraps(add)
+    def added(self: Any, callback: Any) -> Any:
+        quietly(witness.ending.was_given, callback)
+        return add(self, callback)
+
+    future.add_done_callback = added
+
+
+def _around_executor(witness: Witness, executor: Any) -> None:
+    """Have the witness know what subscriptions hear, and when an executor is first spun."""
+    take, wait = executor._take_subscription, executor.wait_for_ready_callbacks
+
+    @functools.wraps(take)
+    def taken(self: Any, subscription: Any) -> Any:
+        found = take(self, subscription)
+        if found is not None:
+            quietly(witness.used, subscription)
+        return found
+
+    @functools.wraps(wait)
+    def first_wait(self: Any, *args: Any, **kwargs: Any) -> Any:
+        executor.wait_for_ready_callbacks = wait
+        quietly(witness.spins)
+        return wait(self, *args, **kwargs)
+
+    executor._take_subscription = taken
+    executor.wait_for_ready_callbacks = first_wait
+
+
+def _after_single_messages(witness: Witness, module: Any) -> None:
+    """Have `wait_for_message` say what it hears: it takes its message past all executors."""
+    wait = module.wait_for_message
+
+    @functools.wraps(wait)  # it is shown by its name where a program is stuck in it
+    def wait_for_message(msg_type: Any, node: Any, topic: Any, *args: Any, **kwargs: Any) -> Any:
+        found = wait(msg_type, node, topic, *args, **kwargs)
+        if found[0]:
+            quietly(lambda: witness.heard(node.resolve_topic_name(topic)))
+        return found
+
+    module.wait_for_message = wait_for_message
+
+
+# In real time ---------------------------------------------------------------------------------
+
+
+def install_in_real_time(witness: Witness) -> None:
+    """Have rclpy's objects call, and its waits say how long they were; ask it from now on."""
+    import rclpy.clock
+    import rclpy.timer
+
+    install(witness)
+    for kind, name in ((rclpy.clock.Clock, "sleep_until"), (rclpy.timer.Rate, "sleep")):
+        setattr(kind, name, timed(witness, getattr(kind, name)))
+    start_new_thread(_go_on_asking, (witness,))
+
+
+def install_in_events_executor(witness: Witness, module: Any) -> None:
+    """Have the executor in C++ call, which calls nothing of Python's but callbacks."""
+    make = module.EventsExecutor
+
+    def events_executor(*args: Any, **kwargs: Any) -> Any:
+        quietly(witness.spins)
+        return make(*args, **kwargs)
+
+    module.EventsExecutor = events_executor
+
+
+def timed(witness: Witness, wait: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the same function, which has the witness know for how long it has waited."""
+
+    @functools.wraps(wait)
+    def waiting(*args: Any, **kwargs: Any) -> Any:
+        before_s = time.monotonic()
+        returned = wait(*args, **kwargs)
+        witness.waited(time.monotonic() - before_s)
+        return returned
+
+    return waiting
+
+
+def is_met(kind: str, entity: Any) -> Callable[[], bool]:
+    """Return what asks rclpy of an end; the entity itself is not to live longer for it."""
+    alive = weakref.ref(entity)
+
+    def ask() -> bool:
+        there = alive()
+        return there is not None and ASKS[kind](there)
+
+    return ask
+
+
+def _go_on_asking(witness: Witness) -> None:
+    while True:
+        _SLEEP(PERIOD_S)
+        quietly(witness.write)

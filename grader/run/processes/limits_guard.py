@@ -1,0 +1,214 @@
+"""The limits guard: ends a submission whose processes together use too much.
+
+The kernel's limits (`grader.run.limits.rlimits`) hold for each process alone, and control groups,
+which count whole families, are given to a grader almost nowhere: not in containers, not to users.
+So a thread of the grader measures, five times a second, and ends the family that uses too much.
+Between two measurements, of a millisecond each, a core can fill a few hundred MiB at most.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import NamedTuple
+
+from grader import linux
+from grader.linux import ProcessStat
+from grader.message import NOTHING, msg
+from grader.run.limits import LIMITS, MIB, CpuBudget, RunLimits, size
+
+#: How often usage is measured [s].
+EVERY_S = 0.2
+#: Memory that has gone since the last close measurement, wherever to, and makes the next one due.
+HURRY_BYTES = 256 * MIB
+#: So near to the limit of processes the kernel has refused one: some are not a submission's own,
+#: and some have ended since.
+NEAR = 12
+
+
+class FamilyUsage(NamedTuple):
+    """What a family of processes uses at once.
+
+    Attributes:
+        memory_bytes: the pages of each, with those of files and those that several share.
+        tasks: its processes and threads.
+        files: their open descriptors; 0 before Linux 6.2, which does not count them.
+        ticks: the processor time that they have taken, and those that they have waited for [ticks].
+    """
+
+    memory_bytes: int
+    tasks: int
+    files: int
+    ticks: int
+
+
+class LimitsGuard:
+    """Watches the descendants of a process until it is stopped.
+
+    Attributes:
+        remark: of which there was too much, for the result; nothing if of nothing.
+    """
+
+    def __init__(
+        self,
+        ancestor: int,
+        end: Callable[[], None],
+        limits: RunLimits = LIMITS,
+        budget: CpuBudget | None = None,
+        printed_bytes: Callable[[], int] = lambda: 0,
+    ) -> None:
+        """Begin; `end` is called, in a thread of ours, when they are to be ended.
+
+        Args:
+            budget: of their grading, from which they spend.
+            printed_bytes: returns how much they have printed.
+        """
+        self.remark = NOTHING
+        self._family, self._limits, self._end = Family(ancestor), limits, end
+        self._printed_bytes = printed_bytes
+        self._budget, self._seen_ticks = budget or CpuBudget(), 0
+        self._has_ended = False
+        self._next_close_look, self._available = 0.0, 0
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Measure no more; what has been found stays."""
+        self._is_over.set()
+        self._thread.join()
+
+    def look_last(self) -> bool:
+        """Measure once more, and no more; whether they are ended, now or before."""
+        self.stop()
+        self._next_close_look = 0.0
+        if not self._has_ended and self._is_too_much():
+            self._end_all()
+        return self._has_ended
+
+    def _watch(self) -> None:
+        while not self._is_over.wait(EVERY_S):
+            if self._is_too_much():
+                self._end_all()
+                return
+
+    def _end_all(self) -> None:
+        self._has_ended = True
+        self._end()
+
+    def _is_too_much(self) -> bool:
+        limits = self._limits
+        found = self._family.usage()
+        self._budget.spend(max(0, found.ticks - self._seen_ticks) / linux.TICKS_PER_S)
+        self._seen_ticks = max(self._seen_ticks, found.ticks)
+        if self._budget.is_spent:
+            self.remark = self._budget.remark
+            return True
+        if found.tasks > limits.tasks - NEAR:
+            self.remark = msg(
+                "the node and what it started came to the limit of {number} processes and "
+                "threads: a run may have no more at once",
+                number=limits.tasks,
+            )
+        if found.tasks > limits.tasks + NEAR:
+            return True
+        if self._printed_bytes() > limits.output_bytes:
+            self.remark = msg(
+                "the node and what it started printed more than {size}, and were ended: a run may "
+                "print no more",
+                size=size(limits.output_bytes),
+            )
+            return True
+        if found.files > limits.family_files:
+            self.remark = msg(
+                "the node and what it started had {number} open files and sockets at once, and "
+                "were ended: a run may have {most}",
+                number=found.files,
+                most=limits.family_files,
+            )
+            return True
+        if found.memory_bytes > limits.family_bytes and self._is_too_much_memory():
+            self.remark = msg(
+                "the node and what it started used more than {size} of memory, and were ended: a "
+                "run may use no more",
+                size=size(limits.family_bytes),
+            )
+            return True
+        return False
+
+    def _is_too_much_memory(self) -> bool:
+        """Measure closely: without pages of files, and with what is shared counted once.
+
+        That takes a millisecond a process: a tenth of our time, and at once where memory goes.
+        """
+        began, available = time.monotonic(), _available_bytes()
+        if began < self._next_close_look and available > self._available - HURRY_BYTES:
+            return False
+        memory = self._family.private_memory_bytes()
+        self._next_close_look = began + 10 * (time.monotonic() - began)
+        self._available = available
+        return memory > self._limits.family_bytes
+
+
+class Family:
+    """All descendants of a process, found again and again."""
+
+    def __init__(self, ancestor: int) -> None:
+        self._ancestor = ancestor
+        #: Processes that were there and are none of them; they will not become any.
+        self._others: set[int] = set()
+
+    def usage(self) -> FamilyUsage:
+        """What they use now, without the ancestor, by figures that are had quickly."""
+        members = self._members()
+        memory = sum(member.memory_bytes for member in members.values())
+        tasks = sum(member.tasks for member in members.values())
+        ticks = sum(member.ticks + member.waited_ticks for member in members.values())
+        return FamilyUsage(memory, tasks, sum(map(_open_files, members)), ticks)
+
+    def private_memory_bytes(self) -> int:
+        """Their memory that is no file's; pages that several share count once [bytes]."""
+        return sum(_private_memory_bytes(pid, stat) for pid, stat in self._members().items())
+
+    def _members(self) -> dict[int, ProcessStat]:
+        there = linux.process_ids()
+        self._others &= there
+        found = {
+            pid: stat for pid in there - self._others if (stat := linux.process_stat(pid)).state
+        }
+        ancestor = {self._ancestor}
+        members = {pid: found[pid] for pid in linux.below(ancestor, found)}
+        # one whose parent has ended meanwhile has another by now: it is found the next time
+        rest = {pid: found[pid] for pid in found.keys() - members.keys() - ancestor}
+        self._others |= linux.below(self._others | {0}, rest)
+        return members
+
+
+def _open_files(pid: int) -> int:
+    """How many descriptors a process has open; 0 where that cannot be known."""
+    try:
+        return os.stat(f"/proc/{pid}/fd").st_size  # noqa: PTH116
+    except OSError:
+        return 0
+
+
+def _private_memory_bytes(pid: int, stat: ProcessStat) -> int:
+    """A process's share of memory that is no file's [bytes]; all it has where that is hidden."""
+    try:
+        with open(f"/proc/{pid}/smaps_rollup", "rb", buffering=0) as file:  # noqa: PTH123
+            lines = file.readall().splitlines()
+    except OSError:
+        return stat.memory_bytes
+    parts = (line.split() for line in lines)
+    names = (b"Pss_Anon:", b"Pss_Shmem:", b"SwapPss:")
+    return sum(int(words[1]) * 1024 for words in parts if words and words[0] in names)
+
+
+def _available_bytes() -> int:
+    """The memory that the machine could still give; 0 if it does not say."""
+    with suppress(OSError, IndexError, ValueError), open("/proc/meminfo", "rb") as file:  # noqa: PTH123
+        return int(file.read().partition(b"MemAvailable:")[2].split()[0]) * 1024
+    return 0

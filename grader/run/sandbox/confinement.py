@@ -1,0 +1,91 @@
+"""Confines the process that calls it, as the grader has ordered; there is no way back.
+
+An order is a dictionary of what JSON can say, made by `grader.run.processes.levels`:
+
+| key | what |
+|---|---|
+| `level` | `namespaces`, `landlock` or `limits`; see there |
+| `rlimits` | limits of resources; see `grader.run.limits` |
+| `uid` | the user that it is to be |
+| `user` | `separate`: as root can; `mapped`: in a user namespace of its own; `same`: not at all |
+| `steps` | for `.filesystem` |
+| `read`, `write`, `listed` | for `.landlock` |
+| `is_apart` | whether the run has a network of its own |
+
+Not bubblewrap, but a few lines of ours: that is a program that stands between, so that the process
+whose processor time counts would be another, and it cannot go on as a fork server's child does.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Mapping
+from typing import Any
+
+from grader import linux
+from grader.run.sandbox import filesystem, landlock, seccomp
+
+NAMESPACES, LANDLOCK, LIMITS = "namespaces", "landlock", "limits"
+SEPARATE, MAPPED, SAME = "separate", "mapped", "same"
+#: More than there are.
+CAPABILITIES = range(64)
+#: Root is nobody special, no capability survives or is raised; all of it locked.
+SECURE = 0xEF
+
+
+def confine(order: Mapping[str, Any]) -> None:
+    """Carry out an order, all of it.
+
+    Raises:
+        OSError: the system refuses something; then this process must not go on.
+    """
+    if order["level"] == LIMITS:
+        _limit(order)
+        linux.forbid_new_privileges()
+        return
+    uid, user = order["uid"], order["user"]
+    # there the new user is made known, and what is shown in the new root cannot be written to
+    proc = os.open("/proc/self", os.O_PATH | os.O_CLOEXEC)
+    if order["level"] == NAMESPACES:
+        filesystem.enter(order["steps"])
+    else:
+        landlock.restrict(order["read"], order["write"], order["listed"])
+    if user == MAPPED:
+        linux.unshare_user(uid, proc)
+    os.close(proc)
+    _forgo_capabilities()
+    if user == SEPARATE:
+        for output in (1, 2):  # so that /dev/stdout and /dev/stderr can be opened
+            os.fchown(output, uid, uid)
+        _become(uid)
+    linux.set_capabilities(0)
+    linux.forbid_new_privileges()
+    # a process that has changed its user is closed to itself as well, and has forgotten its parent
+    linux.control(linux.PR_SET_DUMPABLE, 1)
+    linux.signal_at_parents_death(signal.SIGKILL)
+    _limit(order)
+    seccomp.install(is_apart=order["is_apart"] and order["level"] == NAMESPACES)
+
+
+def _limit(order: Mapping[str, Any]) -> None:
+    for limit in order["rlimits"]:
+        linux.lower_limit(*limit)
+
+
+def _forgo_capabilities() -> None:
+    """Give up what programs that are started could get; before the user is changed.
+
+    Where it is refused (a container's root without CAP_SETPCAP), `no_new_privs` says the same.
+    """
+    for number in CAPABILITIES:
+        linux.control(linux.PR_CAPBSET_DROP, number)
+    linux.control(linux.PR_CAP_AMBIENT, linux.PR_CAP_AMBIENT_CLEAR_ALL)
+    linux.control(linux.PR_SET_SECUREBITS, SECURE)
+
+
+def _become(uid: int) -> None:
+    """Go on as a user and a group of their own, without other groups."""
+    os.setgroups([])
+    os.setresgid(uid, uid, uid)
+    os.setresuid(uid, uid, uid)

@@ -1,0 +1,147 @@
+"""Builds the file system that a submission's process sees: what it is shown, and nothing else.
+
+Built in the process itself, from what `.view` has planned in the grader: a list of steps, each a
+list of a word, a path and perhaps something more.
+
+| step | what comes there |
+|---|---|
+| `folder` | an empty folder |
+| `file` | a small file with this text |
+| `link` | a symbolic link to this place |
+| `bind` | the folder, file or device that is there outside, with all that is mounted in it |
+| `hide` | an empty folder in place of what a `bind` would show |
+| `copy` | a copy of the folder outside, that can be written to: room, and owner or -1 |
+| `scratch` | an empty folder that can be written to, of so many bytes and files |
+| `proc` | the processes of our namespace |
+
+All is read-only but `copy` and `scratch`; nothing has devices but what lies in /dev; no program
+gets rights of its owner. It works without capabilities in the first user namespace.
+"""
+
+# ruff: noqa: PTH101, PTH102, PTH109, PTH115, PTH123, PTH211
+# Importing pathlib would take longer than all the rest.
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Sequence
+
+from grader import linux
+
+#: Where the new root is put together: a folder that every system has, and that shows nothing here.
+SITE = "/sys"
+_QUIET = linux.MS_NOSUID | linux.MS_NODEV
+_LIMITED = linux.MOUNT_ATTR_RDONLY | linux.MOUNT_ATTR_NOSUID | linux.MOUNT_ATTR_NODEV
+#: Flags of a mount, as statvfs has them, that have to stay when it is mounted again.
+_KEPT = {8: linux.MS_NOEXEC, 1024: 1024, 2048: 2048, 4096: 1 << 21}
+
+
+def enter(steps: Sequence[Sequence[str]]) -> None:
+    """Leave the old root for one that has just this in it; the current folder has the same path.
+
+    Args:
+        steps: parents come before what is in them.
+
+    Raises:
+        OSError: the system does not allow it; then this process must not go on.
+    """
+    folder = os.getcwd()
+    linux.unshare(linux.CLONE_NEWNS)
+    linux.mount("", "/", linux.MS_REC | linux.MS_PRIVATE)
+    mask = os.umask(0o022)
+    linux.mount("tmpfs", SITE, _QUIET, "size=1m,nr_inodes=4096,mode=755")
+    for step in steps:
+        _do(*step)
+    os.chdir(SITE)
+    linux.change_root()
+    _limit(steps)
+    os.umask(mask)
+    os.chdir(folder)
+
+
+def _do(kind: str, path: str, more: str = "") -> None:
+    there = SITE + path
+    if kind == "folder":
+        os.mkdir(there)
+    elif kind == "file":
+        with open(there, "w", encoding="utf-8") as file:
+            file.write(more)
+    elif kind == "link":
+        os.symlink(more, there)
+    elif kind == "bind":
+        linux.mount("", there, linux.MS_BIND | linux.MS_REC, source=path)
+    elif kind == "hide":
+        linux.mount("tmpfs", there, _QUIET, "size=64k,nr_inodes=256,mode=755")
+    elif kind == "scratch":
+        linux.mount("tmpfs", there, _QUIET, f"{more},mode=1777")
+    elif kind == "copy":
+        options, owner = more.split(" ")
+        linux.mount("tmpfs", there, _QUIET, f"{options},mode=755")
+        copy_tree(path, there, int(owner))
+    elif kind == "proc":
+        linux.mount("proc", there, _QUIET | linux.MS_NOEXEC)
+
+
+def copy_tree(source: str, target: str, owner: int = -1) -> None:
+    """Copy what is in a folder into an empty one, to be written to by its owner.
+
+    Files, folders, and links as they are: what is copied is a submission's private copy, which has
+    nothing else.
+
+    Args:
+        owner: whose all of it is to be; -1: the process's own user's.
+
+    Raises:
+        OSError: something cannot be copied.
+    """
+    with os.scandir(source) as entries:
+        for entry in entries:
+            there = f"{target}/{entry.name}"
+            if entry.is_symlink():
+                os.symlink(os.readlink(entry.path), there)
+            elif entry.is_dir():
+                os.mkdir(there)
+                copy_tree(entry.path, there, owner)
+                continue
+            else:
+                with open(entry.path, "rb") as read, open(there, "wb") as written:
+                    while chunk := read.read(1 << 20):
+                        written.write(chunk)
+                os.chmod(there, stat.S_IMODE(entry.stat().st_mode) | stat.S_IWUSR)
+            if owner >= 0:
+                os.chown(there, owner, owner, follow_symlinks=False)
+    os.chmod(target, 0o755)
+    if owner >= 0:
+        os.chown(target, owner, owner)
+
+
+def _limit(steps: Sequence[Sequence[str]]) -> None:
+    writable = [step[1] for step in steps if step[0] in ("copy", "scratch")]
+    devices = [step[1] for step in steps if step[0] == "bind" and step[1].startswith("/dev/")]
+    try:
+        linux.change_mount("/", _LIMITED, below=True)
+    except OSError as error:
+        if error.errno != errno.ENOSYS:
+            raise
+        _limit_each({*writable, *devices}, set(devices))
+        return
+    for path in writable:
+        linux.change_mount(path, 0, linux.MOUNT_ATTR_RDONLY)
+    for path in devices:
+        linux.change_mount(path, 0, linux.MOUNT_ATTR_NODEV | linux.MOUNT_ATTR_RDONLY)
+
+
+def _limit_each(writable: set[str], devices: set[str]) -> None:
+    """Limit one mount after the other, where the kernel knows no mount_setattr."""
+    with open("/proc/self/mountinfo", "rb") as file:
+        places = [line.split()[4].decode("unicode_escape") for line in file]
+    for place in places:
+        path = place.encode("latin-1").decode("utf-8", "surrogateescape")
+        flags = linux.MS_BIND | linux.MS_REMOUNT | linux.MS_NOSUID
+        flags |= 0 if path in writable else linux.MS_RDONLY
+        flags |= 0 if path in devices else linux.MS_NODEV
+        before = os.statvfs(path).f_flag
+        flags |= sum(flag for bit, flag in _KEPT.items() if before & bit)
+        linux.mount("", path, flags)

@@ -1,0 +1,218 @@
+"""Loads a submission's program, and nothing of ours: as it would be found at a student's desk.
+
+Our packages of the same names as the submission's are out of reach, whatever is installed.
+"""
+
+from __future__ import annotations
+
+import array
+import functools
+import importlib
+import importlib.machinery
+import importlib.util
+import re
+import runpy
+import sys
+import traceback
+import types
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from grader.run.lockstep import faults
+
+#: Installed packages that a submission must never pick up in place of its own.
+OURS = ("turtlesim_challenge", "turtlesim_py", "grader")
+#: How a line begins that declares the encoding of a file (PEP 263).
+ENCODING = re.compile(rb"[ \t\f]*#.*?coding[:=][ \t]*[-\w.]+")
+#: Lists of numbers in messages, and what their arrays have as a type.
+NUMBERS = {"sequence<double>": "d", "sequence<float>": "f"}
+
+
+class OnlyFromSubmission:
+    """An import hook: modules of these names come from the submission or not at all."""
+
+    def __init__(self, root: str) -> None:
+        self._root = root
+
+    def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
+        """Find a top-level module of ours below the submission's root only."""
+        if name not in OURS:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, [self._root])
+        if spec is None:
+            raise ModuleNotFoundError(f"No module named {name!r} in the submission", name=name)
+        return spec
+
+
+class AfterImport:
+    """An import hook: when one of these modules has been loaded, each of its calls is made."""
+
+    def __init__(self, calls: Mapping[str, Sequence[Callable[[types.ModuleType], None]]]) -> None:
+        self._calls = calls
+
+    def find_spec(self, name, path=None, target=None):  # type: ignore[no-untyped-def]
+        """Load as usual, then call."""
+        if name not in self._calls:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, path)
+        if spec is not None and spec.loader is not None:
+            load = spec.loader.exec_module
+
+            def exec_module(module: types.ModuleType) -> None:
+                load(module)
+                for call in self._calls[name]:
+                    call(module)
+
+            spec.loader.exec_module = exec_module  # type: ignore[method-assign]
+        return spec
+
+
+# What is started ------------------------------------------------------------------------------
+
+
+def call(
+    root: str,
+    target: str,
+    function: str | None,
+    on_error: Callable[[BaseException], None],
+) -> int:
+    """Run a submission's program to its end; return its exit code.
+
+    Tracebacks go without our own lines.
+
+    Args:
+        on_error: called with an exception that nobody has caught, before its traceback is printed;
+            also with one that Python prints nothing of.
+    """
+    try:
+        code = run(root, target, function)
+    except KeyboardInterrupt as interrupt:
+        on_error(interrupt)
+        return 130
+    except SystemExit as leaving:
+        on_error(leaving)
+        code = leaving.code
+        if isinstance(code, str):
+            print(code, file=sys.stderr)
+            return 1
+    except BaseException as error:
+        on_error(error)
+        faults.hide_our_frames(error)
+        traceback.print_exception(error)
+        return 1
+    return code if isinstance(code, int) else 0
+
+
+def run(root: str, target: str, function: str | None) -> object:
+    """Start a submission's program; return what its function returned."""
+    if target.endswith(".py"):
+        must_be_text(target)
+        if function is None:
+            runpy.run_path(target, run_name="__main__")
+            return None
+        name = Path(target).stem
+        spec = importlib.util.spec_from_file_location(name, target)
+        assert spec is not None and spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module
+        spec.loader.exec_module(module)
+    else:
+        name, _, function = target.partition(":")
+        module = importlib.import_module(name)
+        check_origin(module, root)
+    start: Any = functools.reduce(getattr, str(function).split("."), module)
+    return start()
+
+
+def must_be_text(file: str) -> None:
+    """Refuse what `python3 FILE` refuses, and `runpy` passes over or does not place.
+
+    Raises:
+        SyntaxError: bytes that are no UTF-8 and no declared encoding either, or null bytes.
+    """
+    data = Path(file).read_bytes()
+    try:
+        at, why = data.index(0), "source code cannot contain null bytes"
+    except ValueError:
+        try:
+            data.decode()
+            return
+        except UnicodeDecodeError as error:
+            if any(ENCODING.match(line) for line in data.splitlines()[:2]):
+                return  # the compiler goes by it
+            at = error.start
+            why = f"Non-UTF-8 code starting with '\\x{data[at]:02x}', but no encoding declared"
+    line = data.count(b"\n", 0, at) + 1
+    raise SyntaxError(f"{why}; save the file as UTF-8", (file, line, None, None))
+
+
+def check_origin(module: types.ModuleType, root: str) -> None:
+    """The module must be the submission's, not one of the same name that was there before.
+
+    Raises:
+        ImportError: it is not; the text says what to do.
+    """
+    file = getattr(module, "__file__", None)
+    if file is None or not Path(file).resolve().is_relative_to(Path(root).resolve()):
+        raise ImportError(
+            f"{module.__name__!r} is also the name of a module of Python's or ROS's own "
+            f"({file or 'built in'}); call yours something else"
+        )
+
+
+def hide_the_grader(root: str, target: str, arguments: Sequence[str] = ()) -> None:
+    """Have the interpreter look as it would at a student's desk."""
+    name = Path(target).name if target.endswith(".py") else target.partition(":")[0]
+    sys.argv = [name, *arguments]
+    sys.path[0] = root
+    sys.meta_path.insert(0, OnlyFromSubmission(root))
+    for name in [name for name in sys.modules if name.partition(".")[0] in OURS]:
+        del sys.modules[name]
+
+
+# Messages -------------------------------------------------------------------------------------
+
+
+def accept_numbers(module: Any) -> None:
+    """Have lists of numbers in messages take what they take where nothing checks fields.
+
+    A submission's messages check their fields (`grader.run.environment`), since a number alone of
+    another type goes wrong on its way into C. A list does not: it becomes an `array.array`, which
+    converts or refuses. Where nothing checks, `position = [0, 1]` and a numpy array are right.
+
+    Args:
+        module: `rclpy.publisher`; each type of messages is changed when a publisher is made.
+    """
+    make = module.Publisher.__init__
+
+    @functools.wraps(make)
+    def made(self: Any, *args: Any, **kwargs: Any) -> None:
+        make(self, *args, **kwargs)
+        with suppress(Exception):  # what rclpy takes is none of our business
+            convert_lists(self.msg_type)
+
+    module.Publisher.__init__ = made
+
+
+def convert_lists(message: Any) -> None:
+    """Have the lists of a type of messages converted before they are checked."""
+    for field, kind in message.get_fields_and_field_types().items():
+        if kind in NUMBERS:
+            _convert(message, field, NUMBERS[kind])
+
+
+def _convert(message: Any, field: str, code: str) -> None:
+    checked = getattr(message, field)
+    if hasattr(checked.fset, "__wrapped__"):
+        return  # by an earlier publisher
+
+    def converted(self: Any, value: Any) -> None:
+        if not isinstance(value, array.array):
+            with suppress(TypeError, ValueError, OverflowError):
+                value = array.array(code, value)
+        checked.fset(self, value)
+
+    converted.__wrapped__ = checked.fset  # type: ignore[attr-defined]
+    setattr(message, field, checked.setter(converted))

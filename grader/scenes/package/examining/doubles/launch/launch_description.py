@@ -1,8 +1,0 @@
-"""A double of ROS's `launch.launch_description`."""
-
-from launch._core import LaunchDescription, unknown
-
-__all__ = [
-    "LaunchDescription",
-]
-__getattr__ = unknown("launch.launch_description")

@@ -1,0 +1,144 @@
+"""The page on which a graded run is seen while it goes on: the simulator's own, for looking only.
+
+Nobody comes in without the token: a submission's process may have the same network, and is to see
+no verdict. There is no ROS graph behind the page, so nothing that a viewer says leads to a run.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from grader.scenes.live import Grading
+from grader.translations import current
+from turtlesim_py.live.feed import MOST_CALLS, Deliver, News
+from turtlesim_py.live.server import LiveServer, Settings
+from turtlesim_py.world.arena import DEFAULT_BACKGROUND
+from turtlesim_py.world.canvas import Canvas, Pen
+
+_ABOUT = {"node": "/turtlesim", "namespace": "/", "interfaces": "turtlesim"}
+
+
+class TurtlesimPage:
+    """A `grader.scenes.live.LivePage`."""
+
+    def __init__(self, port: int) -> None:
+        """Serve it; OSError: that cannot be, as where another one does."""
+        settings = Settings(
+            port,
+            is_read_only=True,
+            needs_token=True,
+            has_graph=False,
+            language=current(),  # that of the verdicts
+        )
+        self._server = LiveServer(settings, _ABOUT)
+        self._mirror = Mirror(self._server.deliver)
+        self._server.start(self._mirror)
+
+    @property
+    def address(self) -> str:
+        """With the token."""
+        return self._server.address
+
+    def await_viewer(self, patience_s: float) -> bool:
+        """Wait until somebody looks; whether anybody has."""
+        return self._mirror.has_been_seen.wait(patience_s)
+
+    def tell(self, grading: Grading) -> None:
+        """Show what is known now."""
+        self._mirror.tell(grading)
+
+    def begin(self) -> None:
+        """Show an empty window."""
+        self._mirror.begin()
+
+    def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
+        """Show what happens."""
+        self._mirror.hear(news)
+
+    def close(self) -> None:
+        """Send everybody away."""
+        self._server.stop()
+
+
+class Mirror:
+    """The arena of a run as another process tells of it: what is painted, where the turtles are.
+
+    A `turtlesim_py.live.feed.Source`, which stands for `Feed` where the arena itself is out of
+    reach; its methods may be called from any thread.
+
+    Attributes:
+        has_been_seen: set when somebody looks for the first time.
+    """
+
+    def __init__(self, deliver: Deliver) -> None:
+        self.is_watched = False
+        self.has_been_seen = threading.Event()
+        self._deliver = deliver
+        self._lock = threading.Lock()
+        self._grading: Mapping[str, Any] = {}
+        self._start()
+
+    def _start(self) -> None:
+        self._canvas = Canvas()
+        self._state: dict[str, Any] = {
+            "tick": 0,
+            "background": DEFAULT_BACKGROUND,
+            "turtles": [],
+        }
+
+    def ask(self, viewer: object) -> None:
+        """Have all of it delivered for a viewer."""
+        with self._lock:
+            content = {**self._state, "grading": self._grading}
+            self._deliver(News(content, self._canvas.copy(), viewer))
+        self.has_been_seen.set()
+
+    def begin(self) -> None:
+        """Another run begins: nothing is painted yet."""
+        with self._lock:
+            self._start()
+            self._deliver(News({**self._state, "drawn": [None], "calls": [], "begins": True}))
+
+    def tell(self, grading: Grading) -> None:
+        """Have viewers know what is known of the grading."""
+        with self._lock:
+            self._grading = _words(grading)
+            content = {"tick": self._state["tick"], "drawn": [], "calls": []}
+            self._deliver(News({**content, "grading": self._grading}))
+
+    def hear(self, news: Sequence[Mapping[str, Any]]) -> None:
+        """Take up changes as `Feed` makes them, and hand them on as one."""
+        if not news:
+            return
+        drawn: list[Any] = []
+        calls: list[Any] = []
+        changed: dict[str, Any] = {}
+        with self._lock:
+            for each in news:
+                for stroke in each["drawn"]:
+                    self._draw(stroke)
+                    if stroke is None:
+                        drawn.clear()
+                    drawn.append(stroke)
+                calls += each["calls"]
+                changed |= {key: each[key] for key in self._state if key in each}
+            self._state |= changed
+            self._deliver(News({**changed, "drawn": drawn, "calls": calls[-MOST_CALLS:]}))
+
+    def _draw(self, stroke: Any) -> None:
+        if stroke is None:
+            self._canvas.clear()
+            return
+        color, numbers = stroke
+        runs = list(zip(*[iter(numbers)] * 3, strict=True))
+        self._canvas.paint(Pen(*color), runs)
+
+
+def _words(grading: Grading) -> Mapping[str, Any]:
+    shown = ("status", "word", "title", "rationale", "help")
+    checks = [{name: getattr(each, name) for name in shown} for each in grading.judged]
+    told = {name: value for name, value in asdict(grading).items() if name != "judged"}
+    return {**told, "checks": checks}

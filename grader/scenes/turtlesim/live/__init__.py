@@ -1,1 +1,0 @@
-"""The page on which a graded run is seen while it goes on: the simulator's, fed from elsewhere."""

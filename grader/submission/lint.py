@@ -1,0 +1,386 @@
+"""What the source of a submission shows that is seldom meant: lint findings, for a diagnosis.
+
+Made once, where a submission is read. What each kind says, `LintFinding` of
+`grader.recording.observations` tells. Nothing of it is wrong by itself; a rule speaks of it where
+something has gone wrong that it explains.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from difflib import SequenceMatcher
+from pathlib import Path
+
+from grader.recording.observations import LintFinding, LintKind, SourceLine
+from grader.submission import scopes
+from grader.submission.folder import read_bounded
+from grader.submission.python_source import parse
+from grader.submission.scopes import Function
+
+#: So many slips are told of, and so much of a name or a line [characters].
+MOST, LONGEST = 20, 300
+#: Sources that are longer are not looked at [characters].
+MOST_SOURCE = 200_000
+#: So alike two names have to be, 0 to 1, for one to be a misspelling of the other.
+ALIKE = 0.85
+#: Words of a name that are shorter are no misspellings of each other: last_x, last_y.
+SHORT = 3
+SPINS = ("spin", "spin_once", "spin_until_future_complete", "add_node")
+THREADS = ("Thread", "Process", "Timer")
+#: What catches every error, and what shows the one that is being handled without naming it.
+CATCH_ALL = ("Exception", "BaseException")
+SHOWS = ("print_exc", "format_exc", "print_exception", "exc_info", "exception")
+#: What reads or sets attributes by names that nobody sees.
+BY_NAME = ("getattr", "setattr", "hasattr", "vars", "locals", "globals", "eval", "exec", "__dict__")
+
+
+@dataclass
+class Names:
+    """What all files together have.
+
+    Attributes:
+        read: names of attributes that are read anywhere.
+        functions: those that are defined anywhere, by name.
+        bound: names that anything is assigned to, or that are arguments.
+        kept: names of attributes that anything is assigned to.
+        handed_over: names that any call is given, and functions that a lambda calls.
+    """
+
+    read: set[str] = field(default_factory=set)
+    functions: dict[str, Function] = field(default_factory=dict)
+    bound: set[str] = field(default_factory=set)
+    kept: set[str] = field(default_factory=set)
+    classes: set[str] = field(default_factory=set)
+    handed_over: set[str] = field(default_factory=set)
+
+    def add(self, tree: ast.AST) -> None:
+        """What one file has."""
+        for node in ast.walk(tree):
+            match node:
+                case ast.Attribute(attr=name, ctx=ast.Load()):
+                    self.read.add(name)
+                case ast.Attribute(attr=name):
+                    self.kept.add(name)
+                case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                    self.bound.add(name)
+                case ast.FunctionDef() | ast.AsyncFunctionDef():
+                    self.functions[node.name] = node
+                case ast.ClassDef(name=name):
+                    self.classes.add(name)
+                case ast.Call(args=args, keywords=words):
+                    self.handed_over |= {_last(each) for each in (*args, *(w.value for w in words))}
+                case ast.Lambda(body=body):
+                    self.handed_over |= _called_in(body)
+        for node in ast.walk(tree):  # self.x += 1 reads it as well
+            if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Attribute):
+                self.read.add(node.target.attr)
+
+    def callbacks(self) -> set[str]:
+        """Return the functions that are handed over to be called, and all that these call."""
+        found: set[str] = set()
+        waiting = list(self.handed_over)
+        while waiting:
+            name = waiting.pop()
+            if name in self.functions and name not in found:
+                found.add(name)
+                waiting += _called_in(self.functions[name])
+        return found
+
+
+def lint(root: Path, files: Iterable[Path]) -> tuple[LintFinding, ...]:
+    """The slips in files of a submission, by their paths below its root; none if it cannot look."""
+
+    def lies(name: str) -> bool:
+        return (root / name).is_dir() or (root / f"{name}.py").is_file()
+
+    lines = {}
+    try:
+        for file in files:
+            text = (read_bounded(file) or b"").decode("utf-8", "replace")
+            lines[file.relative_to(root).as_posix()] = text.splitlines()
+        sources = {file: "\n".join(text) for file, text in lines.items()}
+        is_short = sum(map(len, sources.values())) <= MOST_SOURCE
+        found = find(sources, lies)[:MOST] if is_short else []
+    except (OSError, RecursionError, MemoryError):
+        return ()
+    return tuple(
+        replace(
+            each,
+            name=each.name[:LONGEST],
+            near=each.near[:LONGEST],
+            place=replace(
+                each.place, text=lines[each.place.file][each.place.line - 1].strip()[:LONGEST]
+            ),
+        )
+        for each in found
+    )
+
+
+def find(
+    sources: Mapping[str, str], lies: Callable[[str], bool] = lambda _: False
+) -> list[LintFinding]:
+    """The findings in some files.
+
+    Args:
+        sources: file -> its text; what cannot be parsed is left out.
+        lies: whether there is a module of this name, as 'folder/name', in what was handed in.
+
+    Raises:
+        RecursionError, MemoryError: too deep for Python.
+    """
+    trees, names = {}, Names()
+    for file, text in sources.items():
+        try:
+            trees[file] = parse(text.encode("utf-8", "replace"), file)
+        except SyntaxError:
+            continue
+        names.add(trees[file])
+    words = {word for text in sources.values() for word in BY_NAME if word in text}
+    found: list[LintFinding] = []
+    for file, tree in trees.items():
+        classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+        for each in classes:
+            if not words:
+                found += _unread(each, names, file)
+            found += _of_methods(each, file)
+            for method in _methods(each):
+                found += _meant_for_self(each, method, names, file)
+        found += [
+            _finding(kind, name, near, file, line)
+            for kind, name, near, line in scopes.not_declared(tree)
+        ]
+        found += _without_brackets(tree, names, file)
+        found += _handed_over(tree, names, file)
+    if not names.read & {"call_async", "call"} and not words:
+        found += [slip for file, tree in trees.items() for slip in _unsent(tree, file)]
+    found += [slip for file, tree in trees.items() for slip in _beside(tree, file, lies)]
+    callbacks = names.callbacks()
+    found += [slip for file, tree in trees.items() for slip in _swallows(tree, callbacks, file)]
+    return list(dict.fromkeys(found))
+
+
+def _finding(kind: LintKind, name: str, near: str, file: str, line: int) -> LintFinding:
+    return LintFinding(kind, name, near, SourceLine(file, line))
+
+
+def _beside(tree: ast.AST, file: str, lies: Callable[[str], bool]) -> Iterator[LintFinding]:
+    """Modules that lie in the package that asks for them as if they lay beside it."""
+    folder = file.rpartition("/")[0]
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import(names=names):
+                modules = [each.name for each in names]
+            case ast.ImportFrom(module=str() as module, level=0):
+                modules = [module]
+            case _:
+                continue
+        for name in (each.partition(".")[0] for each in modules):
+            if folder and not lies(name) and lies(f"{folder}/{name}"):
+                near = ".".join((*folder.split("/"), name))
+                yield _finding("beside", name, near, file, node.lineno)
+
+
+# Attributes and methods ---------------------------------------------------------------------------
+
+
+def _methods(of: ast.ClassDef) -> list[Function]:
+    return [node for node in of.body if isinstance(node, Function)]
+
+
+def _set_in(node: ast.AST) -> dict[str, int]:
+    """The attributes of self that are set in there -> where first."""
+    lines: dict[str, int] = {}
+    for each in ast.walk(node):
+        match each:
+            case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
+                lines[name] = min(each.lineno, lines.get(name, each.lineno))
+    return lines
+
+
+def _of_the_start(of: ast.ClassDef) -> set[str]:
+    """The attributes that are there when the first callback is called."""
+    inits = (method for method in _methods(of) if method.name == "__init__")
+    found = {name for init in inits for name in _set_in(init)}
+    for node in of.body:
+        if isinstance(node, ast.Assign):
+            found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+    return found
+
+
+def _unread(of: ast.ClassDef, names: Names, file: str) -> Iterator[LintFinding]:
+    start = _of_the_start(of)
+    for name, line in _set_in(of).items():
+        if name in start or name in names.read:
+            continue
+        near = next((o for o in sorted(start & names.read) if misspelt(name, o)), None)
+        if near is not None:
+            yield _finding("unread", name, near, file, line)
+
+
+def misspelt(name: str, other: str) -> bool:
+    """Whether one name is the other, in other words a little wrong."""
+    one, two = name.lower().split("_"), other.lower().split("_")
+    if "".join(one) == "".join(two):
+        return True
+    if any(c.isdigit() for c in name + other):
+        return False
+    if len(one) == len(two):
+        others = [pair for pair in zip(one, two, strict=True) if pair[0] != pair[1]]
+        if any(min(map(len, pair)) < SHORT for pair in others):
+            return False
+    alike = SequenceMatcher(None, name, other)  # the first two take little time, and say no less
+    return min(alike.real_quick_ratio(), alike.quick_ratio()) >= ALIKE and alike.ratio() >= ALIKE
+
+
+def _of_methods(of: ast.ClassDef, file: str) -> Iterator[LintFinding]:
+    kept = _set_in(of)
+    for method in _methods(of):
+        if method.decorator_list:
+            continue
+        if method.name in kept:
+            yield _finding("method", method.name, "", file, kept[method.name])
+        arguments = [*method.args.posonlyargs, *method.args.args]
+        if not method.args.vararg and [each.arg for each in arguments[:1]] not in (
+            ["self"],
+            ["cls"],
+        ):
+            yield _finding("without_self", method.name, "", file, method.lineno)
+
+
+# Names that were to be somebody else's ------------------------------------------------------------
+
+
+def _meant_for_self(
+    of: ast.ClassDef, method: Function, names: Names, file: str
+) -> Iterator[LintFinding]:
+    """A variable that nobody reads, where an attribute has its name."""
+    start = _of_the_start(of)
+    for name, line in scopes.unread(method).items():
+        if name in start and name in names.read:
+            yield _finding("local", name, f"self.{name}", file, line)
+
+
+# Brackets -----------------------------------------------------------------------------------------
+
+
+def _without_brackets(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
+    """Functions that stand there where only what they return tells anything."""
+    for node in ast.walk(tree):
+        asked: Sequence[ast.expr] = ()
+        match node:
+            case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test):
+                asked = list(_leaves(test))
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                asked = list(_leaves(operand))
+            case ast.Expr(value=ast.Attribute() as value):
+                yield _finding("uncalled", ast.unparse(value), "", file, node.lineno)
+            case ast.Expr(value=ast.Name() as value):
+                asked = [value]
+        for each in asked:
+            match each:
+                case ast.Attribute(value=ast.Name(id="self"), attr=name):
+                    is_function = name in names.functions and name not in names.kept
+                case ast.Name(id=name):
+                    is_function = name in names.functions and name not in names.bound
+                case _:
+                    continue
+            if is_function and not names.functions[name].decorator_list:
+                yield _finding("uncalled", ast.unparse(each), "", file, each.lineno)
+
+
+def _leaves(test: ast.expr) -> Iterator[ast.expr]:
+    """What a condition is made of."""
+    match test:
+        case ast.BoolOp(values=values):
+            for value in values:
+                yield from _leaves(value)
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            yield from _leaves(operand)
+        case ast.Compare(left=left, comparators=others):
+            yield from (left, *others)
+        case _:
+            yield test
+
+
+def _handed_over(tree: ast.AST, names: Names, file: str) -> Iterator[LintFinding]:
+    """What a thread or an executor is given."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        to = _last(node.func)
+        if to in THREADS:
+            for word in node.keywords:
+                inner = word.value
+                if word.arg not in ("target", "function") or not isinstance(inner, ast.Call):
+                    continue
+                if _returns_nothing(names.functions.get(_last(inner.func))):
+                    name = ast.unparse(inner.func)
+                    yield _finding("called", name, f"{to}({word.arg}=", file, inner.lineno)
+        if to in SPINS:
+            for each in node.args:
+                if isinstance(each, ast.Name) and each.id in names.classes - names.bound:
+                    yield _finding("class", each.id, ast.unparse(node.func), file, node.lineno)
+
+
+def _returns_nothing(function: Function | None) -> bool:
+    return function is not None and not any(
+        isinstance(node, ast.Return) and node.value is not None
+        for node in scopes.own_nodes(function)
+    )
+
+
+def _called_in(node: ast.AST) -> set[str]:
+    return {_last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
+
+
+def _last(called: ast.expr) -> str:
+    """'drive' of bot.drive."""
+    match called:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
+def _unsent(tree: ast.AST, file: str) -> Iterator[LintFinding]:
+    """Requests that are made, where nothing ever calls a service."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(func=ast.Attribute(value=made, attr="Request")):
+                yield _finding("unsent", ast.unparse(made), "", file, node.lineno)
+
+
+# Errors that nobody hears of ----------------------------------------------------------------------
+
+
+def _swallows(tree: ast.AST, callbacks: set[str], file: str) -> Iterator[LintFinding]:
+    """Each `except` in a callback that catches every error, and neither raises nor shows it."""
+    for function in ast.walk(tree):
+        if isinstance(function, Function) and function.name in callbacks:
+            for node in scopes.own_nodes(function):
+                if isinstance(node, ast.ExceptHandler) and _catches_all(node) and _is_silent(node):
+                    yield _finding("swallows", function.name, "", file, node.lineno)
+
+
+def _catches_all(handler: ast.ExceptHandler) -> bool:
+    match handler.type:
+        case None:
+            return True
+        case ast.Tuple(elts=kinds):
+            return any(_last(kind) in CATCH_ALL for kind in kinds)
+        case kind:
+            return _last(kind) in CATCH_ALL
+
+
+def _is_silent(handler: ast.ExceptHandler) -> bool:
+    for node in ast.walk(handler):
+        match node:
+            case ast.Raise():
+                return False
+            case ast.Name(id=name) if name == handler.name:
+                return False
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.keyword(arg=name):
+                if name in SHOWS:
+                    return False
+    return True

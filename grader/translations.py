@@ -1,0 +1,124 @@
+"""Messages rendered in a language: its sentences are in `languages/CODE.json`, by their keys.
+
+A catalogue may have holes: what it does not know is said in English. A sentence about a number has
+a list of forms there. docs/languages.md says how sentences are found and translated.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any, Final
+
+from grader.message import Message, fill, msg, msg_many
+
+#: Code -> how the language calls itself.
+LANGUAGES: Final = {"en": "English", "fr": "français", "zh": "中文"}
+ENGLISH: Final = "en"
+#: Where POSIX looks for the language of messages, first come, first served.
+_VARIABLES = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
+
+_POINT = re.compile(r"(?<=\d)\.(?=\d)")
+_COMMA = re.compile(r"(?<=\d),(?=\d{3})")
+#: Blanks behind full-width punctuation: where English parts sentences, Chinese has nothing.
+_BEHIND_FULL_WIDTH = re.compile("(?<=[\u3002\uff0c\uff1b\uff1a\uff1f\uff01\uff09]) ")
+#: Between thousands: a narrow blank where no line is broken.
+_THOUSANDS = "\N{NARROW NO-BREAK SPACE}"
+
+_current = ENGLISH
+
+
+def current() -> str:
+    """The language of this process's user."""
+    return _current
+
+
+def use(language: str) -> None:
+    """Choose the language of this process's user.
+
+    Raises:
+        ValueError: it is not among `LANGUAGES`.
+    """
+    global _current
+    if language not in LANGUAGES:
+        raise ValueError(f"expected one of {', '.join(LANGUAGES)}, found {language!r}")
+    _current = language
+
+
+def of_environment(environment: Mapping[str, str] = os.environ) -> str:
+    """The language that the user's locale asks for; English where there are no sentences in it."""
+    first = next((found for name in _VARIABLES if (found := environment.get(name))), "")
+    for wanted in first.split(":"):  # LANGUAGE may name several
+        code = re.split("[-_.@]", wanted)[0].lower()
+        if code in LANGUAGES:
+            return code
+    return ENGLISH
+
+
+def tr(key: str, /, **values: Any) -> str:
+    """A sentence in the language of this process's user, at once; see `msg`."""
+    return translate(msg(key, **values))
+
+
+def tr_many(one: str, many: str, n: float, /, **values: Any) -> str:
+    """A sentence about `{n}` things, at once; see `msg_many`."""
+    return translate(msg_many(one, many, n, **values))
+
+
+def translate(message: str | Message, language: str = "") -> str:
+    """A message as a text in a language, that of this process's user if none is given.
+
+    A text stays as it is. What the catalogue does not know stays English.
+    """
+    language = language or current()
+    if isinstance(message, str):
+        return message
+    if language == ENGLISH:
+        return str(message)
+    if language in message.words:
+        return message.words[language]
+    found = _translated(message, language)
+    if not found and not message.is_row:
+        return str(message)
+
+    def write(value: Any, form: str) -> str:
+        if isinstance(value, str | Message):
+            return translate(value, language)
+        return number(format(value, form), language)
+
+    try:
+        text = fill(found or message.number_key, message.values, write)
+    except (ValueError, TypeError, LookupError, ArithmeticError):
+        return str(message)  # of a file that somebody has changed: values that are not the key's
+    return text if found else _BEHIND_FULL_WIDTH.sub("", text)
+
+
+def number(text: str, language: str = "") -> str:
+    """A number that is written in English, as a language writes it: '4,210.5', '4 210,5'."""
+    if (language or current()) != "fr":
+        return text
+    return _POINT.sub(",", _COMMA.sub(_THOUSANDS, text))
+
+
+@cache
+def catalogue(language: str) -> Mapping[str, str | list[str]]:
+    """Key -> sentence, or its forms for one and for more; empty for English."""
+    if language == ENGLISH:
+        return {}
+    file = files("grader") / "languages" / f"{language}.json"
+    sentences: dict[str, str | list[str]] = json.loads(file.read_text(encoding="utf-8"))
+    return sentences
+
+
+def _translated(message: Message, language: str) -> str:
+    """The sentence with names for its values, as the language has it; '' for a hole."""
+    found = catalogue(language).get(message.key, "")
+    if isinstance(found, str):
+        return found
+    n = message.values.get("n")
+    is_one = isinstance(n, int | float) and n < 2  # French; Chinese has one form for all
+    return found[0] if is_one else found[-1]

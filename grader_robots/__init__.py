@@ -1,0 +1,1 @@
+"""Robots, an extension of the grader: their scene, and the exercises about them."""

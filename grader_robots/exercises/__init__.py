@@ -1,0 +1,1 @@
+"""The exercises about robots, a folder each."""

@@ -1,0 +1,17 @@
+"""The checks: the installation, the launch files, the description, its meshes, the rest."""
+
+from __future__ import annotations
+
+from grader.exercise.check import Checks
+from grader_robots.exercises.description_package import (
+    dependencies,
+    installing,
+    launching,
+    robots,
+    spawning,
+)
+
+checks = Checks()
+for part in (installing, launching, robots, dependencies, spawning):
+    for check in part.checks:
+        checks()(check.function)

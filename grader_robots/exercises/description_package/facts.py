@@ -1,0 +1,151 @@
+"""The facts about a package that exercises weigh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import PurePosixPath
+from typing import NamedTuple
+
+from grader.exercise.asking import CheckFunction
+from grader.exercise.check import Tolerances
+from grader.exercise.verdict import Finding
+from grader.message import NOTHING, Message, msg
+from grader.recording.recording import Recordings
+from grader.scenes.package.said import said
+from grader.scenes.package.trace import Description, LaunchFile, Obstacle, PackageTrace, Setup
+
+
+class PackageFault(NamedTuple):
+    """Something that is wrong with a package, or missing.
+
+    Attributes:
+        what: tells several files of one folder as one thing, and what an exercise gives points for.
+    """
+
+    what: str
+    rationale: Message
+    help: Message
+
+
+@dataclass(frozen=True)
+class PackageFacts:
+    """A package that was inspected."""
+
+    trace: PackageTrace
+    setup: Setup
+
+    @classmethod
+    def of(cls, trace: object) -> PackageFacts | None:
+        """The facts in the trace of an inspection; None where it found no package."""
+        found = PackageTrace.of(trace)
+        return None if found.setup is None else cls(found, found.setup)
+
+    @property
+    def name(self) -> str:
+        """The package's."""
+        return self.setup.name
+
+    @property
+    def launches(self) -> Sequence[LaunchFile]:
+        """Its launch files."""
+        return self.trace.launches
+
+    @property
+    def descriptions(self) -> list[Description]:
+        """Those that a launch file hands on; where none does, those of the package's files."""
+        every = self.trace.descriptions
+        return [each for each in every if each.is_launched] or list(every)
+
+    def text(self, number: int) -> str:
+        """A text by its number."""
+        return self.trace.texts[number] if number >= 0 else ""
+
+    @property
+    def plain_programs(self) -> list[str]:
+        """What is installed where `ros2 run` looks, as install(PROGRAMS) of CMake does it."""
+        place, files = f"lib/{self.name}/", self.setup.installed
+        return [path.removeprefix(place) for path in files if path.startswith(place)]
+
+    @property
+    def starts_nothing(self) -> bool:
+        """Whether all launch files come to their end, and none starts anything."""
+        return not any(e.problem or e.nodes or e.includes or e.processes for e in self.launches)
+
+    @property
+    def not_known(self) -> LaunchFile | None:
+        """The first launch file that could not be evaluated for no fault of its own."""
+        kinds = ("unknown", "argument")
+        problems = ((each, each.problem) for each in self.launches if each.problem)
+        return next((each for each, problem in problems if problem.kind in kinds), None)
+
+
+def of_package(judge: Callable[[PackageFacts, Tolerances], Finding]) -> CheckFunction:
+    """A check of a package; the same for every check where the inspection found nothing."""
+
+    @wraps(judge)
+    def check(recordings: Recordings, tolerances: Tolerances) -> Finding:
+        recording = recordings.nominal
+        facts = PackageFacts.of(recording.trace)
+        return nothing(recording.run.flags) if facts is None else judge(facts, tolerances)
+
+    return check
+
+
+def unjudged(why: Message, help: Message) -> Finding:
+    """Of what nobody can tell."""
+    return Finding(0, why, help, judged=False)
+
+
+def nothing(remarks: Sequence[Message] = ()) -> Finding:
+    """Of a package that nobody could look at; the first remark says why."""
+    return Finding(
+        0,
+        msg("The package could not be looked at: {why}.", why=remarks[0])
+        if remarks
+        else msg("The package could not be looked at."),
+        msg("Does setup.py or a launch file end the process that it runs in, or run without end?"),
+    )
+
+
+def nothing_started() -> Finding:
+    """Of what nobody can tell, because no launch file starts anything."""
+    return unjudged(
+        msg("Not judged: no launch file starts anything, so there is nothing to look at."),
+        msg("Write the launch file that shows the robot first."),
+    )
+
+
+def not_judged(launch: LaunchFile, what: Message = NOTHING) -> Finding:
+    """Of what nobody can tell, because a launch file uses what the grader does not know."""
+    problem = launch.problem or Obstacle("", NOTHING)
+    values = {"file": launch.file, "why": said(problem)}
+    return unjudged(
+        msg("Not judged: {what}, and {file} could not be evaluated: {why}.", what=what, **values)
+        if what
+        else msg("Not judged: {file} could not be evaluated: {why}.", **values),
+        msg("Give the argument a default_value: then `ros2 launch` needs no more than the file.")
+        if problem.kind == "argument"
+        else msg("This is no fault of the package: tell whoever runs the course."),
+    )
+
+
+def not_followed(facts: PackageFacts) -> Finding | None:
+    """Of a set-up that nobody can follow here; None where it can be."""
+    problem = facts.setup.problem
+    if problem is None or problem.kind != "unknown":
+        return None
+    return unjudged(
+        msg(
+            "Not judged: {file} could not be followed: {why}.",
+            file=problem.file or "setup.py",
+            why=said(problem),
+        ),
+        msg("Tell whoever runs the course."),
+    )
+
+
+def folder_of(path: str) -> str:
+    """The folder of a path, to tell of many files at once."""
+    return str(PurePosixPath(path).parent)

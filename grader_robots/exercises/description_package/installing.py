@@ -1,0 +1,388 @@
+"""What is missing where the package is installed: by whom it is asked for, and where it lies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from grader.exercise.check import Checks, Tolerances
+from grader.exercise.verdict import Finding
+from grader.message import Message, joined, msg
+from grader.scenes.package.said import how_it_ends, shown
+from grader.scenes.package.trace import EMPTY, Lacking, LaunchFile, Obstacle
+from grader_robots.exercises.description_package.facts import (
+    PackageFacts,
+    PackageFault,
+    folder_of,
+    not_followed,
+    of_package,
+)
+
+checks = Checks()
+#: One thing missing leaves so much; two leave nothing.
+ONE_MISSING = 0.5
+#: The current folder of who launches, in the paths of a trace.
+_EMPTY = f"{EMPTY}/"
+_BUILD = msg("colcon build stops there, and nothing is installed")
+
+
+@checks()
+@of_package
+def installed(facts: PackageFacts, tolerances: Tolerances) -> Finding:
+    """Everything that is asked for is installed.
+
+    setup.py is run with a `setup()` that only takes its arguments down (of a CMakeLists.txt, the
+    install() commands are read), and the files are laid out below an empty prefix. What launch
+    files ask for (descriptions, meshes, RViz's files, other launch files, programs, packages) has
+    to be there, in that prefix and when it is moved to another place.
+
+    - setup.py ends with an error, or lists a file that is not there, or a folder: 0, for colcon
+      build stops there.
+    - One thing is missing: half of the points. The files of one folder count as one thing.
+    - More is missing: 0.
+
+    A marker below share/ament_index, or a package.xml, that nothing installs costs nothing: colcon
+    adds both.
+    """
+    found: dict[str, list[PackageFault]] = {}
+    if (stop := stops(facts)) is not None:
+        return Finding(0, stop.rationale, stop.help)
+    for each in _missing(facts):
+        found.setdefault(each.what, []).append(each)
+    if found and (not_known := not_followed(facts)):
+        return not_known
+    if not found:
+        return Finding(
+            1,
+            msg(
+                "{count} files are installed, and all that is asked for is among them.",
+                count=len(facts.setup.installed),
+            ),
+        )
+    first = next(iter(found.values()))
+    more = len(first) - 1
+    told = [first[0].rationale]
+    if more:
+        told.append(msg("The same holds for {more} more.", more=more))
+    told += [each[0].rationale for each in list(found.values())[1:3]]
+    return Finding(ONE_MISSING if len(found) == 1 else 0.0, joined(told, " "), first[0].help)
+
+
+def stops(facts: PackageFacts) -> PackageFault | None:
+    """What keeps the package from being built at all."""
+    setup = facts.setup
+    if setup.problem is not None:
+        return None if setup.problem.kind == "unknown" else _ended(facts, setup.problem)
+    is_cmake = setup.build_type not in ("", "ament_python")
+    if is_cmake and setup.told and setup.told != facts.name:
+        return PackageFault(
+            "name",
+            msg(
+                "CMakeLists.txt says project({told}), and package.xml calls the "
+                "package {name}: {build}.",
+                told=shown(setup.told),
+                name=shown(facts.name),
+                build=_BUILD,
+            ),
+            msg("Both have to be the same name, and the folder in share is called so."),
+        )
+    if setup.absent:
+        return _absent(shown(setup.absent[0]), is_cmake)
+    if setup.folders:
+        return PackageFault(
+            "folder",
+            msg(
+                "data_files lists {name!r}, which is a folder: {build} (can't copy: "
+                "not a regular file).",
+                name=shown(setup.folders[0]),
+                build=_BUILD,
+            ),
+            msg(
+                "data_files takes files. List those of a folder of their own, with the "
+                "folder that they come into."
+            ),
+        )
+    return None
+
+
+def _ended(facts: PackageFacts, problem: Obstacle) -> PackageFault:
+    """Of a set-up that comes to no end, or is not there."""
+    if problem.text.key == "there is no {file}":
+        return PackageFault(
+            "set-up",
+            msg("The package cannot be built: {why}.", why=problem.text),
+            msg(
+                "<build_type> in package.xml is {build_type!r}: ament_python wants a "
+                "setup.py, ament_cmake a CMakeLists.txt. Correct the one, or add the "
+                "other.",
+                build_type=shown(facts.setup.build_type) or "ament_python",
+            ),
+        )
+    return PackageFault(
+        "set-up",
+        msg(
+            "{what_happens}: {build}.",
+            what_happens=how_it_ends("setup.py", problem),
+            build=_BUILD,
+        ),
+        msg("Run `python3 setup.py --name` in the package's folder: it shows the same."),
+    )
+
+
+def _absent(name: str, is_cmake: bool) -> PackageFault:
+    """Of something that is to be installed, and is not there."""
+    if is_cmake:
+        return PackageFault(
+            name,
+            msg(
+                "CMakeLists.txt installs {name!r}, and there is no such folder or file: {build}.",
+                name=name,
+                build=_BUILD,
+            ),
+            msg(
+                "Compare the name with what is there; a folder without files is not in what git, "
+                "or a zip, hands on."
+            ),
+        )
+    return PackageFault(
+        name,
+        msg(
+            "setup.py installs {name!r}, and there is no such file: {build}.",
+            name=name,
+            build=_BUILD,
+        ),
+        msg(
+            "Compare the name in data_files with the file's, or use glob(), which lists what is "
+            "there."
+        ),
+    )
+
+
+def _missing(facts: PackageFacts) -> Iterator[PackageFault]:
+    yield from unstarted(facts)
+    for launch in facts.launches:
+        yield from (lacking(facts, each) for each in launch.lacking)
+        if launch.moved:
+            yield moved(launch)
+    for description in facts.descriptions:
+        for mesh in description.meshes:
+            if mesh.state == "left":
+                yield PackageFault(
+                    folder_of(mesh.path),
+                    _left(facts, msg("The description"), shown(mesh.uri), mesh.path),
+                    msg(
+                        "data_files in setup.py (or install() in CMakeLists.txt) has to list "
+                        "it, with the folder that the description names."
+                    ),
+                )
+
+
+def moved(launch: LaunchFile) -> PackageFault:
+    """Of a path that is another where the package is installed in another place."""
+    return PackageFault(
+        launch.moved,
+        msg(
+            "{file} asks for {path}, which is there only as long as the package "
+            "lies where it was installed first.",
+            file=launch.file,
+            path=shown(launch.moved),
+        ),
+        msg("Ask for the share folder: get_package_share_directory(), FindPackageShare()."),
+    )
+
+
+def lacking(facts: PackageFacts, lacks: Lacking) -> PackageFault:
+    """Of what a launch file names, and is not there."""
+    of_kind = {"file": _file, "package": _package}.get(lacks.kind, _program)
+    return of_kind(facts, lacks)
+
+
+def _by(lacking: Lacking) -> str | Message:
+    """The file that asks for something, with the line."""
+    if not lacking.line:
+        return lacking.by
+    return msg("{file} (line {line})", file=lacking.by, line=lacking.line)
+
+
+def _file(facts: PackageFacts, lacking: Lacking) -> PackageFault:
+    name, source, by = lacking.name, lacking.source, _by(lacking)
+    if source == lacking.by:
+        return PackageFault(
+            "launch",
+            msg(
+                "{source} is not installed: `ros2 launch {name}` does not find it.",
+                source=source,
+                name=facts.name,
+            ),
+            msg(
+                "data_files in setup.py (or install() in CMakeLists.txt) has to list "
+                "the launch files."
+            ),
+        )
+    if not name.startswith(("/", "~")) or name.startswith(_EMPTY):
+        return PackageFault(
+            name,
+            msg(
+                "{by} asks for {path}, a path from the current folder: it is there "
+                "only for who stands in the right one.",
+                by=by,
+                path=shown(name.removeprefix(_EMPTY)),
+            ),
+            msg("Join it to the package's share folder: get_package_share_directory(NAME)."),
+        )
+    if name.startswith("~") or not name.startswith(("/prefix/", "/opt/ros/")):
+        return PackageFault(
+            name,
+            msg(
+                "{by} asks for {path}: a path of one machine, which no other has.",
+                by=by,
+                path=shown(name),
+            ),
+            msg(
+                "Ask for the package's share folder: get_package_share_directory(NAME),"
+                " or FindPackageShare(NAME)."
+            ),
+        )
+    path = name.removeprefix("/prefix/")
+    if source:
+        return PackageFault(
+            folder_of(source),
+            _left(facts, by, shown(path), source),
+            msg(
+                "Compare the folder in data_files (or install() in CMakeLists.txt) with"
+                " the path that is asked for."
+            ),
+        )
+    return PackageFault(
+        name,
+        msg("{by} asks for {path}, and the package has no such file.", by=by, path=shown(path)),
+        msg(
+            "Compare the name with the file's, letter by letter; is the file in what you handed in?"
+        ),
+    )
+
+
+def _package(facts: PackageFacts, lacking: Lacking) -> PackageFault:
+    name, by = lacking.name, _by(lacking)
+    return PackageFault(
+        f"package {name}",
+        msg(
+            "{by} asks for the package {name!r}, which is neither yours ({own}) "
+            "nor among your dependencies.",
+            by=by,
+            name=shown(name),
+            own=facts.name,
+        ),
+        msg(
+            "Was the name copied from another package? If it is meant, package.xml has to name it."
+        ),
+    )
+
+
+def _program(facts: PackageFacts, lacking: Lacking) -> PackageFault:
+    name, by = lacking.name, _by(lacking)
+    package, _, program = name.partition(" ")
+    if package != facts.name:
+        return PackageFault(
+            name,
+            msg(
+                "{by} starts {program!r} of the package {package}, which has no such program.",
+                by=by,
+                program=shown(program),
+                package=package,
+            ),
+            msg("Compare the name: `ros2 pkg executables PACKAGE` lists them."),
+        )
+    where = facts.setup.scripts_folder or "bin"
+    if any(each.name == program for each in facts.setup.scripts):
+        return PackageFault(
+            "scripts",
+            msg(
+                "{by} starts {program!r} of {package}, which is installed in {where}; "
+                "expected lib/{package}: `ros2 launch` and `ros2 run` look there.",
+                by=by,
+                program=shown(program),
+                package=package,
+                where=where,
+            ),
+            _scripts_needed(package),
+        )
+    return PackageFault(
+        "scripts",
+        msg(
+            "{by} starts {program!r} of {package}, and the set-up has no such console script.",
+            by=by,
+            program=shown(program),
+            package=package,
+        ),
+        msg("Add it to console_scripts in setup.py: 'NAME = PACKAGE.MODULE:main'."),
+    )
+
+
+def unstarted(facts: PackageFacts) -> Iterator[PackageFault]:
+    """What keeps colcon from finding the package, or `ros2 run` from starting its programs."""
+    if facts.setup.manifest:
+        yield PackageFault(
+            "package.xml",
+            msg(
+                "package.xml cannot be used: {why}. colcon takes the folder for no ROS package.",
+                why=facts.setup.manifest.map_texts(shown),
+            ),
+            msg("Compare it with one that `ros2 pkg create` writes."),
+        )
+    for each in facts.setup.scripts:
+        if each.fault:
+            yield PackageFault(
+                f"script {each.name}",
+                msg(
+                    "The console script {name!r} cannot start: {why}.",
+                    name=shown(each.name),
+                    why=each.fault.map_texts(shown),
+                ),
+                msg(
+                    "It has the form 'NAME = PACKAGE.MODULE:FUNCTION': the file "
+                    "PACKAGE/MODULE.py has to be there, and the function in it."
+                ),
+            )
+    folder, name = facts.setup.scripts_folder, facts.name
+    if facts.setup.scripts and folder.rstrip("/") != f"lib/{name}":
+        yield PackageFault(
+            "scripts",
+            msg(
+                "Programs are installed in {folder}; expected lib/{name}: `ros2 run {name}` looks "
+                "there.",
+                folder=shown(folder),
+                name=name,
+            )
+            if folder
+            else msg(
+                "Programs are installed in bin, since setup.cfg says nothing else; expected "
+                "lib/{name}: `ros2 run {name}` looks there.",
+                name=name,
+            ),
+            _scripts_needed(name),
+        )
+
+
+def _scripts_needed(package: str) -> Message:
+    return msg(
+        "setup.cfg needs install_scripts=$base/lib/{package} below [install].", package=package
+    )
+
+
+def _left(facts: PackageFacts, by: str | Message, wanted: str, source: str) -> Message:
+    """Of a file of the package that nothing installs where it is asked for."""
+    pairs: Sequence[tuple[str, str]] = list(
+        zip(facts.setup.installed, facts.setup.sources, strict=True)
+    )
+    elsewhere = next((path for path, of in pairs if of == source), "")
+    values = {"by": by, "wanted": wanted, "source": source, "elsewhere": elsewhere}
+    if elsewhere:
+        return msg(
+            "{by} asks for {wanted}; {source} is in the package, and nothing installs it there "
+            "(but as {elsewhere}).",
+            **values,
+        )
+    return msg(
+        "{by} asks for {wanted}; {source} is in the package, and nothing installs it there.",
+        **values,
+    )

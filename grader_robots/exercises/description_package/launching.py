@@ -1,0 +1,271 @@
+"""What the launch files describe: a robot_state_publisher, what moves its joints, and RViz."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from grader.exercise.check import Checks, Tolerances
+from grader.exercise.verdict import Finding
+from grader.message import joined, msg
+from grader.scenes.package.examining.known import FILES, KNOWN, SIMULATORS
+from grader.scenes.package.said import advice, how_it_ends, shown
+from grader.scenes.package.trace import LaunchedNode, LaunchFile, Obstacle
+from grader_robots.exercises.description_package.facts import (
+    PackageFacts,
+    PackageFault,
+    not_judged,
+    of_package,
+    unjudged,
+)
+from robot_py.urdf import parse
+
+checks = Checks()
+PUBLISHER = "robot_state_publisher"
+JOINT_SOURCES = ("joint_state_publisher", "joint_state_publisher_gui")
+#: What each part of it is worth here.
+WORTH = {"description": 0.5, "joints": 0.25, "rviz": 0.25}
+#: A launch file of the package that ends with an error leaves no more than this.
+BROKEN = 0.5
+_SIMULATORS = ("gz sim", "gazebo", "gzserver", "ign gazebo", "webots")
+_MOVES = re.compile(r'type\s*=\s*["\'](?:revolute|continuous|prismatic)["\']')
+
+
+@checks()
+@of_package
+def launch(facts: PackageFacts, tolerances: Tolerances) -> Finding:
+    """A launch file shows the robot: its description, its joints, RViz.
+
+    Each launch file (Python, XML or YAML) is evaluated with its default arguments, and nothing is
+    started. The best of them counts, of those that start RViz, where any does:
+
+    - robot_state_publisher with the parameter robot_description: half of the points,
+    - something that publishes joint states, if any joint moves: joint_state_publisher, with or
+      without gui, a node of the package, a controller, a simulator: a quarter,
+    - rviz2 with a file: a quarter. Who opens RViz by hand needs an .rviz file that is installed.
+
+    If it ends with an error: 0; if another one of the package does: half at most. One that uses
+    what the grader does not know makes this check not judged, where nothing else passes it.
+    """
+    if not facts.launches:
+        return Finding(
+            0,
+            msg("The package has no launch file."),
+            msg(
+                "Write launch/display.launch.py: it starts robot_state_publisher with "
+                "the description, joint_state_publisher_gui, and rviz2 with your .rviz "
+                "file."
+            ),
+        )
+    found = {each.file: lacking(facts, each) for each in facts.launches}
+    shows = [each for each in facts.launches if any(map(is_rviz, each.nodes))]
+    best = max(shows or facts.launches, key=lambda each: _share(found[each.file], WORTH))
+    faults = found[best.file]
+    share = _share(faults, WORTH)
+    if share < 1 and facts.not_known is not None:
+        why = msg("{best} alone does not show the robot", best=best.file)
+        return not_judged(facts.not_known, why)
+    for each in facts.launches:
+        if each.problem is not None and each.problem.kind in ("error", "limit"):
+            left = min(share, BROKEN) if each.file != best.file else 0.0
+            return ends(each.file, each.problem, left)
+    if share <= WORTH["description"] and (include := _not_followed(best)):
+        return unjudged(
+            msg(
+                "Not judged: {best} leaves it to {include}, a file of another package, to show the "
+                "robot, and nobody knows here what that starts.",
+                best=best.file,
+                include=include,
+            ),
+            msg("This is no fault of the package: tell whoever runs the course."),
+        )
+    if not faults:
+        return Finding(
+            1,
+            msg(
+                "{best} starts {publisher} with the description, and what belongs to it.",
+                best=best.file,
+                publisher=PUBLISHER,
+            ),
+        )
+    return without(best.file, faults, WORTH)
+
+
+def ends(file: str, problem: Obstacle, share: float) -> Finding:
+    """Of a launch file that comes to no end; `share` of the points is left."""
+    what_happens = how_it_ends(file, problem)
+    return Finding(
+        share, msg("{what_happens}.", what_happens=what_happens), advice(str(problem.text))
+    )
+
+
+def without(file: str, faults: Sequence[PackageFault], worth: Mapping[str, float]) -> Finding:
+    """Of a launch file with faults, each of which costs what that part is worth."""
+    first, *others = (fault.rationale for fault in faults)
+    texts = joined([first, *(msg("{fault!u}", fault=each) for each in others)], " ")
+    told = msg("{file}: {faults}", file=file, faults=texts)
+    return Finding(_share(faults, worth), told, faults[0].help)
+
+
+def _share(faults: Sequence[PackageFault], worth: Mapping[str, float]) -> float:
+    return 1.0 - sum(worth[fault.what] for fault in faults)
+
+
+def lacking(facts: PackageFacts, launch: LaunchFile) -> list[PackageFault]:
+    """What of the three parts a launch file does not have."""
+    publishers = [node for node in launch.nodes if is_publisher(node)]
+    texts = handed_on(facts, launch)
+    undescribed = None if refused(facts, launch) else no_description(facts, launch)
+    parts = [undescribed] if undescribed else []
+    is_needed = not publishers or moves(facts, texts)
+    has_source = any(is_joint_source(facts, node) for node in launch.nodes)
+    if is_needed and not has_source and not _includes_simulator(launch):
+        parts.append(
+            PackageFault(
+                "joints",
+                msg(
+                    "nothing publishes /joint_states: the moving joints have no transforms,"
+                    " and RViz shows what hangs on them white."
+                ),
+                msg(
+                    "Start joint_state_publisher_gui, or a node of yours that publishes JointState."
+                ),
+            )
+        )
+    rviz = _rviz(facts, launch)
+    return [*parts, *([rviz] if rviz else [])]
+
+
+def is_publisher(node: LaunchedNode) -> bool:
+    """Whether a node is a robot_state_publisher."""
+    return PUBLISHER in (node.package, node.executable)
+
+
+def is_rviz(node: LaunchedNode) -> bool:
+    """Whether a node is RViz."""
+    return "rviz2" in (node.package, node.executable)
+
+
+def handed_on(facts: PackageFacts, launch: LaunchFile) -> list[str]:
+    """What robot_state_publisher gets as descriptions."""
+    nodes = filter(is_publisher, launch.nodes)
+    return [facts.text(p.text) for n in nodes for p in n.parameters if is_description(p.name)]
+
+
+def refused(facts: PackageFacts, launch: LaunchFile) -> Obstacle | None:
+    """Why xacro makes no description of the file that would be handed on."""
+    problems = (each.problem for each in facts.descriptions if each.by == launch.file)
+    return next((each for each in problems if each is not None), None)
+
+
+def is_description(name: str) -> bool:
+    """Whether a parameter is the one that robot_state_publisher reads."""
+    return name == "robot_description"
+
+
+def moves(facts: PackageFacts, texts: list[str]) -> bool:
+    """Whether a joint of the robot moves."""
+    texts = texts or [facts.text(each.text) for each in facts.descriptions]
+    for text in texts:
+        model = parse(text).model
+        if model is None:
+            if _MOVES.search(text):
+                return True
+        elif any(joint.type.is_movable for joint in model.joints.values()):
+            return True
+    return not texts
+
+
+def is_joint_source(facts: PackageFacts, node: LaunchedNode) -> bool:
+    """Whether a node publishes joint states, as far as one can see."""
+    if node.package in JOINT_SOURCES:
+        return True
+    if "joint_state_broadcaster" in node.arguments or "joint_broad" in node.arguments:
+        return True
+    if node.package == facts.name:
+        scripts = {each.name: each for each in facts.setup.scripts}
+        return node.executable not in scripts or scripts[node.executable].says
+    is_another_s = node.package in facts.setup.depends and node.package not in KNOWN
+    return is_another_s or node.package in facts.trace.others
+
+
+def _includes_simulator(launch: LaunchFile) -> bool:
+    """A simulator publishes the joints of what it simulates."""
+    included = any(each.package in SIMULATORS for each in launch.includes)
+    return included or any(each.startswith(_SIMULATORS) for each in launch.processes)
+
+
+def _not_followed(launch: LaunchFile) -> str:
+    """A launch file of another package of which it is not known what it starts; '' for none."""
+    return next(
+        (
+            f"{each.package}/{each.file}"
+            for each in launch.includes
+            if each.file not in FILES.get(each.package, ()) and not each.file.endswith("()")
+        ),
+        "",
+    )
+
+
+def no_description(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
+    """Of a launch file in which no robot_state_publisher gets a text; None where one does."""
+    publishers = [node for node in launch.nodes if is_publisher(node)]
+    if not publishers:
+        return PackageFault(
+            "description",
+            msg("it starts no robot_state_publisher."),
+            msg("Start it with the parameter robot_description: the text of your URDF."),
+        )
+    if any(text.strip() for text in handed_on(facts, launch)):
+        return None
+    names = [each.name for each in publishers[0].parameters]
+    found = msg("it gets no parameter.")
+    if any(map(is_description, names)):
+        found = msg("it is empty.")
+    elif names:
+        found = msg("its parameters are {names}.", names=shown(", ".join(names)))
+    return PackageFault(
+        "description",
+        msg("robot_state_publisher has no robot_description: {found}", found=found),
+        msg(
+            "Give it parameters=[{{'robot_description': ...}}] with the text of the"
+            " URDF, not its path."
+        ),
+    )
+
+
+def _rviz(facts: PackageFacts, launch: LaunchFile) -> PackageFault | None:
+    started = [node for node in launch.nodes if is_rviz(node)]
+    if any(_has_file(node) for node in started):
+        return None
+    if started:
+        return PackageFault(
+            "rviz",
+            msg("rviz2 starts without a file: it shows an empty grid."),
+            msg(
+                "Save RViz's settings into the package, install the file, and start "
+                "rviz2 with arguments=['-d', FILE]."
+            ),
+        )
+    files = [path for path in facts.setup.installed if path.endswith(".rviz")]
+    by_hand = not any(is_rviz(n) for each in facts.launches for n in each.nodes)
+    if files and by_hand:
+        return None  # who launches it opens RViz with the file that is installed
+    return PackageFault(
+        "rviz",
+        msg("it starts no rviz2, and no .rviz file is installed for who opens it by hand.")
+        if not files
+        else msg("it starts no rviz2."),
+        msg(
+            "Start rviz2 with arguments=['-d', FILE], FILE being the .rviz file in "
+            "the share folder."
+        ),
+    )
+
+
+def _has_file(node: LaunchedNode) -> bool:
+    words = list(node.arguments)
+    if any(word.startswith("-d ") or word.startswith("--display-config=") for word in words):
+        return True
+    at = next((n for n, w in enumerate(words) if w in ("-d", "--display-config")), len(words))
+    return len(words) > at + 1 and words[at + 1].strip() != ""

@@ -1,0 +1,159 @@
+"""How a model gets into Gazebo: the arguments of the program that puts it there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from grader.exercise.check import Checks, Tolerances
+from grader.exercise.verdict import Finding
+from grader.message import Message, msg
+from grader.scenes.package.said import shown
+from grader.scenes.package.trace import LaunchedNode, LaunchFile
+from grader_robots.exercises.description_package.facts import (
+    PackageFacts,
+    nothing_started,
+    of_package,
+)
+from grader_robots.exercises.description_package.launching import is_description, is_publisher
+
+checks = Checks()
+#: Program -> where the model may come from (one of these), and what must be named.
+PROGRAMS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "spawn_entity.py": (("-file", "-topic", "-database", "-stdin"), ("-entity",)),
+    "create": (("-file", "-param", "-string", "-topic"), ()),
+}
+_PLACES = ("-x", "-y", "-z", "-R", "-P", "-Y", "-timeout", "-spawn_service_timeout")
+_TAKES_NOTHING = ("-stdin", "-unpause", "-b", "-package_to_model", "-allow_renaming")
+
+
+def spawners(launch: LaunchFile) -> list[LaunchedNode]:
+    """The nodes that put a model into a world."""
+    packages = ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo")
+    return [
+        each for each in launch.nodes if each.package in packages and each.executable in PROGRAMS
+    ]
+
+
+@checks()
+@of_package
+def spawn(facts: PackageFacts, tolerances: Tolerances) -> Finding:
+    """What puts the robot into Gazebo has the right arguments.
+
+    spawn_entity.py of gazebo_ros, or create of ros_gz_sim: exactly one origin (-topic, -file, ...),
+    a name where one is needed, numbers as places, and a topic that a launch file publishes.
+    All or nothing; a package that puts nothing into Gazebo gets the points.
+    """
+    return judge_spawning(facts, is_asked=False)
+
+
+def judge_spawning(facts: PackageFacts, is_asked: bool) -> Finding:
+    """Whether the model gets there."""
+    if facts.starts_nothing:
+        return nothing_started()
+    found = [(launch, node) for launch in facts.launches for node in spawners(launch)]
+    included = [launch for launch in facts.launches if includes_spawner(launch)]
+    if not found and not included:
+        if is_asked:
+            return Finding(
+                0,
+                msg("No launch file puts the robot into Gazebo."),
+                msg("Start create of ros_gz_sim with -topic robot_description and -name."),
+            )
+        return Finding(1, msg("No launch file puts the robot into Gazebo, and none need."))
+    for launch, node in found:
+        fault = next(_faults(facts, launch, node), "")
+        if fault:
+            return Finding(
+                0,
+                msg(
+                    "{file}: {program} {fault}",
+                    file=launch.file,
+                    program=node.executable,
+                    fault=fault,
+                ),
+                msg("Compare the arguments with `ros2 run PACKAGE PROGRAM --help`."),
+            )
+    launches = [launch for launch, _ in found] or included
+    return Finding(1, msg("{file} puts the robot into Gazebo.", file=launches[0].file))
+
+
+def includes_spawner(launch: LaunchFile) -> bool:
+    """Whether a launch file leaves that to one of ros_gz_sim."""
+    return any(each.file.endswith("gz_spawn_model.launch.py") for each in launch.includes)
+
+
+def _faults(facts: PackageFacts, launch: LaunchFile, node: LaunchedNode) -> Iterator[Message]:
+    sources, needed = PROGRAMS[node.executable]
+    given = _given(node)
+    if None in given:
+        yield msg("gets {word!r}, which is no argument of it.", word=shown(given[None]))
+    origins = [each for each in sources if each in given]
+    if len(origins) != 1:
+        all_, told = ", ".join(sources), ", ".join(origins)
+        yield (
+            msg("needs exactly one of {options}; it gets {given}.", options=all_, given=told)
+            if told
+            else msg("needs exactly one of {options}; it gets none.", options=all_)
+        )
+    for name in needed:
+        if not given.get(name):
+            yield msg("needs {name} with a name.", name=name)
+    for name in _PLACES:
+        if name in given and not _is_number(given[name]):
+            yield msg(
+                "gets {name} {value!r}; expected a number.", name=name, value=shown(given[name])
+            )
+    if "-topic" in given:
+        topic = given["-topic"].rsplit("/", 1)[-1]
+        if topic == "robot_description" and not any(map(_is_published, facts.launches)):
+            yield msg("waits for the topic robot_description, and no launch file publishes it.")
+        elif topic != "robot_description" and not _is_remapped(launch, topic):
+            yield msg(
+                "waits for the topic {topic!r}, which nobody publishes; "
+                "robot_state_publisher publishes robot_description.",
+                topic=shown(given["-topic"]),
+            )
+
+
+def _given(node: LaunchedNode) -> dict[str | None, str]:
+    """Option -> value; None: what is no option."""
+    words = [word for each in node.arguments for word in each.split()]
+    if "--ros-args" in words:
+        words = words[: words.index("--ros-args")]
+    found: dict[str | None, str] = {}
+    while words:
+        name = words.pop(0)
+        name = name[1:] if name.startswith("--") else name
+        name, is_joined, value = name.partition("=")
+        if is_joined and name.startswith("-"):
+            found[name] = value
+        elif not name.startswith("-") or _is_number(name):
+            if node.executable != "create":  # which ignores such words
+                found.setdefault(None, name)
+        elif name in _TAKES_NOTHING:
+            found[name] = ""
+        else:
+            found[name] = words.pop(0) if words else ""
+    for each in node.parameters:
+        if node.executable == "create":
+            found.setdefault(f"-{each.name}", each.value or "(a text)")
+    return found
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_published(launch: LaunchFile) -> bool:
+    return any(
+        is_publisher(node) and any(is_description(p.name) for p in node.parameters)
+        for node in launch.nodes
+    ) or any(each.package == "urdf_launch" for each in launch.includes)
+
+
+def _is_remapped(launch: LaunchFile, topic: str) -> bool:
+    return any(each.endswith(topic) for node in launch.nodes for each in node.remappings)

@@ -1,0 +1,295 @@
+"""The checks: those of any package that describes a robot, and what a Thymio is asked for besides.
+
+Whether the numbers of a xacro are what the robot is made of, and what it weighs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from grader.exercise.check import Checks, Tolerances
+from grader.exercise.verdict import Finding
+from grader.message import NOTHING, Message, msg
+from grader.scenes.package.said import shown
+from grader_robots.exercises.description_package import checks as of_packages
+from grader_robots.exercises.description_package.facts import PackageFacts, of_package, unjudged
+from grader_robots.exercises.description_package.launching import JOINT_SOURCES
+from grader_robots.exercises.description_package.spawning import (
+    includes_spawner,
+    judge_spawning,
+    spawners,
+)
+from robot_py import kinematics
+from robot_py.model import Box, Model, Origin
+from robot_py.urdf import Consequence, ParsedUrdf, parse
+
+_MOVED_M = 1e-6
+#: What hangs on a part so far from its middle, as a share of half of its size, is at its side.
+_ASIDE = 0.25
+#: The masses of so many links are told one by one.
+_FEW = 6
+#: Instead of a link, where none moves along.
+_NOTHING = "nothing"
+
+checks = Checks()
+for check in of_packages.checks:
+    checks()(check.function)
+
+
+class _Shape(NamedTuple):
+    origin: Origin
+    geometry: Box
+
+
+@checks()
+@of_package
+def spawns(facts: PackageFacts, tolerances: Tolerances) -> Finding:
+    """A launch file puts the robot into Gazebo.
+
+    As `spawn`, and one has to be there.
+    """
+    return judge_spawning(facts, is_asked=True)
+
+
+@checks()
+@of_package
+def parameters(facts: PackageFacts, tolerances: Tolerances) -> Finding:
+    """The numbers of the xacro are what the robot is made of.
+
+    Each of the properties {numbers} is doubled, and xacro run again: a part has to change its size,
+    and what hangs on it away from its middle, along that side, has to move. The share of those that
+    do so is the share of the points.
+    """
+    parsed = _parsed(facts)
+    model = parsed.model
+    if model is None:
+        return _no_robot(msg("Not judged: there is no robot to vary."))
+    names = [str(each) for each in tolerances["numbers"]]
+    good, told, help_ = 0, NOTHING, NOTHING
+    texts = _varied(facts)
+    for name in names:
+        if name not in texts:
+            fault, advice = _unnamed(name)
+        else:
+            fault, advice = _fault(name, model, texts[name])
+        good += not fault
+        told, help_ = told or fault, help_ or advice
+    is_incomplete = any(each.consequence is Consequence.DROPPED for each in parsed.findings)
+    if told and not good and is_incomplete:
+        return _no_robot(msg("Not judged: there is no robot to vary: parts of it are dropped."))
+    if not told:
+        return Finding(
+            1, msg("What hangs on {names} moves along with them.", names=", ".join(names))
+        )
+    return Finding(good / max(len(names), 1), msg("In the xacro, {told}.", told=told), help_)
+
+
+def _no_robot(why: Message) -> Finding:
+    return unjudged(
+        why,
+        msg("See what is said of the description first."),
+    )
+
+
+def _unnamed(name: str) -> tuple[Message, Message]:
+    return (
+        msg("there is no property {name} with a number as its value", name=name),
+        msg('Name it: <xacro:property name="{name}" value="..."/>.', name=name),
+    )
+
+
+def _fault(name: str, model: Model, text: str) -> tuple[Message, Message]:
+    other = parse(text).model if text else None
+    if other is None:
+        return (
+            msg("doubling {name} leaves no robot that urdfdom takes", name=name),
+            msg("Run xacro with the number doubled, and check_urdf on what comes out."),
+        )
+    if _sizes(model) == _sizes(other):
+        return (
+            msg("doubling {name} changes the size of nothing", name=name),
+            msg(
+                "Use ${{{name}}} where the number stands now, in the geometry and in the inertia.",
+                name=name,
+            ),
+        )
+    stays = next(_staying(model, other), "")
+    if stays:
+        return (
+            msg(
+                "doubling {name} changes the size of a part, and nothing does not move along",
+                name=name,
+            )
+            if stays == _NOTHING
+            else msg(
+                "doubling {name} changes the size of a part, and {link} does not move along",
+                name=name,
+                link=shown(stays),
+            ),
+            msg(
+                "Write the origins of wheels and caster with ${{{name}}}, not as numbers.",
+                name=name,
+            ),
+        )
+    return NOTHING, NOTHING
+
+
+def _varied(facts: PackageFacts) -> dict[str, str]:
+    """Name -> the description with that number doubled; of two such numbers the one that counts."""
+    found: dict[str, str] = {}
+    for each in facts.trace.varied:
+        as_before = facts.trace.descriptions[each.of].text
+        if each.name not in found or each.text != as_before:
+            found[each.name] = facts.text(each.text)
+    return found
+
+
+def _parsed(facts: PackageFacts) -> ParsedUrdf:
+    """The first description that there is; '' holds no robot."""
+    texts = (facts.text(each.text) for each in facts.descriptions if each.text >= 0)
+    return parse(next(texts, ""))
+
+
+def _sizes(model: Model) -> list[object]:
+    return [
+        [shape.geometry for shape in shapes]
+        for link in model.links.values()
+        for shapes in (link.visuals, link.collisions)
+    ]
+
+
+def _staying(one: Model, other: Model) -> Iterator[str]:
+    """Links that should move along with a part that has changed its size, and do not.
+
+    They hang on it away from its middle, along the side that has changed. Of a part that is no
+    upright box nobody knows which side that is: then something has to move.
+    """
+    boxes = [(name, *both) for name in one.links if (both := _boxes(one, other, name))]
+    if not boxes and not _has_moved(one, other):
+        yield _NOTHING
+    for part, before, after in boxes:
+        for joint in one.joints.values():
+            if joint.parent != part or joint.name not in other.joints:
+                continue
+            for axis in range(3):
+                half = before.geometry.size[axis] / 2
+                offset = joint.origin.xyz[axis] - before.origin.xyz[axis]
+                later = other.joints[joint.name].origin.xyz[axis] - after.origin.xyz[axis]
+                has_changed = abs(after.geometry.size[axis] / 2 - half) > _MOVED_M
+                if has_changed and abs(offset) > _ASIDE * half and abs(later - offset) <= _MOVED_M:
+                    yield joint.child
+
+
+def _boxes(one: Model, other: Model, link: str) -> tuple[_Shape, _Shape] | None:
+    """The upright box that a link shows, before and after."""
+    both = [model.links[link].visuals for model in (one, other) if link in model.links]
+    if len(both) < 2 or not all(both):
+        return None
+    before, after = both[0][0], both[1][0]
+    if not isinstance(before.geometry, Box) or not isinstance(after.geometry, Box):
+        return None
+    if before.geometry == after.geometry or any(before.origin.rpy):
+        return None
+    return _Shape(before.origin, before.geometry), _Shape(after.origin, after.geometry)
+
+
+def _has_moved(one: Model, other: Model) -> bool:
+    """Whether a link lies in another place."""
+    before, after = (kinematics.forward(each, {}) for each in (one, other))
+    common = before.keys() & after.keys()
+    return any(np.abs(before[name] - after[name]).max() > _MOVED_M for name in common)
+
+
+@checks()
+@of_package
+def masses(facts: PackageFacts, tolerances: Tolerances) -> Finding:
+    """The robot weighs what it should.
+
+    All links together weigh {mass_kg} kg, give or take {mass_error%}, and each link with a
+    collision has an inertial. Otherwise half of the points; none without any mass.
+    """
+    mass_kg, error = tolerances["mass_kg"], tolerances["mass_error"]
+    model = _parsed(facts).model
+    if model is None:
+        return _no_robot(msg("Not judged: there is no robot to weigh."))
+    bare = [each.name for each in model.links.values() if each.collisions and not each.inertial]
+    if bare:
+        return Finding(
+            0.5,
+            msg(
+                "The link {link!r} has a collision and no inertial: Gazebo leaves it out.",
+                link=bare[0],
+            ),
+            msg("Give every link that can be bumped into a mass and moments of inertia."),
+        )
+    mass = sum(each.inertial.mass for each in model.links.values() if each.inertial)
+    if abs(mass - mass_kg) > error * mass_kg:
+        return Finding(
+            0.5 if mass else 0,
+            msg(
+                "The robot weighs {weight} in all{links}; expected {wanted}, give or take "
+                "{error:g} %.",
+                weight=_grams(mass),
+                links=_each(model),
+                wanted=_grams(mass_kg),
+                error=100 * error,
+            ),
+            msg("<mass value=...> is in kilograms: 1 g is 0.001.")
+            if mass > 100 * mass_kg
+            else msg("Add up the masses of all links. Is each link there, and has it its mass?"),
+        )
+    return Finding(1, msg("The robot weighs {weight} in all.", weight=_grams(mass)))
+
+
+def _each(model: Model) -> str:
+    """' (base_link 200 g, wheel 30 g)': which link weighs what, where that fits into a line."""
+    masses = [(each.name, each.inertial.mass) for each in model.links.values() if each.inertial]
+    if not 0 < len(masses) <= _FEW:
+        return ""
+    return f" ({', '.join(f'{shown(name)} {_grams(mass)}' for name, mass in masses)})"
+
+
+def _grams(mass_kg: float) -> str:
+    return f"{1000 * mass_kg:.0f} g"
+
+
+@checks()
+@of_package
+def one_source(facts: PackageFacts, tolerances: Tolerances) -> Finding:
+    """Beside Gazebo nothing else publishes joint states.
+
+    No launch file that puts the robot into Gazebo starts a joint_state_publisher. All or nothing.
+    """
+    into = [each for each in facts.launches if spawners(each) or includes_spawner(each)]
+    if not into:
+        return unjudged(
+            msg("Not judged: no launch file puts the robot into Gazebo."),
+            msg("Write that launch file first."),
+        )
+    for launch in into:
+        second = [node for node in launch.nodes if node.package in JOINT_SOURCES]
+        if second:
+            return Finding(
+                0,
+                msg(
+                    "{file} starts {executable} beside Gazebo, which publishes the joints "
+                    "as well: the wheels jump between what turns and what the sliders say.",
+                    file=launch.file,
+                    executable=second[0].executable,
+                ),
+                msg(
+                    "Beside a simulator no joint_state_publisher may run; it belongs into "
+                    "the launch file for RViz alone."
+                ),
+            )
+    return Finding(1, msg("Beside Gazebo nothing else publishes joint states."))
+
+
+@checks.tolerance
+def numbers(value: object) -> None:
+    """Look at the names of properties."""
+    if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+        raise ValueError(f"expected a list of names, found {value!r}")

@@ -1,1 +1,0 @@
-"""The two nodes: robot_state_publisher and joint_state_publisher."""

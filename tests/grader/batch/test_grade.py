@@ -1,0 +1,36 @@
+"""What a worker answers where something is wrong."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from grader.batch import grade
+from grader.batch.pool import Task
+from grader.errors import GraderFailure, NotNow, NotOffered
+from grader.run.processes import levels
+
+
+@pytest.mark.parametrize(
+    ("error", "state"),
+    [
+        (OSError(errno.EMFILE, os.strerror(errno.EMFILE)), "again"),
+        (OSError(errno.ENOENT, os.strerror(errno.ENOENT)), "failed"),
+        (NotNow("a trial took 20 s"), "again"),
+        (NotOffered("there is less here"), "unfit"),
+        (GraderFailure("the simulator died"), "failed"),
+    ],
+)
+def test_only_what_may_pass_is_to_be_tried_again(
+    monkeypatch: pytest.MonkeyPatch, error: Exception, state: str
+) -> None:
+    def make(task: Task) -> None:
+        raise error
+
+    monkeypatch.setattr(grade, "make", make)
+    monkeypatch.setattr(levels, "_only", "")
+    task = Task("a", (), Path("a.py"), "", "square", "virtual", None, None, Path("x"))
+    answer = grade.done(task)
+    assert answer.state == state
+    assert str(error) in str(answer.message)

@@ -1,0 +1,42 @@
+"""Time as the submission sees it."""
+
+import math
+import time
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from grader.run.clock import surroundings
+from grader.run.clock.scheduler import Scheduler
+from grader.run.lockstep import faults
+
+ASKED_NS: list[int] = []
+
+
+@pytest.fixture
+def scheduler(monkeypatch: pytest.MonkeyPatch) -> Scheduler:
+    scheduler = Scheduler()
+    monkeypatch.setattr(scheduler, "sleep", ASKED_NS.append)
+    monkeypatch.setattr(surroundings, "SCHEDULER", scheduler, raising=False)
+    return scheduler
+
+
+@pytest.mark.usefixtures("scheduler")
+@pytest.mark.parametrize("seconds", [-1, -0.5, math.nan, math.inf, "1", None, [], 1j])
+def test_sleeping_wrongly_is_the_program_s_mistake_in_python_s_words(seconds: Any) -> None:
+    with pytest.raises((TypeError, ValueError, OverflowError)) as real:
+        time.sleep(seconds)
+    with pytest.raises(type(real.value)) as ours:
+        surroundings._sleep(seconds)
+    assert str(ours.value) == str(real.value)
+    assert faults.whose(ours.value) == ""
+
+
+@pytest.mark.usefixtures("scheduler")
+@pytest.mark.parametrize(("seconds", "ns"), [(0, 0), (1, 10**9), (0.25, 250_000_000)])
+def test_sleeping_is_the_scheduler_s_work(seconds: float, ns: int) -> None:
+    ASKED_NS.clear()
+    surroundings._sleep(seconds)
+    assert [ns] == ASKED_NS
+    assert Fraction(ns, 10**9) == seconds

@@ -1,0 +1,18 @@
+import pytest
+import rclpy.executors
+
+from grader.run.clock import executor
+
+
+def test_an_unknown_rclpy_keeps_its_own_function(monkeypatch: pytest.MonkeyPatch) -> None:
+    original = rclpy.executors.Executor._wait_for_ready_callbacks
+    monkeypatch.setattr(executor, "KNOWN", {})
+    executor.install()
+    assert rclpy.executors.Executor._wait_for_ready_callbacks is original
+
+
+def test_the_installed_rclpy_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    original = rclpy.executors.Executor._wait_for_ready_callbacks
+    monkeypatch.setattr(rclpy.executors.Executor, "_wait_for_ready_callbacks", original)
+    executor.install()
+    assert rclpy.executors.Executor._wait_for_ready_callbacks is not original

@@ -1,0 +1,34 @@
+"""Where rclpy is made otherwise than we know, what a witness has seen counts for nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+
+import pytest
+import rclpy.action.client
+import rclpy.publisher
+
+from grader.run.observe import account, hooks
+from grader.run.observe.witness import Witness
+
+
+@pytest.mark.parametrize(
+    ("install", "module", "name"),
+    [
+        (hooks.install, rclpy.publisher, "Publisher"),
+        (hooks.install_actions, rclpy.action.client, "ActionClient"),
+    ],
+)
+def test_of_an_unknown_rclpy_a_witness_says_that_it_is_blind(
+    monkeypatch: pytest.MonkeyPatch,
+    install: Callable[[Witness], None],
+    module: object,
+    name: str,
+) -> None:
+    monkeypatch.delattr(module, name)
+    page = account.make()
+    install(Witness(page, "/", lambda: 0.0, lambda kind, entity: lambda: False))
+    assert json.loads(account.read(page)[0])["is_blind"]
+    os.close(page)

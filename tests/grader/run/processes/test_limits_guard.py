@@ -1,0 +1,122 @@
+"""What a family of processes uses, and what ends it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from grader import linux
+from grader.run.limits import MIB, RunLimits
+from grader.run.processes.limits_guard import Family, LimitsGuard
+
+TELLS_FILES = bool(Path("/proc/self/fd").stat().st_size)
+#: Only a failing test waits so long [s].
+DEADLINE_S = 30.0
+#: A child with 100 MiB and a thread, and two of its own that share these.
+FAMILY = """
+import os, sys, threading
+kept = b"x" * (100 << 20)
+threading.Thread(target=threading.Event().wait, daemon=True).start()
+for _ in range(2):
+    if not os.fork():
+        sys.stdin.read()
+        os._exit(0)
+print("ready", flush=True)
+sys.stdin.read()
+"""
+
+
+@contextmanager
+def family() -> Iterator[int]:
+    with subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-I", "-S", "-c", FAMILY],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    ) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == b"ready\n"
+        yield child.pid
+
+
+def test_all_descendants_count_and_what_they_share_once() -> None:
+    found = Family(os.getpid())
+    before = found.usage().tasks, found.private_memory_bytes()
+    with family():
+        assert found.usage().tasks == before[0] + 4
+        assert found.usage().memory_bytes > 300 * MIB
+        assert 100 * MIB < found.private_memory_bytes() - before[1] < 150 * MIB
+
+
+def test_an_ancestor_does_not_count() -> None:
+    with family() as child:
+        assert Family(child).usage().tasks == 2
+
+
+def test_whose_parent_ends_during_a_look_is_found_by_the_next(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """He has told of a parent that is not there any more, and has another one by now."""
+    gone = 1 << 30
+    look = linux.process_stat
+    with family() as child:
+
+        def look_before(pid: int) -> linux.ProcessStat:
+            seen = look(pid)
+            return seen._replace(parent=gone) if pid == child else seen
+
+        found = Family(os.getpid())
+        with monkeypatch.context() as during:
+            during.setattr(linux, "process_stat", look_before)
+            before = found.usage().tasks
+        assert found.usage().tasks == before + 4
+
+
+def test_a_process_that_does_not_exist_has_no_family() -> None:
+    assert Family(1 << 30).usage() == (0, 0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        (RunLimits(family_bytes=50 * MIB), "used more than 50 MiB of memory"),
+        (RunLimits(tasks=-10), "-10 processes and threads"),
+        pytest.param(
+            RunLimits(family_files=8),
+            "open files and sockets at once",
+            marks=pytest.mark.skipif(not TELLS_FILES, reason="this Linux does not tell"),
+        ),
+    ],
+)
+def test_too_much_ends_them(limits: RunLimits, said: str) -> None:
+    ended = threading.Event()
+    with family():
+        guard = LimitsGuard(os.getpid(), ended.set, limits)
+        assert ended.wait(DEADLINE_S)
+        guard.stop()
+    assert said in str(guard.remark)
+
+
+def test_the_last_look_finds_what_came_after_the_one_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("grader.run.processes.limits_guard.EVERY_S", DEADLINE_S)
+    ended = threading.Event()
+    with family():
+        guard = LimitsGuard(os.getpid(), ended.set, RunLimits(family_bytes=50 * MIB))
+        assert guard.look_last()
+    assert ended.is_set()
+    assert "used more than 50 MiB of memory" in str(guard.remark)
+
+
+def test_the_last_look_lets_be_who_takes_little() -> None:
+    ended = threading.Event()
+    with family():
+        assert not LimitsGuard(os.getpid(), ended.set).look_last()
+    assert not ended.is_set()

@@ -1,0 +1,252 @@
+"""Nothing that a submission starts outlives its run."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from ctypes import CDLL
+from pathlib import Path
+
+import psutil
+import pytest
+
+from grader import linux, scratch
+from grader.run.processes import fork_server_main, started_process, supervisor
+from grader.run.processes.fork_server import ForkServer
+from grader.run.processes.fork_server_main import ProcessCommand
+from grader.run.processes.started_process import SubmissionProcess, await_ends
+from tests.children import in_child
+
+ROOT = Path(__file__).parents[4]
+#: Stands before a command that is not to make namespaces.
+UNPRIVILEGED = ("setpriv", "--bounding-set", "-sys_admin") if os.geteuid() == 0 else ()
+#: Starts a program that hides as well as it can, says its time, and ends or waits.
+HIDES = """
+import subprocess, sys, time
+subprocess.Popen(["sleep", sys.argv[1]], env={}, start_new_session=True)
+print("hidden", flush=True)
+time.sleep(float(sys.argv[2]))
+"""
+#: A grader with one submission, that says when both are up.
+GRADER = """
+import sys
+from grader.run.processes import started_process
+from grader.run.processes.fork_server_main import ProcessCommand
+from grader.run.run_context import open_context
+started_process.end_on_signals()
+with open_context() as context:
+    command = ProcessCommand([sys.executable, "-c", *sys.argv[1:]], context.env)
+    student = started_process.SubmissionProcess(command)
+    try:
+        print(student.pid, context.folder, flush=True)
+        student.wait(60.0)
+    finally:
+        student.end()
+"""
+
+
+def sleeper(seconds: int) -> list[psutil.Process]:
+    """The processes that sleep so long: the number tells whose they are."""
+    found = psutil.process_iter(["cmdline"])
+    return [p for p in found if p.info["cmdline"] == ["sleep", str(seconds)]]
+
+
+def python(code: str, *words: object) -> SubmissionProcess:
+    command = ProcessCommand([sys.executable, "-c", code, *map(str, words)], os.environ)
+    return SubmissionProcess(command)
+
+
+def unprivileged(env: Mapping[str, str]) -> ForkServer:
+    command = [*UNPRIVILEGED, sys.executable, "-I", "-S", fork_server_main.__file__]
+    return ForkServer(command, env, executes=True)
+
+
+@pytest.fixture(params=["own namespace", "shared namespace"])
+def namespace(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """With and without the right to make a process namespace."""
+    if request.param == "shared namespace":
+        monkeypatch.setattr(started_process, "cold_server", unprivileged)
+    yield request.param
+
+
+def test_a_hidden_descendant_ends_with_the_run(namespace: str) -> None:
+    seconds = 770_000 + os.getpid() % 1000
+    student = python(HIDES, seconds, 0)
+    assert student.wait(20.0) == 0
+    assert sleeper(seconds)  # until then, what it has started may go on
+    student.end()
+    assert not sleeper(seconds)
+
+
+def test_one_run_s_end_leaves_another_alone(namespace: str) -> None:
+    first, second = 771_000 + os.getpid() % 1000, 772_000 + os.getpid() % 1000
+    with ThreadPoolExecutor(2) as pool:  # they end with the threads that have started them
+        short, long = pool.map(python, [HIDES] * 2, [first, second], [0, 1000])
+        assert long.pid
+        assert short.wait(20.0) == 0
+        read_until(long, "hidden")
+        short.end()
+        assert not sleeper(first)
+        assert sleeper(second)
+        long.end(gently=False)
+        assert not sleeper(second)
+
+
+def read_until(student: SubmissionProcess, text: str) -> None:
+    """Wait for what a process prints."""
+    for _ in range(1000):
+        if text in bytes(student._head).decode():
+            return
+        student.wait(0.02)
+    raise AssertionError(student.output())
+
+
+@pytest.mark.parametrize(
+    ("code", "exit_code"),
+    [
+        ("pass", 0),
+        ("raise SystemExit(3)", 3),
+        ("import os; os.kill(os.getpid(), 9)", -9),
+        ("import os; os.abort()", -6),
+    ],
+)
+def test_the_exit_code_is_the_submission_s(code: str, exit_code: int) -> None:
+    student = python(code)
+    assert student.wait(20.0) == exit_code
+    student.end()
+    assert student.poll() == exit_code
+
+
+def test_a_submission_may_clean_up_when_it_is_asked_to_end() -> None:
+    student = python(
+        "import time\ntry:\n print('up', flush=True)\n time.sleep(1000)\n"
+        "except KeyboardInterrupt: print('interrupted')\n"
+    )
+    read_until(student, "up\n")
+    student.end()
+    assert student.output() == "up\ninterrupted\n"
+
+
+def test_a_supervisor_that_is_killed_is_the_submission_s_end() -> None:
+    student = python("import time; time.sleep(1000)")
+    child = psutil.Process(student.pid)
+    student._signal(signal.SIGKILL)
+    assert student.wait(20.0) == -signal.SIGKILL
+    student.end()
+    assert not await_ends([child], 20.0)
+
+
+def test_a_simulator_cannot_be_seen_by_a_submission_with_a_namespace_of_its_own() -> None:
+    if os.geteuid() != 0:
+        pytest.skip("only root is sure to get one")
+    student = python(f"import os; os.kill({os.getpid()}, 0)")
+    assert student.wait(20.0) == 1
+    student.end()
+    assert "ProcessLookupError" in student.output()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_grader_with_all_that_it_has(number: signal.Signals) -> None:
+    grader, student, folder, seconds = graded(700 + number)
+    grader.send_signal(number)
+    grader.communicate(timeout=20)
+    assert not student.is_running()
+    assert not sleeper(seconds)
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("prefix", [(), UNPRIVILEGED])
+def test_a_killed_grader_takes_its_submission_along(prefix: tuple[str, ...]) -> None:
+    grader, _, folder, seconds = graded(774, prefix)
+    family = psutil.Process(grader.pid).children(recursive=True)
+    grader.kill()
+    grader.communicate()
+    assert not await_ends(family, 20.0)
+    assert not sleeper(seconds)
+    with scratch.make_folder():  # the next run
+        assert not folder.exists()
+
+
+def graded(
+    number: int, prefix: tuple[str, ...] = ()
+) -> tuple[subprocess.Popen[str], psutil.Process, Path, int]:
+    """A grader in the middle of its work; its submission, its folder, its hidden sleeper."""
+    seconds = number * 1000 + os.getpid() % 1000
+    grader = subprocess.Popen(
+        [*prefix, sys.executable, "-c", GRADER, HIDES, str(seconds), "1000"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        cwd=ROOT,
+    )
+    assert grader.stdout is not None
+    pid, folder = grader.stdout.readline().split()
+    for _ in range(2000):
+        if sleeper(seconds):
+            break
+    return grader, psutil.Process(int(pid)), Path(folder), seconds
+
+
+def _walkers_are_ended() -> None:
+    linux.control(linux.PR_SET_CHILD_SUBREAPER, 1)
+    linux.signal_at_parents_death(signal.SIGKILL)
+    for _ in range(10):
+        if not os.fork():
+            os.setsid()
+            while True:
+                if os.fork():
+                    os._exit(0)
+    supervisor.end_descendants()
+    with pytest.raises(ChildProcessError):  # who is left would be our child
+        os.waitpid(-1, os.WNOHANG)
+
+
+def test_who_forks_and_ends_all_the_time_is_ended_as_well() -> None:
+    in_child(_walkers_are_ended)
+
+
+def _one_without_its_first_thread_is_ended() -> None:
+    linux.signal_at_parents_death(signal.SIGKILL)
+    child = os.fork()
+    if not child:
+        threading.Thread(target=time.sleep, args=(1000,)).start()
+        CDLL(None).pthread_exit(None)
+    while psutil.Process(child).status() != psutil.STATUS_ZOMBIE:
+        time.sleep(0.001)
+    supervisor.end_descendants()
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+
+
+@pytest.mark.timeout(30)
+def test_who_looks_like_one_that_is_over_is_ended_as_well() -> None:
+    in_child(_one_without_its_first_thread_is_ended)
+
+
+def test_a_process_whose_end_nobody_has_asked_for_has_ended() -> None:
+    # a long patience: it ends with the process and not with that
+    with subprocess.Popen(["true"]) as child:
+        os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
+        assert not await_ends([psutil.Process(child.pid)], 1000.0)
+
+
+def test_what_it_held_is_given_back_at_its_end() -> None:
+    looks = """
+import gc, os, sys, threading
+from grader.run.processes.fork_server_main import ProcessCommand
+from grader.run.processes.started_process import SubmissionProcess
+gc.disable()  # what knows itself would be found only by a search for garbage
+for _ in range(2):
+    before = set(os.listdir("/proc/self/fd"))
+    SubmissionProcess(ProcessCommand([sys.executable, "-c", "pass"], os.environ)).end()
+    for thread in set(threading.enumerate()) - {threading.main_thread()}:
+        thread.join()  # who reads its output sees the end of it in its own time
+print(set(os.listdir("/proc/self/fd")) - before)
+"""
+    words = [sys.executable, "-c", looks]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"

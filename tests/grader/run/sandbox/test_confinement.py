@@ -1,0 +1,328 @@
+"""What a confined process is refused, at each level, as root and as an ordinary user.
+
+Each is a real process, confined as a submission's is. A lower level is had by refusing what the
+better one needs, as a container does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+TESTS = Path(__file__).parents[3]
+ROOT = TESTS.parent
+#: "root, open": others may read what root's Python is made of.
+USERS = ["root", "user"] if os.geteuid() == 0 else ["user"]
+#: Tries everything once, and says what came of it: "done", or the name of the error.
+TRIES = r"""
+import ctypes, errno, json, os, resource, signal, socket, sys
+told = json.loads(sys.argv[1])
+libc = ctypes.CDLL(None, use_errno=True)
+found = {}
+found["fds"] = [os.readlink("/proc/self/fd/%d" % n).partition(":")[0] for n in range(100)
+                if os.path.exists("/proc/self/fd/%d" % n)]
+
+def attempt(name, do):
+    try:
+        value = do()
+        found[name] = "done" if value is None else value
+    except OSError as error:
+        found[name] = errno.errorcode[error.errno]
+
+def call(function, *words):
+    words = [ctypes.c_long(w) if isinstance(w, int) else w for w in words]
+    if getattr(libc, function)(*words) < 0:
+        raise OSError(ctypes.get_errno(), "")
+
+def read(path):
+    open(path, "rb").read(1)
+
+def write(path, size=1):
+    with open(path, "ab") as file:
+        for _ in range(size):
+            file.write(bytes(1 << 20) if size > 1 else b"x")
+
+def connect(family, address):
+    with socket.socket(family, socket.SOCK_STREAM) as one:
+        one.connect(address)
+
+def udp():
+    one, other = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
+    one.bind(("127.0.0.1", 0))
+    other.sendto(b"x", one.getsockname())
+    one.settimeout(5)
+    one.recv(9)
+
+for name, path in told["paths"].items():
+    attempt("read " + name, lambda: read(path))
+    attempt("write " + name, lambda: write(path + ".new" if os.path.isfile(path) else path))
+attempt("list /", lambda: sorted(os.listdir("/")))
+attempt("list own", lambda: sorted(os.listdir(".")))
+grader = int(os.environ["GRADER"])
+attempt("pids", lambda: len([n for n in os.listdir("/proc") if n.isdigit()]))
+for name in ("mem", "environ", "maps", "fd", "cwd", "cmdline"):
+    for who, pid in (("grader", grader), ("parent", os.getppid()), ("outside", told["outside"])):
+        at = "/proc/%d/%s" % (pid, name)
+        attempt("%s of %s" % (name, who), lambda: os.listdir(at) and None if name == "fd"
+                else os.readlink(at) and None if name == "cwd" else read(at))
+attempt("signal grader", lambda: os.kill(grader, 0))
+attempt("signal outside", lambda: os.kill(told["outside"], 0))
+attempt("signal parent", lambda: os.kill(os.getppid() or grader, 0))
+attempt("ptrace", lambda: call("ptrace", 16, grader, 0, 0))
+attempt("read memory", lambda: call("process_vm_readv", grader, 0, 0, 0, 0, 0))
+attempt("umount /proc", lambda: call("umount2", b"/proc", 2))
+attempt("umount /tmp", lambda: call("umount2", b"/tmp", 2))
+attempt("mount", lambda: call("mount", b"none", b"/tmp", b"tmpfs", 0, b""))
+attempt("remount", lambda: call("mount", b"none", b"/", b"", 32 | 4096, b""))
+attempt("unshare", lambda: call("unshare", 0x10000000))
+attempt("setns", lambda: call("setns", os.open("/proc/self/ns/net", os.O_RDONLY), 0))
+attempt("chroot", lambda: os.chroot("."))
+attempt("setuid", lambda: os.setuid(0))
+attempt("packets", lambda: socket.socket(17, socket.SOCK_RAW).close())
+attempt("crypto", lambda: socket.socket(38, socket.SOCK_SEQPACKET).close())
+attempt("udp", udp)
+attempt("tcp outside", lambda: connect(socket.AF_INET, ("127.0.0.1", told["port"])))
+attempt("unix outside", lambda: connect(socket.AF_UNIX, told["socket"]))
+attempt("abstract outside", lambda: connect(socket.AF_UNIX, told["abstract"]))
+attempt("terminal", lambda: read("/dev/tty"))
+attempt("ptmx", lambda: read("/dev/ptmx"))
+tmp = os.environ["TMPDIR"]
+attempt("tmp", lambda: write(tmp + "/x"))
+attempt("null", lambda: write("/dev/null"))
+attempt("stderr", lambda: open("/dev/stderr", "w").close())
+attempt("tmp is empty", lambda: os.listdir(tmp) == ["x"])
+attempt("fill", lambda: write(tmp + "/y", 100))
+try:
+    os.remove(tmp + "/y")
+except OSError:
+    pass
+found["status"] = dict(line.split(":\t") for line in open("/proc/self/status").read().splitlines()
+                       if line.startswith(("Cap", "NoNew", "Seccomp:", "Groups", "Sig")))
+found["uid"] = [os.getuid(), os.geteuid(), os.getgid()]
+found["core"] = resource.getrlimit(resource.RLIMIT_CORE)
+found["group"] = os.getpgrp() == os.getpid()
+found["home"] = os.environ.get("HOME")
+print(json.dumps(found))
+"""
+#: Where nothing else would be refused, nothing else is tried: it would be done.
+LOOKS = r"""
+import json, os, resource, sys
+found = {"core": resource.getrlimit(resource.RLIMIT_CORE), "group": os.getpgrp() == os.getpid()}
+found["fds"] = [os.readlink("/proc/self/fd/%d" % n).partition(":")[0] for n in range(100)
+                if os.path.exists("/proc/self/fd/%d" % n)]
+found["status"] = dict(line.split(":\t") for line in open("/proc/self/status").read().splitlines()
+                       if line.startswith("NoNew"))
+print(json.dumps(found))
+"""
+
+
+@dataclass
+class Tried:
+    """What a confined process has tried."""
+
+    user: str
+    level: str
+    found: dict[str, Any] = field(default_factory=dict)
+
+    def assert_refused(self, *names: str) -> None:
+        done = [name for name in names if not str(self.found[name]).startswith("E")]
+        assert not done, {name: self.found[name] for name in done}
+
+    def assert_done(self, *names: str) -> None:
+        assert {name: self.found[name] for name in names} == dict.fromkeys(names, "done")
+
+
+@pytest.fixture(scope="module")
+def run() -> Iterator[Any]:
+    """Run a program confined, and tell what it has tried; each kind of it once."""
+    runs: dict[tuple[str, ...], Tried] = {}
+    with ExitStack() as stack:
+        outer = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        outer.chmod(0o755)
+        for name in ("submission", "neighbour", "home", "scratch"):
+            (outer / name).mkdir()
+            (outer / name / "file.txt").write_text("x")
+        for name in ("scratch", "neighbour", "home"):
+            (outer / name).chmod(0o777)
+        (outer / "submission" / "tries.py").write_text(TRIES)
+        (outer / "submission" / "looks.py").write_text(LOOKS)
+        listener = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
+        by_path, abstract = (stack.enter_context(socket.socket(socket.AF_UNIX)) for _ in range(2))
+        by_path.bind(str(outer / "socket"))
+        (outer / "socket").chmod(0o777)
+        abstract.bind(f"\0{outer}")
+        for each in (by_path, abstract):
+            each.listen()
+        outside = subprocess.Popen(["sleep", "1000"])
+        stack.callback(outside.wait)
+        stack.callback(outside.kill)
+        told = {
+            "paths": {
+                "own": "file.txt",
+                "own folder": "new.txt",
+                "neighbour": str(outer / "neighbour" / "file.txt"),
+                "home": str(outer / "home" / "file.txt"),
+                "exercise": str(ROOT / "grader/exercises/turtlesim_challenge/exercise.yaml"),
+                "judge": str(ROOT / "grader/grading.py"),
+                "solution": str(ROOT / "turtlesim_challenge/__init__.py"),
+                "git": str(ROOT / "pyproject.toml"),
+                "passwords": "/etc/shadow",
+                "kernel": "/proc/sys/kernel/core_pattern",
+                "python": os.__file__,
+                "usr": "/usr/bin/env",
+                "host": str(ROOT / "grader/run/student/main.py"),
+            },
+            "outside": outside.pid,
+            "port": listener.getsockname()[1],
+            "socket": str(outer / "socket"),
+            "abstract": f"\0{outer}",
+        }
+
+        def run(user: str, level: str, *lacking: str) -> Tried:
+            if (user, level, *lacking) not in runs:
+                refused = {
+                    "namespaces": list(lacking),
+                    "landlock": ["namespaces"],
+                    "limits": ["namespaces", "landlock"],
+                }[level]
+                python = [sys.executable]
+                program = "looks.py" if level == "limits" else "tries.py"
+                words = [*python, str(TESTS / "confined.py"), level, str(outer / "submission")]
+                words += [program, json.dumps(told)]
+                if refused:
+                    words = [*python, str(TESTS / "refusing.py"), ",".join(refused), *words]
+                if os.geteuid() == 0 and user != "root":
+                    more = ["--root"] if user == "root, open" else []
+                    words = [*python, str(TESTS / "as_user.py"), *more, *words]
+                env = {**os.environ, "TMPDIR": str(outer / "scratch"), "HOME": str(outer / "home")}
+                done = subprocess.run(words, env=env, capture_output=True, text=True, check=False)
+                name, _, rest = done.stdout.partition("\n")
+                if done.returncode == 0 and name.split(" ")[0] != level:
+                    pytest.skip(f"{level} is not to be had here: {name} {done.stderr[-500:]}")
+                assert rest.startswith("{"), rest + done.stderr
+                names = {path.name for path in (outer / "submission").iterdir()}
+                assert names == {"file.txt", "looks.py", "tries.py"}  # it has written into a copy
+                runs[user, level, *lacking] = Tried(user, level, json.loads(rest))
+            return runs[user, level, *lacking]
+
+        yield run
+
+
+@pytest.fixture(params=["namespaces", "landlock"])
+def level(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(params=[*USERS, "root, open"] if "root" in USERS else USERS)
+def user(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture
+def tried(run: Any, user: str, level: str) -> Tried:
+    result: Tried = run(user, level)
+    return result
+
+
+def test_it_reads_python_and_what_was_handed_in_and_writes_one_folder(tried: Tried) -> None:
+    tried.assert_done(
+        *("read own", "write own", "write own folder"),
+        *("read python", "read usr", "read host", "tmp", "null", "udp", "stderr"),
+    )
+    assert {"file.txt", "looks.py", "tries.py"} <= set(tried.found["list own"])
+    assert tried.found["tmp is empty"] is (tried.level == "landlock")
+
+
+def test_it_reads_nothing_else(tried: Tried) -> None:
+    places = ("neighbour", "home", "exercise", "judge", "solution", "git", "passwords")
+    tried.assert_refused(*(f"read {place}" for place in places))
+    if tried.level == "namespaces":
+        assert not {"home", "sys", "run", "var", "srv", "boot"} & set(tried.found["list /"])
+
+
+def test_it_writes_nothing_else(tried: Tried) -> None:
+    places = ("neighbour", "home", "usr", "python", "host", "kernel", "judge")
+    tried.assert_refused(*(f"write {place}" for place in places))
+
+
+def test_what_it_can_write_has_an_end(tried: Tried) -> None:
+    assert tried.found["fill"] == ("ENOSPC" if tried.level == "namespaces" else "EFBIG")
+
+
+def test_processes_outside_are_out_of_sight_and_reach(tried: Tried) -> None:
+    for who in ("grader", "parent", "outside"):
+        names = ("mem", "environ", "maps", "fd", "cwd", "cmdline")
+        tried.assert_refused(*(f"{name} of {who}" for name in names))
+    tried.assert_refused("signal grader", "signal outside", "signal parent", "ptrace")
+    tried.assert_refused("read memory")
+    if tried.level == "namespaces":
+        assert tried.found["pids"] == 2  # the namespace's first process, and itself
+    else:
+        tried.assert_refused("pids")
+
+
+def test_nothing_can_be_mounted_uncovered_or_entered(tried: Tried) -> None:
+    tried.assert_refused("umount /proc", "umount /tmp", "mount", "remount")
+    tried.assert_refused("unshare", "setns", "chroot")
+
+
+def test_no_socket_leads_out(tried: Tried) -> None:
+    tried.assert_refused("packets", "crypto", "tcp outside", "unix outside", "abstract outside")
+
+
+def test_there_is_no_terminal(tried: Tried) -> None:
+    tried.assert_refused("terminal", "ptmx")
+
+
+def test_it_has_no_privileges_and_gets_none(tried: Tried) -> None:
+    status = tried.found["status"]
+    sets = ("CapInh", "CapPrm", "CapEff", "CapAmb")
+    if tried.user != "user" or tried.level == "namespaces":
+        sets += ("CapBnd",)  # who has no privileges cannot limit what programs could get
+    assert {name: int(status[name], 16) for name in sets} == dict.fromkeys(sets, 0)
+    assert status["NoNewPrivs"] == "1"
+    assert status["Seccomp"] == "2"
+    if tried.level == "namespaces" or tried.user == "root, open":
+        assert 0 not in tried.found["uid"]
+        tried.assert_refused("setuid")
+        if tried.user != "user":
+            assert status["Groups"].strip() == ""
+    assert tried.found["core"] == [0, 0]
+
+
+def test_nothing_is_inherited(tried: Tried) -> None:
+    assert tried.found["fds"] == ["/dev/null", "pipe", "pipe"]
+    assert tried.found["group"]
+    status = tried.found["status"]
+    assert int(status["SigBlk"], 16) == 0
+    of_glibc = 3 << 31  # its own two, 32 and 33, which nobody else can set
+    # Python ignores SIGPIPE and SIGXFSZ
+    assert int(status["SigIgn"], 16) & ~of_glibc == 1 << 12 | 1 << 24
+    assert int(status["SigCgt"], 16) == 1 << 1  # and handles SIGINT
+
+
+@pytest.mark.parametrize("user", USERS)
+def test_an_older_kernel_mounts_one_after_the_other(run: Any, user: str) -> None:
+    tried = run(user, "namespaces", "mount_setattr")
+    test_it_reads_python_and_what_was_handed_in_and_writes_one_folder(tried)
+    test_it_writes_nothing_else(tried)
+
+
+@pytest.mark.parametrize("user", USERS)
+def test_limits_hold_without_anything_else(run: Any, user: str) -> None:
+    tried = run(user, "limits")
+    assert tried.found["status"]["NoNewPrivs"] == "1"
+    assert tried.found["core"] == [0, 0]
+    assert tried.found["fds"] == ["/dev/null", "pipe", "pipe"]
+    assert tried.found["group"]

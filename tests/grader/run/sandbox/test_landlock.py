@@ -1,0 +1,286 @@
+"""Landlock: each rule at work in a child, and what kernels of before do without it."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import socket
+import stat
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.run.sandbox import landlock
+from tests.children import error_of, in_child
+
+EACCES, EPERM, EXDEV = errno.EACCES, errno.EPERM, errno.EXDEV
+#: Of /dev/urandom: asks how good it is. Any process may.
+RNDGETENTCNT = 0x80045200
+#: Where programs and their libraries are.
+SYSTEM = [path for path in ("/usr", "/bin", "/lib", "/lib64") if Path(path).exists()]
+
+
+def needs(version: int) -> pytest.MarkDecorator:
+    return pytest.mark.skipif(landlock.abi() < version, reason=f"no Landlock ABI {version} here")
+
+
+@pytest.fixture
+def places(tmp_path: Path) -> Path:
+    """Folders to `read`, to `write`, and `hidden` ones, with a file in each."""
+    for name in ("read", "write", "hidden"):
+        (tmp_path / name / "sub").mkdir(parents=True)
+        (tmp_path / name / "file").write_text(name)
+    return tmp_path
+
+
+def confined(places: Path, act: Callable[[Path], Any], max_abi: int = 1 << 16) -> Any:
+    """What is found by something that is done below `places`."""
+
+    def do() -> Any:
+        read = [str(places / "read"), *SYSTEM, str(places / "is not there")]
+        landlock.restrict(read, [str(places / "write")], max_abi=max_abi)
+        return act(places)
+
+    return in_child(do)
+
+
+@needs(1)
+def test_files_are_read_where_that_is_allowed_only(places: Path) -> None:
+    def act(at: Path) -> list[Any]:
+        return [
+            (at / "read/file").read_text(),
+            (at / "write/file").read_text(),
+            sorted(path.name for path in (at / "read").iterdir()),
+            error_of((at / "hidden/file").read_text),
+            error_of(os.listdir, at / "hidden"),
+            error_of(os.listdir, at),
+            error_of((at / "read/../hidden/file").read_text),
+        ]
+
+    found = confined(places, act)
+    assert found == ["read", "write", ["file", "sub"], EACCES, EACCES, EACCES, EACCES]
+
+
+@needs(1)
+def test_a_link_leads_nowhere_else(places: Path) -> None:
+    (places / "read/link").symlink_to(places / "hidden/file")
+
+    def act(at: Path) -> list[int]:
+        (at / "write/link").symlink_to(at / "hidden/file")
+        return [
+            error_of((at / "read/link").read_text),
+            error_of((at / "write/link").read_text),
+            error_of((at / "write/link").write_text, "x"),
+            error_of(os.link, at / "hidden/file", at / "write/hard"),
+        ]
+
+    # a hard link from folder to folder is a file that moves
+    assert confined(places, act) == [EACCES, EACCES, EACCES, EXDEV]
+
+
+@needs(1)
+def test_nothing_is_changed_where_only_reading_is_allowed(places: Path) -> None:
+    def act(at: Path) -> list[int]:
+        return [
+            error_of(call, *arguments)
+            for folder in (at / "read", at / "hidden")
+            for call, *arguments in (
+                ((folder / "file").write_text, "x"),
+                (os.open, folder / "new", os.O_CREAT | os.O_WRONLY),
+                (os.unlink, folder / "file"),
+                (os.mkdir, folder / "new"),
+                (os.rmdir, folder / "sub"),
+                (os.symlink, "file", folder / "new"),
+                (os.mkfifo, folder / "new"),
+                (os.rename, folder / "file", folder / "new"),
+            )
+        ]
+
+    assert set(confined(places, act)) == {EACCES}
+
+
+@needs(1)
+def test_anything_is_made_in_what_may_be_written(places: Path) -> None:
+    def act(at: Path) -> list[int]:
+        folder = at / "write"
+        with socket.socket(socket.AF_UNIX) as listener:
+            bound = error_of(listener.bind, str(folder / "socket"))
+        return [
+            bound,
+            *(
+                error_of(call, *arguments)
+                for call, *arguments in (
+                    ((folder / "new").write_text, "x"),
+                    (os.mkdir, folder / "folder"),
+                    (os.rename, folder / "new", folder / "other"),
+                    (os.symlink, "file", folder / "link"),
+                    (os.mkfifo, folder / "fifo"),
+                    (os.link, folder / "file", folder / "hard"),
+                    (os.rmdir, folder / "folder"),
+                    (os.unlink, folder / "link"),
+                )
+            ),
+        ]
+
+    assert confined(places, act) == [0] * 9
+
+
+@needs(1)
+@pytest.mark.skipif(os.getuid() != 0, reason="only root may make devices")
+@pytest.mark.parametrize("kind", [stat.S_IFCHR, stat.S_IFBLK])
+def test_no_devices_are_made_by_root_either(places: Path, kind: int) -> None:
+    def act(at: Path) -> int:
+        return error_of(os.mknod, at / "write/device", kind | 0o600, os.makedev(1, 3))
+
+    assert confined(places, act) == EACCES
+
+
+@needs(1)
+def test_programs_run_where_reading_is_allowed_only(places: Path) -> None:
+    for name in ("read", "hidden"):
+        (places / name / "program").write_bytes(Path("/bin/true").read_bytes())
+        (places / name / "program").chmod(0o755)
+
+    def act(at: Path) -> list[int]:
+        run = subprocess.call
+        return [error_of(run, [at / name / "program"]) for name in ("read", "hidden")]
+
+    assert confined(places, act) == [0, EACCES]
+
+
+@needs(1)
+def test_a_single_file_can_be_allowed(places: Path) -> None:
+    def act() -> list[Any]:
+        landlock.restrict([str(places / "read/file")], ["/dev/null", str(places / "write/file")])
+        (places / "write/file").write_text("changed")
+        Path("/dev/null").write_text("nothing")
+        return [
+            (places / "read/file").read_text(),
+            error_of((places / "read/file").write_text, "x"),
+            error_of(os.listdir, places / "read"),
+        ]
+
+    assert in_child(act) == ["read", EACCES, EACCES]
+    assert (places / "write/file").read_text() == "changed"
+
+
+@needs(1)
+def test_what_is_open_stays_open_and_what_is_started_is_confined_too(places: Path) -> None:
+    file = os.open(places / "hidden/file", os.O_RDONLY)
+
+    def act(at: Path) -> list[Any]:
+        command = f"cat {at}/hidden/file || cat {at}/read/file"
+        told = subprocess.run(
+            ["/bin/sh", "-c", command], capture_output=True, text=True, check=False
+        )
+        return [os.read(file, 10).decode(), told.stdout]
+
+    assert confined(places, act) == ["hidden", "read"]
+    os.close(file)
+
+
+@needs(1)
+def test_it_can_only_become_stricter(places: Path) -> None:
+    def act(at: Path) -> list[int]:
+        landlock.restrict([str(at)], [str(at)])
+        return [error_of((at / "hidden/file").read_text), error_of((at / "read/file").read_text)]
+
+    assert confined(places, act) == [EACCES, 0]
+
+
+@needs(2)
+def test_files_move_between_folders_that_may_be_written(places: Path) -> None:
+    def act(at: Path) -> int:
+        return error_of(os.rename, at / "write/file", at / "write/sub/file")
+
+    assert confined(places, act, max_abi=1) == EXDEV
+    assert confined(places, act) == 0
+
+
+@needs(3)
+def test_no_file_is_truncated_from_afar(places: Path) -> None:
+    def act(at: Path) -> list[int]:
+        found = [error_of(os.truncate, at / name / "file", 0) for name in ("hidden", "read")]
+        return [*found, error_of(os.truncate, at / "write/file", 0)]
+
+    assert confined(places, act) == [EACCES, EACCES, 0]
+    assert (places / "hidden/file").read_text() == "hidden"
+    assert confined(places, act, max_abi=2) == [0, 0, 0]
+
+
+def _asks_tcp(port: int) -> list[int]:
+    with socket.socket() as caller, socket.socket() as listener:
+        return [
+            error_of(caller.connect, ("127.0.0.1", port)),
+            error_of(listener.bind, ("127.0.0.1", 0)),
+        ]
+
+
+@needs(4)
+def test_tcp_is_neither_called_nor_listened_to(places: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        assert confined(places, lambda _: _asks_tcp(port)) == [EACCES, EACCES]
+        assert confined(places, lambda _: _asks_tcp(port), max_abi=3) == [0, 0]
+
+
+@needs(4)
+def test_udp_goes_on_for_dds(places: Path) -> None:
+    def act(_: Path) -> int:
+        with socket.socket(type=socket.SOCK_DGRAM) as one:
+            one.bind(("127.0.0.1", 0))
+            return one.sendto(b"x", one.getsockname())
+
+    assert confined(places, act) == 1
+
+
+@needs(5)
+def test_devices_take_no_commands(places: Path) -> None:
+    import fcntl
+
+    def act() -> int:
+        landlock.restrict(["/dev/urandom"], [])
+        with Path("/dev/urandom").open("rb") as device:
+            return error_of(fcntl.ioctl, device, RNDGETENTCNT, bytes(4))
+
+    def act_on_an_older_kernel() -> int:
+        landlock.restrict(["/dev/urandom"], [], max_abi=4)
+        with Path("/dev/urandom").open("rb") as device:
+            return error_of(fcntl.ioctl, device, RNDGETENTCNT, bytes(4))
+
+    assert in_child(act) == EACCES
+    assert in_child(act_on_an_older_kernel) == 0
+
+
+@needs(6)
+def test_signals_stay_inside(places: Path) -> None:
+    def act(_: Path) -> list[int]:
+        own = subprocess.Popen(["/bin/sleep", "60"])
+        os.kill(own.pid, signal.SIGKILL)
+        return [error_of(os.kill, os.getppid(), 0), own.wait()]
+
+    assert confined(places, act) == [EPERM, -signal.SIGKILL]
+    assert confined(places, act, max_abi=5) == [0, -signal.SIGKILL]
+
+
+@needs(6)
+def test_abstract_sockets_of_others_are_out_of_reach(places: Path) -> None:
+    name = f"\0turtlesim-{os.getpid()}"
+
+    def act(_: Path) -> int:
+        with socket.socket(socket.AF_UNIX) as caller:
+            return error_of(caller.connect, name)
+
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(name)
+        server.listen()
+        assert confined(places, act) == EPERM
+        assert confined(places, act, max_abi=5) == 0
+
+
+def test_where_there_is_none_it_is_told() -> None:
+    assert error_of(lambda: landlock.restrict([], [], max_abi=0)) == errno.ENOSYS

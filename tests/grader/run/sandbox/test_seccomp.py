@@ -1,0 +1,384 @@
+"""The system call filter: its program, interpreted here for both machines, and at work."""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import os
+import re
+import resource
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.run.sandbox import seccomp
+from tests.children import NOBODYS_UID, error_of, in_child
+
+needs_seccomp = pytest.mark.skipif(not seccomp.is_there(), reason="no system call filters here")
+ROOT = Path(__file__).parents[4]
+MACHINES = sorted(seccomp.MACHINES)
+EPERM, ENOSYS, EAFNOSUPPORT = errno.EPERM, errno.ENOSYS, errno.EAFNOSUPPORT
+HEADERS = {
+    "x86_64": Path("/usr/include/x86_64-linux-gnu/asm/unistd_64.h"),
+    "aarch64": Path("/usr/include/asm-generic/unistd.h"),
+}
+CLONE_THREAD_OF_GLIBC = 0x3D0F00
+CLONE_NEWUSER = 0x10000000
+#: Linux's own numbers: what Python's socket module has depends on where it was built.
+AF_VSOCK, AF_PACKET, AF_ALG, AF_BLUETOOTH = 40, 17, 38, 31
+NETLINK_AUDIT, IPPROTO_SCTP, IPPROTO_MPTCP = 9, 132, 262
+DGRAM, STREAM, SEQPACKET, RAW = 2, 1, 5, 3
+CLOEXEC = 0o2000000
+LOW = (1 << 32) - 1
+
+
+def interpret(program: list[seccomp.Instruction], words: dict[int, int]) -> int:
+    """What a filter answers to a call, given as the kernel's `struct seccomp_data` by offsets."""
+    word, at = 0, 0
+    while True:
+        code, if_true, if_false, constant = program[at]
+        at += 1
+        if code == seccomp.RETURN:
+            return constant
+        if code == seccomp.LOAD:
+            word = words.get(constant, 0)
+        elif code == seccomp.AND:
+            word &= constant
+        else:
+            holds = {
+                seccomp.JUMP_EQ: word == constant,
+                seccomp.JUMP_GT: word > constant,
+                seccomp.JUMP_SET: bool(word & constant),
+            }[code]
+            at += if_true if holds else if_false
+
+
+def answer(
+    machine: str, number: int | None, *arguments: int, apart: bool = True, arch: int = 0
+) -> int:
+    """The error that a call ends with; 0 where it is allowed."""
+    assert number is not None
+    words = {seccomp.NUMBER_AT: number, seccomp.ARCH_AT: arch or seccomp.MACHINES[machine][1]}
+    for place, argument in enumerate(arguments):
+        words[seccomp.ARGUMENTS_AT + 8 * place] = argument & LOW
+        words[seccomp.ARGUMENTS_AT + 8 * place + 4] = argument >> 32
+    found = interpret(seccomp.program(machine, is_apart=apart), words)
+    if found == seccomp.ALLOW:
+        return 0
+    assert found & ~0xFFFF == seccomp.ERRNO
+    return found & 0xFFFF
+
+
+def every_number(machine: str) -> dict[str, int]:
+    place = seccomp.MACHINES[machine][0]
+    groups = [*seccomp.REFUSED.values(), seccomp.UNKNOWN, seccomp.OF_A_PROCESS]
+    groups.append(seccomp.OF_FILES)
+    names = "clone ioctl fcntl socket socketpair setsockopt prlimit64 sched_setscheduler"
+    names += " setpriority ioprio_set"
+    single = {name: getattr(seccomp, name.upper()) for name in [*names.split(), "seccomp"]}
+    found = {name: numbers[place] for group in [*groups, single] for name, numbers in group.items()}
+    return {name: number for name, number in found.items() if number is not None}
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_numbers_are_those_of_the_kernels_headers(machine: str) -> None:
+    if not HEADERS[machine].exists():
+        pytest.skip("no headers of the kernel here")
+    text = HEADERS[machine].read_text()
+    there = {
+        name: int(number)
+        for name, number in re.findall(r"^#define __NR(?:3264)?_(\w+) (\d+)$", text, re.MULTILINE)
+    }
+    ours = every_number(machine)
+    assert {name: there[name] for name in ours if name in there} == {
+        name: number for name, number in ours.items() if name in there
+    }
+    assert len(ours.keys() & there.keys()) > 50
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_no_number_stands_for_two_calls(machine: str) -> None:
+    numbers = list(every_number(machine).values())
+    assert len(numbers) == len(set(numbers))
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_a_listed_call_is_refused_whatever_its_arguments(machine: str) -> None:
+    place = seccomp.MACHINES[machine][0]
+    for group in seccomp.REFUSED.values():
+        for numbers in group.values():
+            if numbers[place] is not None:
+                assert answer(machine, numbers[place], 1, 2, 3) == EPERM
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_whose_files_are_in_sight_are_not_opened_to_others(machine: str) -> None:
+    place = seccomp.MACHINES[machine][0]
+    for numbers in seccomp.OF_FILES.values():
+        if numbers[place] is not None:
+            assert answer(machine, numbers[place], apart=False) == EPERM
+            assert answer(machine, numbers[place], apart=True) == 0
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_calls_of_other_machines_and_later_kernels_are_unknown(machine: str) -> None:
+    i386, x32_bit = 0x40000003, 0x40000000
+    assert answer(machine, 1, arch=i386) == ENOSYS
+    assert answer(machine, x32_bit | 101) == ENOSYS
+    assert answer(machine, seccomp.NEWEST + 1) == ENOSYS
+    assert answer(machine, LOW) == ENOSYS
+    place = seccomp.MACHINES[machine][0]
+    for numbers in seccomp.UNKNOWN.values():
+        if numbers[place] is not None:
+            assert answer(machine, numbers[place], 1, 2) == ENOSYS
+    assert answer(machine, x32_bit | seccomp.FCNTL[place], 3, seccomp.F_SETLEASE) == ENOSYS
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_threads_and_processes_are_made_but_no_namespaces(machine: str) -> None:
+    number = seccomp.CLONE[seccomp.MACHINES[machine][0]]
+    assert answer(machine, number, CLONE_THREAD_OF_GLIBC) == 0
+    assert answer(machine, number, signal.SIGCHLD) == 0
+    for bit in (17, 25, 26, 27, 28, 29, 30):
+        assert answer(machine, number, 1 << bit | signal.SIGCHLD) == EPERM
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_nothing_is_typed_into_a_terminal(machine: str) -> None:
+    number = seccomp.IOCTL[seccomp.MACHINES[machine][0]]
+    fionread, tiocgwinsz = 0x541B, 0x5413
+    assert [answer(machine, number, 0, request) for request in (fionread, tiocgwinsz)] == [0, 0]
+    for request in (seccomp.TIOCSTI, seccomp.TIOCLINUX, seccomp.TIOCSETD):
+        assert answer(machine, number, 0, request) == EPERM
+        assert answer(machine, number, 0, 1 << 32 | request) == EPERM  # the kernel sees 32 bits
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("apart", [True, False])
+def test_nobody_waits_for_a_file_or_is_told_of_it(machine: str, apart: bool) -> None:
+    number = seccomp.FCNTL[seccomp.MACHINES[machine][0]]
+    f_setfl, f_setlk, f_getlease, f_dupfd_cloexec = 4, 6, 1025, 1030
+    for command in (f_setfl, f_setlk, f_getlease, f_dupfd_cloexec):
+        assert answer(machine, number, 3, command, apart=apart) == 0
+    for command in (seccomp.F_SETLEASE, seccomp.F_NOTIFY, seccomp.F_SETDELEG):
+        assert answer(machine, number, 3, command, apart=apart) == EPERM
+        assert answer(machine, number, 3, 1 << 32 | command, apart=apart) == EPERM
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_limits_and_priorities_are_the_callers_own(machine: str) -> None:
+    place = seccomp.MACHINES[machine][0]
+    for numbers in (seccomp.PRLIMIT64, *seccomp.OF_A_PROCESS.values()):
+        assert answer(machine, numbers[place], 0, 7) == 0
+        assert answer(machine, numbers[place], 4711, 7) == EPERM
+    process, user = 0, 2
+    for numbers, own in ((seccomp.SETPRIORITY, process), (seccomp.IOPRIO_SET, 1)):
+        assert answer(machine, numbers[place], own, 0) == 0
+        assert answer(machine, numbers[place], own, 4711) == EPERM
+        assert answer(machine, numbers[place], user + own, 0) == EPERM
+    ordinary, idle = 0, 5
+    number = seccomp.SCHED_SETSCHEDULER[place]
+    assert answer(machine, number, 4711, ordinary) == 0
+    assert answer(machine, number, 4711, idle) == EPERM
+    assert answer(machine, number, 0, idle) == 0
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("apart", [True, False])
+def test_sockets_are_those_of_dds(machine: str, apart: bool) -> None:
+    def ask(*words: int) -> int:
+        number = seccomp.SOCKET[seccomp.MACHINES[machine][0]]
+        return answer(machine, number, *words, apart=apart)
+
+    elsewhere = 0 if apart else EAFNOSUPPORT
+    for family in (seccomp.AF_INET, seccomp.AF_INET6):
+        assert ask(family, DGRAM, 0) == 0
+        assert ask(family, DGRAM | CLOEXEC, seccomp.IPPROTO_UDP) == 0
+        assert ask(family, STREAM, 0) == elsewhere
+        assert ask(family, STREAM, seccomp.IPPROTO_TCP) == elsewhere
+        assert ask(family, RAW, 1) == EAFNOSUPPORT
+        assert ask(family, SEQPACKET, IPPROTO_SCTP) == EAFNOSUPPORT
+        assert ask(family, STREAM, IPPROTO_MPTCP) == EAFNOSUPPORT
+    assert ask(seccomp.AF_UNIX, STREAM, 0) == elsewhere
+    assert ask(seccomp.AF_NETLINK, RAW, seccomp.NETLINK_ROUTE) == 0
+    assert ask(seccomp.AF_NETLINK, RAW, NETLINK_AUDIT) == EAFNOSUPPORT
+    for family in (0, AF_VSOCK, AF_PACKET, AF_ALG, AF_BLUETOOTH):
+        assert ask(family, STREAM, 0) == EAFNOSUPPORT
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("apart", [True, False])
+def test_a_pair_of_sockets_leads_nowhere_else(machine: str, apart: bool) -> None:
+    def ask(*words: int) -> int:
+        number = seccomp.SOCKETPAIR[seccomp.MACHINES[machine][0]]
+        return answer(machine, number, *words, apart=apart)
+
+    assert ask(seccomp.AF_UNIX, STREAM | CLOEXEC) == 0
+    assert ask(seccomp.AF_UNIX, SEQPACKET) == 0
+    assert ask(seccomp.AF_UNIX, DGRAM) == (0 if apart else EAFNOSUPPORT)
+    assert ask(AF_VSOCK, STREAM) == EAFNOSUPPORT
+
+
+def _as_nobody() -> None:
+    """Without rights: what a call does that the filter has missed is then not the machine's."""
+    if os.getuid() == 0:
+        os.setresgid(*[NOBODYS_UID] * 3)
+        os.setresuid(*[NOBODYS_UID] * 3)
+
+
+def _call_each(numbers: dict[str, int]) -> dict[str, int]:
+    _as_nobody()
+    seccomp.install()
+    libc = ctypes.CDLL(None, use_errno=True)
+    found = {}
+    for name, number in numbers.items():
+        answered = libc.syscall(number, *[ctypes.c_ulong(0)] * 6)
+        found[name] = ctypes.get_errno() if answered == -1 else 0
+    return found
+
+
+@needs_seccomp
+def test_the_kernel_refuses_every_listed_call() -> None:
+    place = seccomp.MACHINES[os.uname().machine][0]
+    numbers = {
+        name: number
+        for group in seccomp.REFUSED.values()
+        for name, each in group.items()
+        if (number := each[place]) is not None
+    }
+    assert in_child(_call_each, numbers) == dict.fromkeys(numbers, EPERM)
+
+
+def _has_more_room() -> bool:
+    with socket.socketpair()[0] as one:
+        before = one.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF)
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, before // 4)
+        return one.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF) != before
+
+
+def _at_work(apart: bool) -> dict[str, Any]:
+    parent = os.getppid()
+    seccomp.install(is_apart=apart)
+    libc = ctypes.CDLL(None, use_errno=True)
+    unshared = libc.unshare(CLONE_NEWUSER), ctypes.get_errno()
+    heard: list[int] = []
+    thread = threading.Thread(target=lambda: heard.append(1))
+    thread.start()
+    thread.join()
+    status = dict(line.split(":\t") for line in Path("/proc/self/status").read_text().splitlines())
+    return {
+        "unshare": unshared,
+        "thread": heard,
+        "program": subprocess.run(
+            [sys.executable, "-I", "-S", "-c", "print(7)"],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout,
+        "unix": error_of(socket.socket, socket.AF_UNIX),
+        "tcp": error_of(socket.socket, socket.AF_INET),
+        "udp": error_of(socket.socket, socket.AF_INET, socket.SOCK_DGRAM),
+        "packet": error_of(socket.socket, AF_PACKET, socket.SOCK_DGRAM),
+        "pair": error_of(socket.socketpair),
+        "limits of another": error_of(resource.prlimit, parent, resource.RLIMIT_CORE, (0, 0)),
+        "room in a socket": _has_more_room(),
+        "own limits": error_of(resource.prlimit, 0, resource.RLIMIT_CORE, (0, 0)),
+        "no new rights": status["NoNewPrivs"],
+        "once more": error_of(seccomp.install),
+    }
+
+
+@needs_seccomp
+@pytest.mark.parametrize("apart", [True, False])
+def test_a_process_goes_on_without_what_is_refused(apart: bool) -> None:
+    elsewhere = 0 if apart else EAFNOSUPPORT
+    assert in_child(_at_work, apart) == {
+        "unshare": [-1, EPERM],
+        "thread": [1],
+        "program": "7\n",
+        "unix": elsewhere,
+        "tcp": elsewhere,
+        "udp": 0,
+        "packet": EAFNOSUPPORT,
+        "pair": 0,
+        "limits of another": EPERM,
+        "room in a socket": False,
+        "own limits": 0,
+        "no new rights": "1",
+        "once more": 0,
+    }
+
+
+def _threads_before() -> list[int]:
+    asked, found = threading.Event(), []
+
+    def ask() -> None:
+        asked.wait()
+        found.append(error_of(socket.socket, AF_PACKET, socket.SOCK_DGRAM))
+
+    thread = threading.Thread(target=ask)
+    thread.start()
+    seccomp.install()
+    asked.set()
+    thread.join()
+    return found
+
+
+@needs_seccomp
+def test_threads_that_were_there_have_it_too() -> None:
+    assert in_child(_threads_before) == [EAFNOSUPPORT]
+
+
+def test_a_machine_that_is_not_known_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = os.uname()
+    other = os.uname_result((*known[:4], "riscv64"))
+    monkeypatch.setattr(os, "uname", lambda: other)
+    assert not seccomp.is_there()
+    with pytest.raises(OSError, match="riscv64") as raised:
+        seccomp.install()
+    assert raised.value.errno == ENOSYS
+
+
+@needs_seccomp
+@pytest.mark.parametrize("apart", [True, False])
+def test_a_node_publishes_to_itself(apart: bool) -> None:
+    code = NODE.format(root=str(ROOT), apart=apart)
+    env = {**os.environ, "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
+    ended = subprocess.run(
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "heard\n", "")
+
+
+NODE = """
+import sys
+sys.path.insert(0, {root!r})
+from grader import linux
+from grader.run import limits
+from grader.run.sandbox import seccomp
+seccomp.install(is_apart={apart})
+for limit in limits.rlimits(is_alone=False):
+    linux.lower_limit(*limit)
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from std_msgs.msg import Empty
+
+rclpy.init()
+node = rclpy.create_node("alone")
+executor = MultiThreadedExecutor(8)
+executor.add_node(node)
+heard = rclpy.task.Future()
+node.create_subscription(Empty, "echo", heard.set_result, 1)
+publisher = node.create_publisher(Empty, "echo", 1)
+node.create_timer(0.01, lambda: publisher.publish(Empty()))
+executor.spin_until_future_complete(heard, timeout_sec=20)
+executor.shutdown()
+print("heard" if heard.done() else "nothing")
+rclpy.shutdown()
+"""

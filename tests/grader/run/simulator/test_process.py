@@ -1,0 +1,115 @@
+"""What a simulator tells while it works: no faster than it is wanted, and never at its own cost."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+
+import pytest
+
+from grader.run.simulator import process
+from grader.run.simulator.process import Telling
+
+TICK_NS = 16_000_000
+
+
+@pytest.fixture
+def ends():
+    ours, theirs = socket.socketpair()
+    with ours:
+        yield ours, theirs.detach()
+
+
+class WallClock:
+    """Time that passes in sleeps alone."""
+
+    def __init__(self) -> None:
+        self.now_s = 100.0
+
+    def monotonic(self) -> float:
+        return self.now_s
+
+    def sleep(self, seconds: float) -> None:
+        self.now_s += seconds
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    made = WallClock()
+    monkeypatch.setattr(process.time, "monotonic", made.monotonic)
+    monkeypatch.setattr(process.time, "sleep", made.sleep)
+    return made
+
+
+def all_of(ours: socket.socket) -> list[object]:
+    text = b""
+    while chunk := ours.recv(1 << 20):
+        text += chunk
+    return [json.loads(line) for line in text.splitlines()]
+
+
+@pytest.mark.parametrize(("speed", "lasts_s"), [(1.0, 16.0), (5.0, 3.2), (None, 0.0)])
+def test_ticks_come_at_the_speed_that_was_asked_for(ends, clock, speed, lasts_s):
+    teller = Telling(ends[1], speed, TICK_NS)
+    began_s = clock.now_s
+    for _ in range(1001):
+        teller.pace()
+    assert clock.now_s - began_s == pytest.approx(lasts_s)
+    teller.close()
+
+
+def test_after_a_pause_nothing_is_hurried(ends, clock):
+    teller = Telling(ends[1], 1.0, TICK_NS)
+    for _ in range(2):
+        teller.pace()
+    clock.now_s += 30.0  # the submission computes
+    began_s = clock.now_s
+    for _ in range(11):
+        teller.pace()
+    assert clock.now_s - began_s == pytest.approx(0.16)
+    teller.close()
+
+
+def test_all_that_is_told_arrives_in_order_however_much_it_is(ends):
+    ours, theirs = ends
+    teller = Telling(theirs, None, TICK_NS)
+    news = [{"tick": tick, "drawn": ["x" * 10_000]} for tick in range(300)]
+
+    def tell() -> None:
+        for each in news:
+            teller.tell(each)
+        teller.close()
+
+    thread = threading.Thread(target=tell)
+    thread.start()
+    assert all_of(ours) == [*news, process.END]
+    thread.join()
+
+
+def test_one_who_takes_nothing_is_waited_for_a_little_and_then_told_no_more(ends, monkeypatch):
+    monkeypatch.setattr(process, "PATIENCE_S", 0.01)
+    monkeypatch.setattr(process, "MOST_BYTES", 100_000)
+    ours, theirs = ends
+    teller = Telling(theirs, None, TICK_NS)
+    for tick in range(200):
+        teller.tell({"tick": tick, "drawn": ["x" * 10_000]})
+    teller.close()
+    told = b""
+    while chunk := ours.recv(1 << 20):
+        told += chunk
+    assert not told.endswith(json.dumps(process.END, separators=(",", ":")).encode() + b"\n")
+
+
+def test_one_who_has_left_is_no_error(ends):
+    ours, theirs = ends
+    teller = Telling(theirs, 1.0, TICK_NS)
+    ours.close()
+    for tick in range(3):
+        teller.tell({"tick": tick})
+    teller.close()
+
+
+def test_where_nobody_looks_on_there_is_nothing(ends):
+    assert Telling.of("", TICK_NS) is None
+    socket.socket(fileno=ends[1]).close()

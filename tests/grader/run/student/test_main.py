@@ -1,0 +1,108 @@
+"""In real time: what drives the scene is connected, several programs are processes of their own."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import pytest
+
+from grader.run.student import main
+
+MAIN = main.__file__
+PROGRAMS = """
+import os, signal, sys
+
+def says():
+    found = [name in sys.modules for name in (__name__, "main", "grader", "rclpy")]
+    sys.stdout.write(f"arguments: {sys.argv[1:]} {found}" + os.linesep)
+
+def fails():
+    print("pid", os.getpid())
+    raise RuntimeError("broken")
+
+def killed():
+    signal.raise_signal(signal.SIGTERM)
+"""
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> types.SimpleNamespace:
+    """A clock that only sleeping moves."""
+    clock = types.SimpleNamespace(now_s=0.0)
+    clock.monotonic = lambda: clock.now_s
+
+    def sleep(seconds: float) -> None:
+        clock.now_s += seconds
+
+    clock.sleep = sleep
+    monkeypatch.setattr(main, "time", clock)
+    return clock
+
+
+def patched(clock: types.SimpleNamespace, connected_s: float) -> type:
+    """A node class whose publishers are connected at a time [s]."""
+
+    class Node:
+        def create_publisher(self, kind: object, name: str) -> types.SimpleNamespace:
+            count = lambda: int(clock.now_s >= connected_s)  # noqa: E731
+            return types.SimpleNamespace(topic_name=name, get_subscription_count=count)
+
+        def create_client(self, kind: object, name: str) -> None:
+            raise AssertionError
+
+    main.Introduced(["/turtle1/cmd_vel"], []).patch(types.SimpleNamespace(Node=Node))
+    return Node
+
+
+@pytest.mark.parametrize(
+    ("name", "waited_s"), [("/turtle1/cmd_vel", 8), ("/turtle/cmd_vel", 4), ("/other", 0)]
+)
+def test_a_name_that_is_there_is_waited_for_longer_than_one_that_may_be_wrong(
+    clock: types.SimpleNamespace, name: str, waited_s: float
+) -> None:
+    patched(clock, connected_s=8.0)().create_publisher(object, name)
+    assert clock.now_s == pytest.approx(waited_s, abs=0.1)
+
+
+def test_names_that_may_be_wrong_are_waited_for_together(clock: types.SimpleNamespace) -> None:
+    node = patched(clock, connected_s=1000.0)()
+    for _ in range(10):
+        node.create_publisher(object, "/turtle/cmd_vel")
+    assert clock.now_s == pytest.approx(4.0, abs=0.1)
+
+
+def launch(folder: Path, *programs: tuple[str, list[str]]) -> subprocess.CompletedProcess[str]:
+    (folder / "programs.py").write_text(PROGRAMS)
+    listed = [[name, f"programs:{name}", arguments] for name, arguments in programs]
+    words = [json.dumps([[], []]), "-1", str(folder), json.dumps(listed)]
+    return subprocess.run(
+        [sys.executable, MAIN, *words], capture_output=True, text=True, check=False
+    )
+
+
+def test_each_gets_its_arguments_and_finds_nothing_of_ours(tmp_path: Path) -> None:
+    run = launch(tmp_path, ("says", ["--ros-args", "-r", "__ns:=/a"]), ("says", []))
+    assert run.returncode == 0, run.stderr
+    assert sorted(run.stdout.splitlines()) == [
+        "arguments: ['--ros-args', '-r', '__ns:=/a'] [True, False, False, False]",
+        "arguments: [] [True, False, False, False]",
+    ]
+
+
+def test_one_that_fails_is_told_and_the_others_are_waited_for(tmp_path: Path) -> None:
+    run = launch(tmp_path, ("fails", []), ("says", []))
+    assert run.returncode == 1
+    assert "arguments: []" in run.stdout
+    assert "RuntimeError: broken" in run.stderr
+    assert "fails has ended with exit code 1" in run.stderr
+    assert MAIN not in run.stderr
+
+
+def test_one_that_is_killed_is_as_if_all_had_been(tmp_path: Path) -> None:
+    run = launch(tmp_path, ("killed", []), ("says", []))
+    assert run.returncode == -signal.SIGTERM

@@ -1,0 +1,382 @@
+"""Runs that are forked from servers are those that start from nothing, only sooner."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import psutil
+import pytest
+
+from grader.errors import GraderFailure
+from grader.recording.recording import Recording
+from grader.run import fork_servers, virtual_time
+from grader.run.handover import Plan
+from grader.run.opening import open_submission
+from grader.run.processes import FORK_SERVER, isolation, levels
+from grader.scenes.scene import Limits
+
+ROOT = Path(__file__).parents[3]
+PLAN = Plan(Limits(first_motion_s=0.5, rest_s=0.2, total_s=5))
+#: What a submission can find out about itself, and what differs from run to run elsewhere.
+PORTRAIT = """
+import os, random, re, resource, signal, sys, tempfile, threading, time, uuid, warnings
+import rclpy
+home = os.path.dirname(os.environ["TMPDIR"]).rstrip("/") or "nowhere"
+def shown(*things):
+    text = " ".join(str(thing).replace(home, "HOME") for thing in things)
+    print(re.sub("0x[0-9a-f]+|[0-9a-f]{32}|started [0-9]+", "X", text))
+shown("argv", sys.argv, sys.flags, sys.orig_argv[:2], sys.orig_argv[4:])
+shown("path", sys.path, sys.meta_path, sys.path_hooks)
+shown("main", vars(sys.modules["__main__"])["__file__"], __name__)
+shown("env", os.environ)
+shown("where", os.getcwd(), tempfile.gettempdir(), os.getpid(), os.getppid(), os.getsid(0))
+fds = [(fd, f"/proc/self/fd/{fd}") for fd in range(64)]
+kinds = [os.readlink(at).partition(":")[0] for fd, at in fds if os.path.exists(at)]
+shown("open", sorted(kinds), sys.stdout, sys.stderr)
+limits = [n for n in range(16) if n != resource.RLIMIT_NPROC]  # that one may leave room for others
+shown("limits", [resource.getrlimit(number) for number in limits])
+shown("signals", [(n, str(signal.getsignal(n)).partition(" at ")[0]) for n in range(1, 32)])
+shown("threads", threading.enumerate(), threading.active_count(), threading.main_thread().name)
+shown("chance", random.random(), uuid.uuid4(), hash("x"), os.urandom(4), list({"a", "b", "c"}))
+shown("more chance", random.Random().random(), random.SystemRandom().random())
+import numpy.random
+shown("numpy", numpy.random.random(), numpy.random.default_rng().random())
+shown("time", time.time(), time.monotonic(), len(warnings.filters))
+def depth(n=0):
+    try:
+        return depth(n + 1)
+    except RecursionError:
+        return n
+shown("depth", depth(), [frame.f_code.co_name for frame in sys._current_frames().values()])
+sys.stdout.flush()
+from geometry_msgs.msg import Twist
+rclpy.init()
+node = rclpy.create_node("driver")
+publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+for _ in range(3):
+    twist = Twist()
+    twist.linear.x = random.random()
+    publisher.publish(twist)
+    time.sleep(random.random())
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def ended_afterwards() -> Iterator[None]:
+    yield
+    fork_servers.close()
+
+
+@pytest.fixture
+def fresh() -> Iterator[None]:
+    """No server is there, and none is afterwards."""
+    fork_servers.close()
+    yield
+    fork_servers.close()
+
+
+@pytest.fixture
+def forgiven() -> Iterator[None]:
+    """The servers that a test has killed are not there afterwards, and count for nothing."""
+    yield
+    for side, each in list(fork_servers._servers.items()):
+        if each._process.poll() is not None:
+            fork_servers._servers.pop(side).close()
+    fork_servers._losses.clear()
+
+
+def forks() -> tuple[int, int]:
+    """How many processes the servers have given."""
+    sides = fork_servers.server(fork_servers.STUDENT), fork_servers.server(fork_servers.SIMULATOR)
+    student, simulator = (0 if side is None else side.forks for side in sides)
+    return student, simulator
+
+
+def graded(text: str, folder: Path) -> Recording:
+    script = folder / "submitted.py"
+    script.write_text(text)
+    with open_submission(script) as submission:
+        return virtual_time.run(submission, PLAN)
+
+
+def lines(recording: Recording) -> list[str]:
+    """What it has printed; lines that rclpy's C++ logs carry the time of the machine."""
+    return re.sub(r"\[\d+\.\d{9}\]", "[when]", recording.output).splitlines()
+
+
+def cold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fork_servers, "server", lambda side: None)
+
+
+@pytest.mark.parametrize(
+    "level",
+    [
+        "private network",
+        pytest.param("user namespace", marks=pytest.mark.more("as the private network")),
+        pytest.param("ROS domain", marks=pytest.mark.more("keeping apart is tested in isolation")),
+    ],
+)
+def test_a_forked_submission_finds_all_that_a_started_one_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, level: str
+) -> None:
+    refused = {
+        "private network": set(),
+        "user namespace": {isolation._as_root},
+        "ROS domain": {isolation._as_root, isolation._as_user},
+    }
+    monkeypatch.setattr(isolation, "_refused", refused[level])
+    monkeypatch.setattr(levels, "_found", {})
+    # the same for both runs, and none that any other grader takes
+    monkeypatch.setattr(isolation, "DOMAINS", (39,))
+    before = forks()
+    forked = graded(PORTRAIT, tmp_path)
+    assert [now - then for now, then in zip(forks(), before, strict=True)] == [1, 1]
+    cold(monkeypatch)
+    started = graded(PORTRAIT, tmp_path)
+    assert started.run.exit_code == 0, started.output
+    assert lines(forked) == lines(started)
+    assert forked.run.trace_sha256 == started.run.trace_sha256
+    assert (forked.run.time, forked.run.flags) == ("virtual", ())
+    assert forked.run.isolation == started.run.isolation
+
+
+@pytest.mark.parametrize(
+    "own",
+    [
+        "numpy.py",
+        "std_msgs/__init__.py",
+        *(
+            pytest.param(name, marks=pytest.mark.more("as the other files"))
+            for name in ("geometry_msgs.py", "lark.py", "zlib.py")
+        ),
+        "lib/std_srvs.py",
+    ],
+)
+def test_a_submission_s_own_module_is_what_it_imports(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: str
+) -> None:
+    folder = tmp_path / "submission"
+    (folder / own).parent.mkdir(parents=True, exist_ok=True)
+    (folder / own).write_text("MINE = 'mine'\n")
+    name = own.partition("/")[0].removesuffix(".py") if "lib/" not in own else "std_srvs"
+    (folder / "main.py").write_text(
+        "import os, sys; sys.path.insert(0, os.path.join(os.path.dirname(__file__), 'lib'))\n"
+        f"import {name}; print(getattr({name}, 'MINE', 'installed'))\n"
+    )
+    # rclpy has loaded numpy before, however it was started
+    expected = "installed\n" if name == "numpy" else "mine\n"
+    with open_submission(folder, "main") as submission:
+        assert virtual_time.run(submission, PLAN).output == expected
+        if name == "numpy":
+            cold(monkeypatch)
+            assert virtual_time.run(submission, PLAN).output == expected
+
+
+def test_a_second_grading_needs_no_new_start(tmp_path: Path) -> None:
+    fork_servers.warm()
+    pids = [side.pid for side in fork_servers._servers.values()]
+    before = forks()
+    for number in (1, 2):
+        recording = graded(f"print({number})", tmp_path)
+        assert recording.output == f"{number}\n"
+        assert [side.pid for side in fork_servers._servers.values()] == pids
+        assert [now - then for now, then in zip(forks(), before, strict=True)] == [number] * 2
+
+
+def test_runs_side_by_side_share_the_servers(tmp_path: Path, fresh: None) -> None:
+    def one(number: int) -> str:
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        return graded(f"print({number})", folder).output
+
+    with ThreadPoolExecutor(3) as pool:
+        assert list(pool.map(one, range(3))) == ["0\n", "1\n", "2\n"]
+    assert forks() == (3, 3)
+    # those who have asked first are gone
+    assert graded("print(4)", tmp_path).output == "4\n"
+    assert forks() == (4, 4)
+
+
+@pytest.mark.parametrize(
+    "side",
+    [
+        fork_servers.STUDENT,
+        pytest.param(fork_servers.SIMULATOR, marks=pytest.mark.more("as the student's")),
+    ],
+)
+def test_a_server_that_dies_costs_a_start_and_nothing_else(
+    tmp_path: Path, forgiven: None, side: str
+) -> None:
+    fork_servers.warm()
+    first = fork_servers._servers[side]
+    first.preloaded()
+    os.kill(first.pid, signal.SIGKILL)
+    first._process.wait()
+    assert graded("print('here')", tmp_path).output == "here\n"
+    assert graded("print('again')", tmp_path).output == "again\n"
+    second = fork_servers._servers[side]
+    assert second is not first
+    assert second.forks >= 1
+
+
+@pytest.mark.parametrize("side", [fork_servers.STUDENT, fork_servers.SIMULATOR])
+def test_a_server_that_dies_in_the_middle_of_a_run_is_the_grader_s_failure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgiven: None, side: str
+) -> None:
+    # what is confined better does not reach the pipe
+    monkeypatch.setattr(levels, "best", lambda isolated: levels.Level("limits"))
+    pipe = tmp_path / "up"
+    os.mkfifo(pipe)
+    # in virtual time it wakes up when the simulator is there
+    text = f"import time; time.sleep(0.1); open({str(pipe)!r}, 'w').close()\nwhile True: pass"
+    with ThreadPoolExecutor(1) as pool:
+        run = pool.submit(graded, text, tmp_path)
+        pipe.read_bytes()
+        os.kill(fork_servers._servers[side].pid, signal.SIGKILL)
+        with pytest.raises(GraderFailure):
+            run.result()
+
+
+@pytest.mark.parametrize(
+    "side",
+    [
+        fork_servers.SIMULATOR,
+        pytest.param(fork_servers.STUDENT, marks=pytest.mark.more("as the simulator's")),
+    ],
+)
+def test_a_server_that_never_comes_up_is_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None, side: str
+) -> None:
+    started = []
+    original = fork_servers.ForkServer
+
+    def broken(command: list[str], env: dict[str, str], *more: str) -> object:
+        if (command == fork_servers.command(side)) is False:
+            return original(command, env, *more)
+        started.append(1)
+        return original([sys.executable, "-S", "-c", "raise SystemExit(1)"], env)
+
+    monkeypatch.setattr(fork_servers, "MOST_LOSSES", 1)
+    monkeypatch.setattr(fork_servers, "ForkServer", broken)
+    for number in range(fork_servers.MOST_LOSSES + 1):
+        assert graded(f"print({number})", tmp_path).output == f"{number}\n"
+    assert len(started) == fork_servers.MOST_LOSSES
+    assert fork_servers.server(side) is None
+
+
+def test_a_changed_environment_is_another_server_s(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fresh: None
+) -> None:
+    says = "import os; print(os.environ.get('TZ'))"
+    monkeypatch.delenv("TZ", raising=False)
+    assert graded(says, tmp_path).output == "None\n"
+    before = list(fork_servers._servers.values())
+    monkeypatch.setenv("MY_OWN", "1")  # which no run would see
+    assert graded(says, tmp_path).output == "None\n"
+    assert list(fork_servers._servers.values()) == before
+    monkeypatch.setenv("TZ", "Asia/Tokyo")
+    assert graded(says, tmp_path).output == "Asia/Tokyo\n"
+    assert not set(before) & set(fork_servers._servers.values())
+    for each in before:
+        each._process.wait(20)
+
+
+@pytest.mark.parametrize(
+    ("names", "value"), [("PYTHONPATH", "relative:/opt/ros"), ("PYTHONPATH", ":/opt/ros")]
+)
+def test_there_is_none_where_the_import_path_depends_on_the_folder(
+    monkeypatch: pytest.MonkeyPatch, names: str, value: str
+) -> None:
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    monkeypatch.setenv(names, value)
+    assert fork_servers.server(fork_servers.STUDENT) is None
+
+
+def test_a_fork_of_the_grader_has_servers_of_its_own() -> None:
+    code = f"""
+import os, sys
+sys.path.insert(0, {str(ROOT)!r})
+from grader.run import fork_servers
+fork_servers.warm()
+ours = {{side.pid for side in fork_servers._servers.values()}}
+child = os.fork()
+if not child:
+    assert not fork_servers._servers
+    theirs = {{fork_servers.server(side).pid for side in ("student", "simulator")}}
+    assert fork_servers.server("student").preloaded()
+    fork_servers.close()
+    os._exit(bool(ours & theirs))
+assert os.waitpid(child, 0)[1] == 0
+assert fork_servers.server("student").preloaded()
+assert {{side.pid for side in fork_servers._servers.values()}} == ours
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
+
+
+def test_servers_end_with_the_program_that_has_graded() -> None:
+    code = f"""
+import sys, threading
+sys.path.insert(0, {str(ROOT)!r})
+from grader.run import fork_servers
+thread = threading.Thread(target=fork_servers.warm)
+thread.start()
+thread.join()
+print(*(side.pid for side in fork_servers._servers.values()))
+"""
+    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True)
+    pids = [int(word) for word in done.stdout.split()]
+    assert len(pids) == 2
+    assert not any(psutil.pid_exists(pid) for pid in pids)
+
+
+def test_warming_up_imports_nothing_heavy() -> None:
+    code = f"""
+import sys
+sys.path.insert(0, {str(ROOT)!r})
+from grader.run import fork_servers
+fork_servers.warm()
+print(*sorted({{"numpy", "rosbags", "rclpy", "PIL", "yaml", "rich"}} & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True)
+    assert done.stdout == b"\n"
+
+
+def test_real_time_starts_none(tmp_path: Path) -> None:
+    from grader.run import real_time
+
+    before = {side: each.forks for side, each in fork_servers._servers.items()}
+    script = tmp_path / "submitted.py"
+    script.write_text("print('here')")
+    with open_submission(script) as submission:
+        assert real_time.run(submission, PLAN).output == "here\n"
+    assert {side: each.forks for side, each in fork_servers._servers.items()} == before
+
+
+REACHES = f"""
+import errno
+import os
+for name in os.listdir("/proc"):
+    if name.isdigit():
+        print(open(f"/proc/{{name}}/cmdline").read().count({FORK_SERVER!r}))
+"""
+
+
+@pytest.mark.applies(os.geteuid() == 0, reason="only root is sure to get one")
+def test_a_submission_with_a_namespace_of_its_own_sees_no_server_but_itself(
+    tmp_path: Path,
+) -> None:
+    # the namespace's first process, and itself: both are forks
+    assert graded(REACHES, tmp_path).output == "1\n1\n"
+
+
+def test_no_thread_of_ours_stays_behind(tmp_path: Path) -> None:
+    graded("print(1)", tmp_path)
+    before = threading.active_count()
+    graded("print(1)", tmp_path)
+    assert threading.active_count() <= before

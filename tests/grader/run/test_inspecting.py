@@ -1,0 +1,209 @@
+"""A submission that is looked at: one confined process, the same findings every time."""
+
+from __future__ import annotations
+
+import sys
+import zipfile
+
+import pytest
+
+import grader
+from grader import judging, scratch
+from grader.errors import ExerciseError, GraderFailure, SubmissionError
+from grader.exercise.loading import load_exercise
+from grader.run import inspecting
+from grader.run.processes import isolation, levels
+from grader.scenes.package.trace import FAILED
+from tests import runs
+from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, recorded, written
+
+NEVER_ENDS = "while True:\n    pass\n"
+FORGES = """
+import os
+for number in range(3, 64):
+    try:
+        os.write(number, b'{"setup": null}')
+    except OSError:
+        pass
+for process in os.listdir("/proc"):
+    for number in range(3, 64):
+        try:
+            with open(f"/proc/{process}/fd/{number}", "wb") as file:
+                file.write(b"[]")
+        except OSError:
+            pass
+"""
+
+
+def shares(result):
+    return {verdict.check: verdict.share for verdict in result.verdicts}
+
+
+def test_two_looks_are_equal_and_are_what_is_found_without_confinement():
+    once, again = (runs.graded(REFERENCE, EXERCISE, number=number) for number in (1, 2))
+    assert once.score == once.max_score == 100
+    assert once.run.trace_sha256 == again.run.trace_sha256 == looked_at(REFERENCE).sha256()
+    assert (once.run.outcome, once.run.ticks, once.run.simulated_s) == ("finished", 0, 0)
+
+
+def test_it_is_confined_as_a_submission_s_process_is():
+    run = runs.recordings(REFERENCE, EXERCISE).nominal.run
+    with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
+        assert run.isolation.startswith(levels.best(isolated).name())
+
+
+def test_a_zip_is_looked_at_as_its_folder_is(tmp_path):
+    path = tmp_path / "walker.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for file in REFERENCE.rglob("*"):
+            if "__pycache__" not in file.parts:
+                archive.write(file, file.relative_to(REFERENCE.parent))
+    assert grader.grade(path, EXERCISE).score == 100
+
+
+def test_of_several_packages_one_can_be_asked_for(tmp_path):
+    for name in ("a_description", "b_description"):
+        manifest = (REFERENCE / "package.xml").read_text()
+        files = {"package.xml": manifest.replace("walker_description", name)}
+        written(tmp_path / name, files)
+    for name in ("a_description", "b_description"):
+        trace = grader.record(tmp_path, EXERCISE, executable=name).nominal.trace
+        assert trace.setup.name == name
+    with pytest.raises(SubmissionError, match="has no package c_description; there is"):
+        grader.record(tmp_path, EXERCISE, executable="c_description")
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [({"a.txt": ""}, "holds no ROS 2 package"), ({}, "holds no ROS 2 package")],
+)
+def test_what_holds_no_package_is_refused(files, words, tmp_path):
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    with pytest.raises(SubmissionError, match=words):
+        grader.grade(tmp_path, EXERCISE)
+
+
+def test_a_single_file_is_refused(tmp_path):
+    file = tmp_path / "walker.urdf"
+    file.write_text("<robot name='a'/>")
+    with pytest.raises(SubmissionError, match=r"neither a folder nor a \.zip"):
+        grader.grade(file, EXERCISE)
+
+
+def test_a_set_up_that_writes_wherever_it_can_spoils_its_own_answer_alone(tmp_path):
+    text = (REFERENCE / "setup.py").read_text()
+    path = written(tmp_path, {"setup.py": f'"""Forges."""\n{FORGES}\n{text}'})
+    result = grader.grade(path, EXERCISE)
+    assert shares(result) == {**dict.fromkeys(EXERCISE.points, 1.0), "installed": 0.0}
+    assert result.run.outcome == "finished"
+
+
+def test_what_a_set_up_leaves_running_is_ended_and_costs_nothing(tmp_path):
+    daemons = """
+import os, time
+for _ in range(8):
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork() == 0:
+            time.sleep(1000)
+        os._exit(0)
+"""
+    text = (REFERENCE / "setup.py").read_text()
+    result = grader.grade(written(tmp_path, {"setup.py": f"{daemons}\n{text}"}), EXERCISE)
+    assert result.score == 100
+
+
+def test_a_launch_file_that_never_ends_costs_what_it_would_have_shown(tmp_path):
+    path = written(tmp_path, {"launch/spawn.launch.py": NEVER_ENDS})
+    result = judging.judge(recorded(looked_at(path, cpu_s=1.0)), EXERCISE)
+    assert shares(result)["launch"] == 0.5
+    assert "did not come to an end" in str(result.diagnosis.cause)
+
+
+def test_a_set_up_that_deletes_the_package_is_told_what_is_missing(tmp_path):
+    delete = "import os, shutil\nshutil.rmtree(os.getcwd(), ignore_errors=True)\n"
+    text = (REFERENCE / "setup.py").read_text()
+    result = grader.grade(written(tmp_path, {"setup.py": f"{delete}{text}"}), EXERCISE)
+    assert result.run.outcome == "finished"
+    assert shares(result)["installed"] == 0
+    assert "there is no such file" in str(result.diagnosis.cause)
+
+
+def test_a_set_up_that_kills_who_looks_is_judged_and_gets_nothing(tmp_path):
+    kill = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
+    result = grader.grade(written(tmp_path, {"setup.py": kill}), EXERCISE)
+    assert result.score == 0
+    assert result.run.outcome == "killed"
+    assert "killed by the signal SIGKILL" in str(result.diagnosis.cause)
+
+
+def test_a_set_up_that_stops_who_looks_is_judged_and_gets_nothing(tmp_path):
+    stop = "import os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
+    result = grader.grade(written(tmp_path, {"setup.py": stop}), EXERCISE)
+    assert result.score == 0
+    assert result.run.outcome == "time_limit"
+    assert result.run.flags == (inspecting.STOPPED,)
+
+
+def test_what_fails_in_the_grader_is_no_fault_of_the_package(monkeypatch):
+    fails = [sys.executable, "-c", f"print('Error: a'); raise SystemExit({FAILED})"]
+    monkeypatch.setattr(inspecting, "command", lambda *_: fails)
+    with pytest.raises(GraderFailure, match=r"failed: Error: a\. That is no fault"):
+        grader.grade(REFERENCE, EXERCISE)
+
+
+def test_a_look_that_comes_to_no_end_is_no_verdict(monkeypatch):
+    sleeps = [sys.executable, "-c", "import time; time.sleep(600)"]
+    monkeypatch.setattr(inspecting, "command", lambda *_: sleeps)
+    monkeypatch.setattr(inspecting, "INSPECTION_S", 0.1)
+    with pytest.raises(GraderFailure, match=r"took more than 0 s"):
+        grader.grade(REFERENCE, EXERCISE)
+
+
+def test_an_exercise_without_nodes_has_no_limits(tmp_path):
+    (tmp_path / "exercise.yaml").write_text(
+        "{exercise: mine, title: Mine, scene: package, limits: {total_s: 5}, points: {a: 1}}"
+    )
+    (tmp_path / "checks.py").write_text("from grader import Checks\n\nchecks = Checks()\n")
+    with pytest.raises(ExerciseError, match="nothing is started in the scene 'package'"):
+        load_exercise(tmp_path)
+    assert EXERCISE.conditions == {}
+
+
+@pytest.mark.parametrize("what", ["stubs", "empty", "prefix", ""])
+def test_a_set_up_that_puts_a_file_where_it_is_looked_at_is_judged(what, tmp_path):
+    code = (
+        "import glob, os, shutil, tempfile\n"
+        "for each in glob.glob(f'{tempfile.gettempdir()}/package-*'):\n"
+        f"    shutil.rmtree(each + '/{what}', ignore_errors=True)\n"
+        f"    open(each.rstrip('/') + '/{what}'.rstrip('/'), 'w').close()\n"
+    )
+    text = (REFERENCE / "setup.py").read_text()
+    result = grader.grade(written(tmp_path, {"setup.py": code + text}), EXERCISE)
+    assert result.run.outcome == "finished"
+    assert min(shares(result).values()) == 0
+
+
+#: Fills every place that it may write to, with files of so many bytes.
+FULL = """
+import os
+import tempfile
+for folder in (tempfile.gettempdir(), os.path.expanduser("~"), "/tmp", os.getcwd()):
+    try:
+        for number in range(20_000):
+            with open(f"{folder}/full{number}", "wb", buffering=0) as file:
+                file.write(bytes(SIZE))
+    except OSError:
+        pass
+"""
+
+
+@pytest.mark.parametrize("size", [2**20, 0], ids=["bytes", "files"])
+def test_a_set_up_that_leaves_no_room_is_judged(size, tmp_path):
+    text = (REFERENCE / "setup.py").read_text()
+    text = f"{FULL.replace('SIZE', str(size))}{text}"
+    result = grader.grade(written(tmp_path, {"setup.py": text}), EXERCISE)
+    assert result.run.outcome == "finished"
+    assert shares(result)["launch"] == 0
+    assert "No space left on device" in str(result.diagnosis.cause)

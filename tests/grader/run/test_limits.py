@@ -1,0 +1,195 @@
+"""The kernel's limits of a process: each is struck in a child."""
+
+from __future__ import annotations
+
+import errno
+import mmap
+import os
+import signal
+import subprocess
+import sys
+import threading
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader import linux
+from grader.run import limits
+from grader.run.limits import GIB, LIMITS, MIB, RunLimits
+from grader.run.processes import supervisor
+from tests.children import NOBODYS_UID, error_of, in_child
+
+resource = pytest.importorskip("resource")
+ROOT = Path(__file__).parents[3]
+
+
+def apply(chosen: RunLimits = LIMITS, *, is_alone: bool = True) -> None:
+    """Limit this process as a submission's is."""
+    for each in limits.rlimits(chosen, is_alone=is_alone):
+        linux.lower_limit(*each)
+
+
+def test_private_memory() -> None:
+    def act() -> str:
+        apply(RunLimits(data_bytes=GIB // 2), is_alone=False)
+        try:
+            bytearray(GIB)
+        except MemoryError:
+            return "refused"
+        return "given"
+
+    assert in_child(act) == "refused"
+
+
+def test_shared_memory_counts_as_addresses() -> None:
+    def act() -> list[int]:
+        has = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        apply(RunLimits(address_bytes=has + 2 * GIB), is_alone=False)
+        return [error_of(mmap.mmap, -1, 4 * GIB), error_of(mmap.mmap, -1, MIB)]
+
+    assert in_child(act) == [errno.ENOMEM, 0]
+
+
+def test_open_files() -> None:
+    def act() -> list[int]:
+        apply(RunLimits(open_files=40), is_alone=False)
+        kept: list[int] = []
+        while not (found := error_of(lambda: kept.append(os.dup(0)))):
+            pass
+        return [found, len(kept) < 40]
+
+    assert in_child(act) == [errno.EMFILE, True]
+
+
+def test_the_length_of_a_file(tmp_path: Path) -> None:
+    def act() -> list[int]:
+        apply(RunLimits(file_bytes=MIB), is_alone=False)
+        with (tmp_path / "file").open("wb", buffering=0) as file:
+            written = file.write(bytes(2 * MIB))
+            return [written, error_of(file.write, b"x"), error_of(file.truncate, 2 * MIB)]
+
+    assert in_child(act) == [MIB, errno.EFBIG, errno.EFBIG]
+
+
+def test_processor_time() -> None:
+    code = (
+        "from grader import linux\nfrom grader.run import limits\n"
+        "for each in limits.rlimits(limits.RunLimits(cpu_s=1), is_alone=True):\n"
+        "    linux.lower_limit(*each)"
+    )
+    command = [sys.executable, "-c", f"{code}\nwhile True: pass"]
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    assert subprocess.run(command, env=env, check=False).returncode == -signal.SIGXCPU
+
+
+def _start_many(give_up_at: int) -> int:
+    """How many processes could be started, up to a number; they have ended."""
+    reading, writing = os.pipe()
+    started: list[int] = []
+    with suppress(BlockingIOError):
+        while len(started) < give_up_at:
+            child = os.fork()
+            if not child:
+                os.close(writing)
+                os.read(reading, 1)  # until the first lets it go
+                os._exit(0)
+            started.append(child)
+    os.close(writing)
+    for child in started:
+        os.waitpid(child, 0)
+    return len(started)
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="a user without processes is root's to become")
+def test_processes() -> None:
+    def act() -> int:
+        apply(RunLimits(tasks=20))
+        os.setresuid(*[NOBODYS_UID] * 3)
+        return _start_many(100)
+
+    assert in_child(act) == 19
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="a user without processes is root's to become")
+def test_threads_count_as_processes() -> None:
+    def act() -> list[Any]:
+        apply(RunLimits(tasks=20))
+        os.setresuid(*[NOBODYS_UID] * 3)
+        end, count = threading.Event(), 0
+        try:
+            while count < 100:
+                threading.Thread(target=end.wait, daemon=True).start()
+                count += 1
+        except RuntimeError as error:
+            return [count, str(error)]
+        return [count, ""]
+
+    assert in_child(act) == [19, "can't start new thread"]
+
+
+def test_a_user_with_other_processes_may_start_some_more() -> None:
+    def act() -> list[int]:
+        apply(RunLimits(tasks=200), is_alone=False)
+        return [resource.getrlimit(resource.RLIMIT_NPROC)[0] > 200, _start_many(50)]
+
+    assert in_child(act) == [True, 50]
+
+
+def _all_limits() -> dict[str, list[int]]:
+    return {
+        name: list(resource.getrlimit(getattr(resource, name)))
+        for name in dir(resource)
+        if name.startswith("RLIMIT_")
+    }
+
+
+def test_all_limits_are_hard_and_there_is_no_core_dump() -> None:
+    def act() -> dict[str, list[int]]:
+        apply()
+        return _all_limits()
+
+    found = in_child(act)
+    assert found["RLIMIT_CORE"] == found["RLIMIT_MSGQUEUE"] == [0, 0]
+    assert found["RLIMIT_DATA"] == [2 * GIB, 2 * GIB]
+    assert found["RLIMIT_CPU"] == [600, 605]  # told by the one, ended by the other
+    assert found["RLIMIT_STACK"] == [8 * MIB, 64 * MIB]
+
+
+def test_nothing_is_raised() -> None:
+    lower = {"RLIMIT_CPU": [3, 4], "RLIMIT_NOFILE": [50, 60], "RLIMIT_DATA": [GIB, GIB]}
+
+    def act() -> dict[str, list[int]]:
+        for name, (soft, hard) in lower.items():
+            resource.setrlimit(getattr(resource, name), (soft, hard))
+        apply()
+        return {name: both for name, both in _all_limits().items() if name in lower}
+
+    assert in_child(act) == lower
+
+
+def test_what_is_limited_cannot_raise_it_again() -> None:
+    def act() -> str:
+        apply()
+        if os.getuid() == 0:
+            os.setresuid(*[NOBODYS_UID] * 3)
+        try:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (4096, 4096))
+        except ValueError as error:
+            return str(error)
+        return "raised"
+
+    assert in_child(act) == "not allowed to raise maximum limit"
+
+
+def test_sizes_are_told_in_the_largest_unit_that_fits() -> None:
+    assert [limits.size(number) for number in (2 * GIB, 64 * MIB, 3 * GIB // 2)] == [
+        "2 GiB",
+        "64 MiB",
+        "1536 MiB",
+    ]
+
+
+def test_shared_memory_is_as_large_with_a_root_of_its_own_as_without() -> None:
+    assert supervisor.SHARED_MEMORY.startswith(f"size={limits.SCRATCH['/dev/shm'][0]}m,")

@@ -1,0 +1,276 @@
+"""What is told of a submission's process: whole runs, most of them in virtual time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from grader.diagnosis import standstill
+from grader.diagnosis.case import Case
+from grader.recording.observations import (
+    Burst,
+    End,
+    Observations,
+    SlowCallback,
+    SourceLine,
+    Standstill,
+    Wait,
+)
+from grader.recording.recording import Recording
+from grader.run.handover import Plan
+from grader.scenes.scene import Limits
+from tests import runs
+from turtlesim_py.world.events import CmdVel
+
+Recorded = Callable[..., Recording]
+PEN = "self.pen.call(SetPen.Request(r=255, width=3))"
+
+
+def test_names_types_and_lines_of_all_ends_are_told_and_who_had_the_other_one(
+    recorded: Recorded,
+) -> None:
+    seen = recorded("observed/wrong_ends").observations
+
+    def place(line: int, text: str) -> SourceLine:
+        return SourceLine("wrong_ends.py", line, "Controller.__init__", text)
+
+    published = SourceLine("wrong_ends.py", 28, "main", "node.velocity.publish(TwistStamped())")
+    cmd_vel = 'self.velocity = self.create_publisher(TwistStamped, "/turtle1/cmd_vel", 10)'
+    rotation = 'self.rotation = ActionClient(self, RotateAbsolute, "/turtle1/rotate_absolute")'
+    assert seen.ends == (
+        End("publisher", "/turtle1/cmd_vel", "geometry_msgs/msg/TwistStamped", False, 6,
+            place(17, cmd_vel),
+            published, (published,), (Burst(0, 6),)),
+        End("subscription", "/pose", "turtlesim/msg/Pose", False, 0,
+            place(18, 'self.create_subscription(Pose, "/pose", print, 10)')),
+        End("subscription", "/turtle1/pose", "turtlesim/msg/Pose", True, 0,
+            place(19, 'self.create_subscription(Pose, "turtle1/pose", print, 10)')),
+        End("client", "/set_pen", "turtlesim/srv/SetPen", False, 0,
+            place(20, 'self.pen = self.create_client(SetPen, "/set_pen")')),
+        End("action_client", "/turtle1/rotate_absolute", "turtlesim/action/RotateAbsolute", True, 0,
+            place(21, rotation)),
+    )  # fmt: skip
+    assert (seen.spun_s, seen.returned_s, seen.raised) == (None, 3.0, None)
+
+
+def test_the_same_is_told_of_two_runs(recorded: Recorded) -> None:
+    first, second = recorded("observed/wrong_ends"), recorded("observed/wrong_ends", 2)
+    assert first.observations == second.observations
+
+
+def test_a_program_that_spins_once_and_is_through_tells_both(recorded: Recorded) -> None:
+    seen = recorded("observed/spins_once").observations
+    assert (seen.is_known, seen.spun_s, seen.stop) == (True, 0.0, None)
+    assert seen.returned_s is not None
+    assert seen.returned_s < 0.1
+
+
+@pytest.mark.parametrize(
+    ("name", "stop"),
+    [
+        ("calls_in_callback", ("callback", 1.0, "Client.call", 15, PEN)),
+        ("calls_without_spinning", ("call", 0.0, "Client.call", 10, PEN.removeprefix("self."))),
+        ("never_spins", ("call", 0.0, "Event.wait", 11, "threading.Event().wait()")),
+        ("spins_in_callback",
+         ("callback", 0.48, "spin_until_future_complete", 26,
+          "rclpy.spin_until_future_complete(self, answer)")),
+    ],
+)  # fmt: skip
+def test_where_it_is_stuck_is_told_with_the_last_line_of_its_own(
+    recorded: Recorded, name: str, stop: tuple[str, float, str, int, str]
+) -> None:
+    found = recorded(f"misbehaving/{name}").observations.stop
+    assert found is not None
+    assert found.place is not None
+    assert (found.kind, found.time_s, found.call, found.place.line, found.place.text) == stop
+
+
+@pytest.mark.parametrize(
+    ("name", "raised"),
+    [
+        ("misbehaving/raises_in_callback", ("AttributeError", 0.48, 17, "on_pose")),
+        ("misbehaving/exits", ("SystemExit", 1.0, 16, "")),
+        ("observed/raises_inside_rclpy", ("AttributeError", 0.5, 10, "tick")),
+        ("observed/says_goodbye", ("SystemExit", 0.0, 9, "leave")),
+    ],
+)
+def test_what_ended_it_is_told_with_the_last_line_of_its_own(
+    recorded: Recorded, name: str, raised: tuple[str, float, int, str]
+) -> None:
+    seen = recorded(name).observations
+    found = seen.raised
+    assert found is not None
+    assert found.place is not None
+    assert (found.type, found.time_s, found.place.line, found.place.function) == raised
+    assert seen.returned_s is None
+
+
+def test_the_text_that_a_program_leaves_with_is_told(recorded: Recorded) -> None:
+    raised = recorded("observed/says_goodbye").observations.raised
+    assert raised is not None
+    assert raised.text == "bye"
+
+
+def test_of_a_mistake_in_c_the_line_is_told_that_led_to_it(recorded: Recorded) -> None:
+    raised = recorded("observed/aborts").observations.raised
+    assert raised is not None
+    assert (raised.type, raised.place) == (
+        "SIGSEGV",
+        SourceLine("aborts.py", 9, "crash", "ctypes.string_at(1)"),
+    )
+
+
+def test_a_loop_without_end_is_told_by_its_line(recorded: Recorded) -> None:
+    found = recorded("misbehaving/busy_for_ever").observations.stop
+    assert found == Standstill(
+        "loop", 0.096, "", SourceLine("busy_for_ever.py", 13, "", "while True:")
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "line", "function", "text"),
+    [
+        ("waits_in_vain", 14, "Controller.__init__",
+         "while not self.pen.wait_for_service(timeout_sec=1.0):"),
+        ("waits_for_an_answer", 10, "",
+         "rclpy.spin_until_future_complete(node, pen.call_async(SetPen.Request()))"),
+    ],
+)  # fmt: skip
+def test_a_wait_for_what_never_comes_is_told_and_others_are_not(
+    recorded: Recorded, name: str, line: int, function: str, text: str
+) -> None:
+    seen = recorded(f"observed/{name}").observations
+    place = SourceLine(f"{name}.py", line, function, text)
+    assert seen.waits == (Wait("/set_pen", "turtlesim/srv/SetPen", 0.0, None, place),)
+
+
+def test_who_waits_for_messages_without_spinning_has_heard_them(recorded: Recorded) -> None:
+    recording = recorded("observed/waits_for_message")
+    heard = [
+        (end.name, end.used) for end in recording.observations.ends if end.kind == "subscription"
+    ]
+    assert heard == [("/turtle1/pose", 1)] * 3
+    assert standstill.never_spins(Case(recording)) is None
+
+
+def test_a_callback_that_sleeps_is_told_by_its_longest_line(recorded: Recorded) -> None:
+    seen = recorded("observed/sleeps_in_callback").observations
+    place = SourceLine("sleeps_in_callback.py", 12, "pause", "time.sleep(0.15)")
+    assert seen.slow == (SlowCallback(place, 0.2, 10),)
+
+
+def test_of_a_program_that_does_as_it_should_nothing_is_told_but_what_it_used(
+    recorded: Recorded,
+) -> None:
+    seen = recorded("styles/timer").observations
+    assert [(end.kind, end.name, end.is_met) for end in seen.ends] == [
+        ("publisher", "/turtle1/cmd_vel", True),
+        ("client", "/turtle1/set_pen", True),
+        ("subscription", "/turtle1/pose", True),
+    ]
+    assert all(end.used for end in seen.ends)
+    rest = (
+        seen.waits,
+        seen.slow,
+        seen.stop,
+        seen.raised,
+        seen.returned_s,
+    )
+    assert rest == ((), (), None, None, None)
+
+
+# In real time ---------------------------------------------------------------------------------
+
+
+def in_real_time(name: str) -> Observations:
+    return runs.recorded(name, Plan(Limits(2, 0.2, 20)), time="real").observations
+
+
+def test_in_real_time_it_tells_what_ended_it_and_what_it_has_done() -> None:
+    seen = in_real_time("misbehaving/raises_in_callback")
+    assert seen.raised is not None
+    assert seen.raised.place == SourceLine("raises_in_callback.py", 17, "on_pose", "print(pose.z)")
+    assert [(end.kind, end.name, end.is_met) for end in seen.ends] == [
+        ("publisher", "/turtle1/cmd_vel", True),
+        ("subscription", "/turtle1/pose", True),
+    ]
+    assert seen.spun_s is not None
+    assert seen.spun_s < seen.raised.time_s
+
+
+def test_in_real_time_it_is_asked_where_it_is_before_it_is_told_to_end() -> None:
+    seen = in_real_time("misbehaving/calls_in_callback")
+    assert (seen.raised, seen.returned_s) == (None, None)
+    assert (seen.stop.kind, seen.stop.call) == ("callback", "Client.call")
+    assert seen.stop.place == SourceLine("calls_in_callback.py", 15, "on_timer", PEN)
+
+
+@pytest.mark.more("two others tell so in real time, and this one in virtual time")
+def test_in_real_time_a_program_that_comes_to_its_end_tells_so() -> None:
+    seen = in_real_time("observed/spins_once")
+    assert seen.returned_s is not None
+    assert (seen.stop, seen.raised) == (None, None)
+
+
+# Numbers of the wrong type --------------------------------------------------------------------
+
+
+def test_numbers_of_the_wrong_type_are_refused_where_they_are_put_into_a_message(
+    recorded: Recorded,
+) -> None:
+    recording = recorded("fields/wrong_colours")
+    lines = recording.output.splitlines()
+    assert lines[:5] == [
+        "The 'r' field must be an unsigned integer in [0, 255]",
+        "The 'g' field must be an unsigned integer in [0, 255]",
+        "The 'b' field must be of type 'int'",
+        "The 'width' field must be of type 'int'",
+        "The 'off' field must be of type 'int'",
+    ]
+    assert lines[-1] == "AssertionError: The 'x' field must be of type 'float'"
+    raised = recording.observations.raised
+    assert raised is not None
+    assert raised.place == SourceLine(
+        "wrong_colours.py", 19, "Controller.drive", "twist.linear.x = 2"
+    )
+    assert [end.is_met for end in recording.observations.ends] == [True]
+
+
+def test_numbers_of_numpy_and_of_own_classes_are_as_good_as_any(recorded: Recorded) -> None:
+    recording = recorded("fields/honest_numbers")
+    assert recording.output == ""
+    assert [command.linear[0] for command in recording.trace.of_kind(CmdVel)] == [1.0]
+
+
+# Loops ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.more("two runs that stall; one is above")
+def test_a_loop_is_told_by_where_it_begins_whatever_it_does_just_now(recorded: Recorded) -> None:
+    place = SourceLine("loops_for_ever.py", 21, "work", "while add(numbers) > 0:")
+    for number in (1, 2):
+        stop = recorded("observed/loops_for_ever", number).observations.stop
+        assert stop == Standstill("loop", 0.096, "", place)
+
+
+def test_an_exception_in_the_thread_that_spins_is_told_though_the_program_goes_on(
+    recorded: Recorded,
+) -> None:
+    seen = recorded("observed/thread_dies").observations
+    assert seen.raised is not None
+    assert seen.raised.place == SourceLine("thread_dies.py", 11, "on_pose", "print(pose.z)")
+    assert seen.raised.time_s < 0.1
+    assert seen.returned_s == 1.0
+    assert recorded("observed/thread_dies").run.exit_code == 0
+
+
+def test_a_program_that_ends_without_a_word_has_told_that_it_was_there(recorded: Recorded) -> None:
+    assert recorded("observed/leaves_without_a_word").observations == Observations(is_known=True)
+
+
+def test_a_slow_machine_does_not_cut_off_what_it_tells_when_the_run_is_over(
+    recorded: Recorded,
+) -> None:
+    (wait,) = recorded("observed/tells_slowly").observations.waits
+    assert (wait.name, wait.lasted_s) == ("/set_pen", None)

@@ -1,0 +1,150 @@
+"""What a look at a student's source shows, and what it is silent about."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.recording.observations import LintFinding, SourceLine
+from grader.run.opening import open_submission
+from grader.submission import lint
+
+SETUP = """from setuptools import setup
+setup(name="spiral", entry_points={"console_scripts": ["draw = spiral.draw:main"]})
+"""
+HEAD = "class Controller(Node):\n    def __init__(self):\n        self.stopped = False\n"
+READ = "    def drive(self):\n        return self.stopped\n"
+CALLBACK = "node.create_timer(1, tick)\n\ndef tick():\n    try:\n        drive()\n"
+FOUND = {
+    "a misspelt attribute": (
+        f"{HEAD}{READ}    def on_pose(self, pose):\n        self.stoped = True\n",
+        ("unread", "stoped", "stopped", 7),
+    ),
+    "a variable instead of an attribute": (
+        f"{HEAD}{READ}    def on_pose(self, pose):\n        stopped = True\n",
+        ("local", "stopped", "self.stopped", 7),
+    ),
+    "no global, and the variable is read first": (
+        "last = 0\ndef on_pose(pose):\n    if last:\n        last = pose\n",
+        ("global", "last", "global last", 1),
+    ),
+    "no global for what is counted": (
+        "count = 0\ndef on_timer():\n    count += 1\n",
+        ("global", "count", "global count", 1),
+    ),
+    "no global, and nobody notices": (
+        "stop = False\ndef on_pose(pose):\n    stop = True\ndef drive():\n    print(stop)\n",
+        ("local", "stop", "global stop", 3),
+    ),
+    "no nonlocal": (
+        "def main():\n    near = False\n    def on_pose(pose):\n        near = True\n"
+        "    while not near:\n        pass\n",
+        ("local", "near", "nonlocal near", 4),
+    ),
+    "a method as a condition": (
+        f"{HEAD}    def near(self):\n        return self.stopped\n"
+        "    def drive(self):\n        if not self.near and self.stopped:\n            pass\n",
+        ("uncalled", "self.near", "", 7),
+    ),
+    "a call without brackets": (
+        "def main():\n    rclpy.spin\nmain()\n",
+        ("uncalled", "rclpy.spin", "", 2),
+    ),
+    "main without brackets": ("def main():\n    pass\nmain\n", ("uncalled", "main", "", 3)),
+    "a flag with the name of a method": (
+        "class C:\n    def stop(self):\n        self.stop = True\n",
+        ("method", "stop", "", 3),
+    ),
+    "a method without self": (
+        "class C:\n    def paint(r, g, b):\n        pass\n",
+        ("without_self", "paint", "", 2),
+    ),
+    "a thread whose target is called": (
+        "def drive():\n    pass\nthreading.Thread(target=drive()).start()\n",
+        ("called", "drive", "Thread(target=", 3),
+    ),
+    "a class that is spun": (
+        "class C(Node):\n    pass\nrclpy.spin(C)\n",
+        ("class", "C", "rclpy.spin", 3),
+    ),
+    "a request that nobody sends": (
+        "request = SetPen.Request(r=1)\n",
+        ("unsent", "SetPen", "", 1),
+    ),
+    "an except that hides every error of a callback": (
+        f"{CALLBACK}    except Exception:\n        pass\n",
+        ("swallows", "tick", "", 6),
+    ),
+    "an except without a type, which says that something went wrong and not what": (
+        f"{CALLBACK}    except:\n        print('oh')\n",
+        ("swallows", "tick", "", 6),
+    ),
+    "an except of a function that a callback calls": (
+        "node.create_timer(1, lambda: step())\ndef step():\n    try:\n        drive()\n"
+        "    except (OSError, Exception) as error:\n        return\n",
+        ("swallows", "step", "", 5),
+    ),
+}
+NOTHING = {
+    "other words": f"{HEAD}{READ}    def on_pose(self, p):\n        self.last_y = p\n",
+    "what is read by its name": (
+        f"{HEAD}{READ}    def on_pose(self, p):\n        self.stoped = getattr(self, 'x')\n"
+    ),
+    "numbers": "class C:\n    def __init__(self):\n        self.timer1 = 1\n    def f(self):\n"
+    "        self.timer2 = self.timer1\n",
+    "a property": "class C:\n    @property\n    def near(self):\n        return 1\n"
+    "    def f(self):\n        if self.near:\n            pass\n",
+    "a function that is replaced": "def near():\n    pass\nnear = None\nif near:\n    pass\n",
+    "a variable with its own value first": "last = 0\ndef f():\n    last = 1\n    print(last)\n",
+    "a factory for a thread": "def make():\n    return print\nThread(target=make())\n",
+    "a request that is sent": "pen.call_async(SetPen.Request(r=1))\n",
+    "no Python at all": "def (:\n",
+    "an except that raises": f"{CALLBACK}    except Exception:\n        raise\n",
+    "an except that names the error": f"{CALLBACK}    except Exception as e:\n        print(e)\n",
+    "an except that shows it all": f"{CALLBACK}    except:\n        traceback.print_exc()\n",
+    "an except of some errors": f"{CALLBACK}    except OSError:\n        pass\n",
+    "an except where nothing is called back": "def main():\n    try:\n        node.destroy_node()\n"
+    "    except Exception:\n        pass\nmain()\n",
+    "an argument as default": "def near():\n    pass\ndef f(near):\n    if near:\n        pass\n",
+}
+
+
+@pytest.mark.parametrize("name", FOUND)
+def test_a_slip_is_found_with_its_line(name):
+    source, wanted = FOUND[name]
+    found = [(s.kind, s.name, s.near, s.place.line) for s in lint.find({"a.py": source})]
+    assert found == [wanted]
+
+
+@pytest.mark.parametrize("name", NOTHING)
+def test_what_may_be_meant_is_no_slip(name):
+    assert lint.find({"a.py": NOTHING[name]}) == []
+
+
+def test_what_one_file_sets_another_may_read():
+    base = "class Base:\n    def go(self):\n        return self.stoped\n"
+    source = f"{HEAD}{READ}    def on_pose(self, pose):\n        self.stoped = True\n"
+    assert lint.find({"a.py": source, "b.py": base}) == []
+
+
+def test_what_a_package_shows_is_found_where_it_is_read(tmp_path):
+    package = tmp_path / "spiral"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "pens.py").touch()
+    (tmp_path / "setup.py").write_text(SETUP)
+    source = "import math\nimport pens\n\ndef main():\n    print(pens)\n    main\n"
+    (package / "draw.py").write_text(source)
+    with open_submission(tmp_path) as submission:
+        assert submission.lint_findings == (
+            LintFinding("uncalled", "main", "", SourceLine("spiral/draw.py", 6, "", "main")),
+            LintFinding(
+                "beside", "pens", "spiral.pens", SourceLine("spiral/draw.py", 2, "", "import pens")
+            ),
+        )
+
+
+def test_a_file_that_nobody_looks_through_is_started_all_the_same(tmp_path):
+    deep = tmp_path / "draw.py"
+    deep.write_text("main\n" * lint.MOST_SOURCE)
+    with open_submission(deep) as submission:
+        assert submission.lint_findings == ()

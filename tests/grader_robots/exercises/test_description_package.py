@@ -1,0 +1,233 @@
+"""Packages lose what they should, and the first line names why."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from grader.judging import judge
+from grader.result.result import Result
+from tests.submissions.packages import (
+    EXERCISE,
+    FOLDER,
+    HANDED_IN,
+    REFERENCE,
+    SOLUTIONS,
+    looked_at,
+    recorded,
+    written,
+)
+
+DISPLAY = "launch/display.launch.py"
+#: Mutant -> words of the first line. What each loses stands in mutants.yaml.
+FIRST_LINES = {
+    "urdf_not_installed": "urdf/walker.urdf.xacro is in the package, and nothing installs it",
+    "meshes_not_installed": "meshes/camera.stl is in the package, and nothing installs it",
+    "installed_beside": "(but as share/walker_description/walker.urdf.xacro)",
+    "launch_files_not_installed": "display.launch.py is not installed",
+    "lists_what_is_not_there": "installs 'urdf/walker.urdf', and there is no such file",
+    "no_resource": "installs 'resource/walker_description', and there is no such file",
+    "lists_a_folder": "data_files lists 'meshes', which is a folder",
+    "setup_ends_with_an_error": "NameError: name 'package_name' is not defined (setup.py, line 10)",
+    "absolute_path": "a path of one machine",
+    "path_in_the_home_folder": "asks for ~/ros2_ws/src/walker_description/urdf/",
+    "project_of_another_name": "says project(walker_descripton), and package.xml calls",
+    "launch_file_of_ros_1": "launch/ros1.launch",
+    "relative_path": "a path from the current folder",
+    "package_of_another": "the package 'strider_description', which is neither yours",
+    "misspelt_program": "starts 'rviz' of the package rviz2",
+    "console_script_without_main": "walker_description/walk.py has no main",
+    "programs_in_bin": "expected lib/walker_description",
+    "names_of_foxy": "keyword-only argument: 'executable' (launch/display.launch.py, line 2",
+    "no_blank_after_xacro": "No such file or directory: 'xacro/prefix/share",
+    "path_instead_of_text": "urdf/walker.urdf.xacro', which is no URDF",
+    "no_description": "has no robot_description: its parameters are description",
+    "path_of_the_current_folder": "asks for rviz/walker.rviz, a path from the current folder",
+    "no_joint_source": "nothing publishes /joint_states",
+    "rviz_without_its_file": "rviz2 starts without a file",
+    "no_xacro_run": "xacro has not been run on it",
+    "two_roots": "Two root links found: [base_link] and [lost]",
+    "no_limit": "does not specify limits",
+    "not_closed": "XML parsing error: mismatched tag",
+    "cylinder_without_length": "the rest of that part is dropped",
+    "limits_the_wrong_way_round": "lower is above upper",
+    "mesh_by_path": "expected package://PACKAGE/PATH",
+    "mesh_in_other_letters": "letters count",
+    "mesh_of_another_package": "there is no package 'strider_description'",
+    "dependency_not_declared": "does not declare joint_state_publisher_gui",
+    "spawns_from_two_origins": "exactly one of -file, -param, -string, -topic",
+}
+
+
+def graded(path: Path, exercise: object = EXERCISE) -> Result:
+    return judge(recorded(looked_at(path)), exercise)  # type: ignore[arg-type]
+
+
+def lost(result: Result) -> dict[str, float]:
+    return {v.check: v.share for v in result.verdicts if not v.passed}
+
+
+@pytest.mark.parametrize("name", FIRST_LINES)
+def test_the_first_line_of_a_mutant_names_its_mistake(name, tmp_path):
+    solution = SOLUTIONS[name]
+    result = graded(solution.lay_out(tmp_path))
+    assert FIRST_LINES[name] in str(result.diagnosis.cause)
+    left = lost(result)
+    assert left.keys() == solution.leaves.keys()
+    for check, share in solution.leaves.items():
+        assert share == "some" or left[check] == pytest.approx(share, abs=0.001)
+
+
+@pytest.mark.parametrize("name", [name for name, each in SOLUTIONS.items() if each.is_right])
+def test_a_right_solution_keeps_all_points(name, tmp_path):
+    assert lost(graded(SOLUTIONS[name].lay_out(tmp_path))) == {}
+
+
+@pytest.mark.parametrize("name", HANDED_IN)
+def test_a_tutorial_that_is_followed_keeps_all_points(name):
+    assert lost(graded(FOLDER / name)) == {}
+
+
+def test_a_description_as_an_argument_is_read_with_a_remark(tmp_path):
+    files = {"urdf/plain.urdf": "<robot name='r'><link name='a'/></robot>"}
+    text = (REFERENCE / DISPLAY).read_text()
+    text = text.replace('parameters=[{"robot_description": description}]', "arguments=[model]")
+    files[DISPLAY] = text.replace("walker.urdf.xacro", "plain.urdf")
+    trace = looked_at(written(tmp_path, files))
+    assert lost(judge(recorded(trace), EXERCISE)) == {}
+    assert "as a file, which it still reads" in str(trace.launches[0].remarks[0])
+
+
+def test_launch_files_may_lie_in_a_package_beside(tmp_path):
+    folder = tmp_path / "workspace"
+    written(folder / "a", {DISPLAY: None, "launch/spawn.launch.py": None})
+    manifest = (REFERENCE / "package.xml").read_text()
+    for word in ("walker_description", "<exec_depend>rviz2</exec_depend>"):
+        manifest = manifest.replace(word, word.replace("description", "bringup"))
+    cmake = "project(walker_bringup)\ninstall(DIRECTORY launch DESTINATION share/walker_bringup)\n"
+    bringup = folder / "walker_bringup"
+    (bringup / "launch").mkdir(parents=True)
+    (bringup / "package.xml").write_text(manifest.replace("ament_python", "ament_cmake"))
+    (bringup / "CMakeLists.txt").write_text(cmake)
+    (bringup / "launch" / "show.py").write_text((REFERENCE / DISPLAY).read_text())
+    trace = looked_at(folder)
+    assert trace.setup is not None and trace.setup.name == "walker_description"
+    assert [launch.file for launch in trace.launches] == ["walker_bringup/launch/show.py"]
+    assert lost(judge(recorded(trace), EXERCISE)) == {}
+
+
+def test_rviz_as_a_plain_program_is_rviz(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    node = 'Node(package="rviz2", executable="rviz2", arguments=["-d", settings])'
+    head = "from launch.actions import ExecuteProcess\n"
+    for words, left in (('["rviz2", "-d", settings]', {}), ('["rviz2"]', {"launch": 0.75})):
+        changed = head + text.replace(node, f"ExecuteProcess(cmd={words})")
+        assert lost(graded(written(tmp_path / str(len(words)), {DISPLAY: changed}))) == left
+
+
+def test_an_angle_in_degrees_is_told_as_one(tmp_path):
+    file = "urdf/walker.urdf.xacro"
+    joint = (
+        '<link name="fin"/><joint name="fin_joint" type="fixed"><parent link="base_link"/>'
+        '<child link="fin"/><origin rpy="90 0 0"/></joint></robot>'
+    )
+    text = (REFERENCE / file).read_text().replace("</robot>", joint)
+    result = graded(written(tmp_path, {file: text}))
+    assert lost(result) == {"urdf": 0.5}
+    assert "'fin_joint' is turned by 90 rad, as if in degrees" in str(result.diagnosis.cause)
+
+
+def test_a_copy_of_the_package_that_was_left_within_it_costs_nothing(tmp_path):
+    package = written(tmp_path, {})
+    shutil.copytree(REFERENCE, package / "old", ignore=shutil.ignore_patterns("__pycache__"))
+    assert lost(graded(package)) == {}
+
+
+def test_a_byte_order_mark_is_no_fault_of_a_launch_file(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    assert lost(graded(written(tmp_path, {DISPLAY: f"\ufeff{text}"}))) == {}
+
+
+def test_the_starter_is_told_what_to_begin_with():
+    result = graded(EXERCISE.starter)
+    assert lost(result)["launch"] == 0
+    assert "starts no robot_state_publisher" in str(result.diagnosis.cause)
+
+
+def test_a_name_of_launch_that_nobody_knows_is_not_judged_and_never_failed(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    text = text.replace("import Command, Launch", "import Wondrous, Command, Launch")
+    spawn = {"launch/spawn.launch.py": None}
+    result = graded(written(tmp_path, {DISPLAY: text, **spawn}))
+    status = {verdict.check: verdict.status for verdict in result.verdicts}
+    assert status["launch"] == "not_judged"
+    assert "failed" not in status.values()
+    rationale = next(str(v.rationale) for v in result.verdicts if v.check == "launch")
+    assert "launch.substitutions.Wondrous, which the grader does not know" in rationale
+
+
+def test_a_file_of_another_package_is_nobody_s_fault(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text()
+    text = text.replace('share, "urdf", "walker.urdf.xacro"', 'other, "urdf", "ur.urdf.xacro"')
+    text = text.replace(
+        "    model =", '    other = get_package_share_directory("ur_description")\n    model ='
+    )
+    result = graded(written(tmp_path, {DISPLAY: text, "launch/spawn.launch.py": None}))
+    status = {verdict.check: verdict.status for verdict in result.verdicts}
+    assert status["launch"] == "not_judged"
+    assert status["installed"] == "passed"
+
+
+def test_what_a_description_does_not_say_is_found_where_urdfdom_is_silent(tmp_path):
+    file = "urdf/walker.urdf.xacro"
+    text = (REFERENCE / file).read_text()
+    joint = (
+        '<joint name="again" type="fixed"><parent link="base_link"/><child link="camera"/></joint>'
+    )
+    result = graded(written(tmp_path, {file: text.replace("</robot>", f"{joint}</robot>")}))
+    assert lost(result) == {"urdf": 0.5}
+    assert "'camera' hangs on 2 joints" in str(result.diagnosis.cause)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        (
+            "package://walker_description/meshes/camera.stl",
+            "file:///home/me/ros2_ws/src/walker_description/meshes/camera.stl",
+            "a path of one machine",
+        ),
+        (
+            "package://walker_description/meshes/camera.stl",
+            "package://walker_description/camera.stl",
+            "camera.stl is installed as package://walker_description/meshes/camera.stl",
+        ),
+    ],
+)
+def test_a_wrong_way_to_a_mesh_that_is_installed_is_a_fault_of_the_description(
+    old, new, says, tmp_path
+):
+    file = "urdf/walker.urdf.xacro"
+    text = (REFERENCE / file).read_text()
+    assert old in text
+    result = graded(written(tmp_path, {file: text.replace(old, new)}))
+    assert lost(result) == {"meshes": 0}
+    assert says in str(result.diagnosis.cause)
+
+
+def test_a_second_declaration_is_told_as_what_it_is(tmp_path):
+    file = "urdf/walker.urdf.xacro"
+    link = '<link name="base_link"/>'
+    text = (REFERENCE / file).read_text().replace(link, f"<?xacro?>{link}")
+    result = graded(written(tmp_path, {file: text}))
+    assert lost(result) == {"urdf": 0}
+    assert "take the other away" in str(result.diagnosis.help)
+
+
+def test_who_asks_for_what_is_not_there_is_told_with_the_line(tmp_path):
+    text = (REFERENCE / DISPLAY).read_text().replace('"walker.rviz"', '"wolker.rviz"')
+    line = 1 + next(n for n, each in enumerate(text.splitlines()) if "wolker" in each)
+    result = graded(written(tmp_path, {DISPLAY: text}))
+    assert f"{DISPLAY} (line {line}) asks for" in str(result.diagnosis.cause)

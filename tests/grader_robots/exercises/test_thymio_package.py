@@ -1,0 +1,62 @@
+"""A Thymio loses what it should, and the first line names why."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.exercise.loading import load_exercise
+from grader.judging import judge
+from grader.scenes.package.oddities import odd_traces
+from grader.testing.checking import examine
+from grader.testing.solutions import read_solutions
+from tests.submissions.packages import looked_at, recorded, written
+
+EXERCISE = load_exercise("thymio_package")
+REFERENCE = EXERCISE.folder / "reference"
+SOLUTIONS = {solution.name: solution for solution in read_solutions(EXERCISE)}
+FIRST_LINES = {
+    "wheels_stay_beside": "base_width changes the size of a part, and left_wheel_link does not",
+    "caster_stays": "base_length changes the size of a part, and caster_wheel_link does not",
+    "body_of_numbers": "doubling base_length changes the size of nothing",
+    "in_grams": "weighs 270000 g",
+    "caster_without_inertial": "The link 'caster_wheel_link' has a collision and no inertial",
+    "sliders_beside_gazebo": "joint_state_publisher_gui beside Gazebo",
+    "never_put_there": "No launch file puts the robot into Gazebo",
+}
+
+
+@pytest.mark.parametrize("name", [name for name, each in SOLUTIONS.items() if each.is_right])
+def test_a_right_thymio_keeps_all_points(name, tmp_path):
+    result = judge(recorded(looked_at(SOLUTIONS[name].lay_out(tmp_path))), EXERCISE)
+    assert [verdict.check for verdict in result.verdicts if not verdict.passed] == []
+
+
+@pytest.mark.parametrize("name", FIRST_LINES)
+def test_the_first_line_of_a_wrong_thymio_names_its_mistake(name, tmp_path):
+    solution = SOLUTIONS[name]
+    result = judge(recorded(looked_at(solution.lay_out(tmp_path))), EXERCISE)
+    assert FIRST_LINES[name] in str(result.diagnosis.cause)
+    left = {verdict.check: verdict.share for verdict in result.verdicts if not verdict.passed}
+    assert left == solution.leaves
+
+
+def test_its_checks_survive_whatever_a_package_is():
+    for what, trace in odd_traces().items():
+        assert examine(EXERCISE, recorded(trace))[1] == [], what
+
+
+def lost(path):
+    result = judge(recorded(looked_at(path)), EXERCISE)
+    return {verdict.check: verdict.status for verdict in result.verdicts if not verdict.passed}
+
+
+def test_a_xacro_that_is_not_installed_has_its_numbers_all_the_same(tmp_path):
+    cmake = (REFERENCE / "CMakeLists.txt").read_text().replace(" urdf", "")
+    assert lost(written(tmp_path, {"CMakeLists.txt": cmake}, REFERENCE)) == {"installed": "failed"}
+
+
+def test_what_waits_for_a_robot_is_not_judged_where_xacro_makes_none(tmp_path):
+    xacro = (REFERENCE / "urdf/thymio.urdf.xacro").read_text().replace("</robot>", "")
+    left = lost(written(tmp_path, {"urdf/thymio.urdf.xacro": xacro}, REFERENCE))
+    waits = ("meshes", "parameters", "masses")
+    assert left == {"urdf": "failed"} | dict.fromkeys(waits, "not_judged")

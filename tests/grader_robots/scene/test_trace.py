@@ -1,0 +1,54 @@
+"""What a run leaves: who said what, from process to process and through a bag."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from grader.recording import bag
+from grader_robots.scene import trace as messages
+from grader_robots.scene.driving import drive
+from grader_robots.scene.scene import SCENE
+from grader_robots.scene.trace import TF, RobotTrace
+from tests.grader_robots.scene.robots import URDF, walks
+
+
+@pytest.fixture(scope="module")
+def walk() -> RobotTrace:
+    return drive(walks, 200, URDF)
+
+
+def test_the_scene_publishes_what_robot_state_publisher_does(walk):
+    assert walk.description == URDF
+    own = [t for t in walk.transforms if t.publisher == "scene"]
+    assert {(t.topic, t.parent, t.child) for t in own} == {
+        (TF, "axis", "body"),
+        ("/tf_static", "body", "head"),
+    }
+    stamps = [t.stamp_ns for t in own if t.topic == TF]
+    assert np.diff(stamps).tolist() == [64_000_000] * (len(stamps) - 1)  # 31.25 Hz in, half out
+
+
+def test_what_the_submission_says_is_told_from_what_the_scene_says(walk):
+    assert {t.child for t in walk.transforms if t.publisher == "submission"} == {"axis"}
+    assert len(walk.joint_states) == 100
+
+
+def test_a_trace_goes_through_a_bag_as_it_is(walk, tmp_path):
+    bag.write(walk, SCENE, tmp_path / "recording")
+    mcap = tmp_path / "recording" / "recording.mcap"
+    read = RobotTrace.of(bag.read(mcap, SCENE, walk.duration_ns))
+    assert walk.messages == read.messages
+    assert walk.sha256() == read.sha256()
+
+
+def test_an_empty_trace_does_so_too(tmp_path):
+    empty = RobotTrace(0)
+    bag.write(empty, SCENE, tmp_path / "recording")
+    read = bag.read(tmp_path / "recording" / "recording.mcap", SCENE, 0)
+    assert RobotTrace.of(read).messages == ()
+
+
+def test_a_bag_without_publishers_is_no_recording(walk, tmp_path):
+    with pytest.raises(KeyError):
+        messages.from_channels([], 3)

@@ -1,0 +1,27 @@
+"""Scripts and benchmarks, which hardly anything else runs, fit the code that they use."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+#: One prints when it is imported, one needs what `make mutate` installs.
+LEFT_OUT = {"requirements", "mutate"}
+IMPORT = """
+import importlib, sys
+sys.path.insert(0, sys.argv[1])
+for name in sys.argv[2:]:
+    importlib.import_module(name)
+"""
+
+
+@pytest.mark.parametrize("folder", ["benchmarks", "scripts"])
+def test_every_tool_finds_what_it_imports(folder: str) -> None:
+    names = sorted({path.stem for path in (ROOT / folder).glob("*.py")} - LEFT_OUT)
+    command = [sys.executable, "-c", IMPORT, str(ROOT / folder), *names]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,66 @@
+"""scripts/size.py: what it counts, and what it finds in a project of a few files."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SCRIPT = Path(__file__).parents[2] / "scripts" / "size.py"
+FILES = {
+    "grader/__init__.py": "from grader.run.run import Run\n",
+    "grader/errors.py": "class Fault:\n    pass\n",
+    "grader/run/__init__.py": "",
+    "grader/run/run.py": "from ..errors import Fault\n\n\nclass Run:\n    pass\n",
+    "grader/batch/pages.py": "from grader import errors\nfrom grader.cli.main import go\n",
+    "grader/cli/main.py": (
+        "def go():\n    from grader.batch import pages\n    import grader.batch.pages\n"
+    ),
+    "grader/exercises/square/reference/square.py": "class Run:\n    pass\n",
+    "tf2/tf2_py/geometry.py": "class Pose:\n    pass\n",
+    "world/turtle.py": (
+        "import tf2_py.geometry\n\n\nclass Pose:\n    pass\n\n\nclass Run:\n    pass\n"
+    ),
+    "tests/test_all.py": "import grader\n\n\nclass Run:\n    pass\n",
+}
+
+
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp("project")
+    for name, text in FILES.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    subprocess.run(["git", "init", "-q"], cwd=folder, check=True)
+    subprocess.run(["git", "add", "."], cwd=folder, check=True)
+    (folder / "untracked.py").write_text("class Run:\n    pass\n")
+    command = [sys.executable, str(SCRIPT), str(folder)]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def test_tests_students_programs_and_files_that_git_does_not_track_are_not_counted(printed):
+    counts = {row.split()[0]: row.split()[1:] for row in printed.splitlines()[1:9]}
+    assert counts == {
+        "all": ["24", "8"],
+        "core": ["11", "5"],
+        "grader": ["3", "2"],
+        "grader/batch": ["2", "1"],
+        "grader/cli": ["3", "1"],
+        "grader/run": ["5", "2"],
+        "tf2": ["2", "1"],
+        "world": ["9", "1"],
+    }
+
+
+def test_class_names_that_stand_twice_are_shown_apart_from_those_of_ros(printed):
+    assert "class names in several modules: 1\n" in printed
+    assert "  Run: grader/run/run.py, world/turtle.py\n" in printed
+    assert "doubles of ROS's API besides: Pose\n" in printed
+
+
+def test_a_circle_is_shown_and_which_arrow_in_it_runs_back_up(printed):
+    assert "arrows between rooms: 6; that run back up: 1\n" in printed
+    assert "  grader/batch -> grader/cli: grader/batch/pages.py:2\n" in printed
+    assert "circles: 1\n  grader/batch, grader/cli\n" in printed
