@@ -135,6 +135,14 @@ def data_files() -> list[tuple[str, list[str]]]:
     return [(folder, names) for folder, names in files if names]
 
 
+def extras() -> dict[str, list[str]]:
+    """What each extra requires."""
+    found: dict[str, list[str]] = dict(REQUIREMENTS["extras"])
+    if not ROS_IS_SOURCED:
+        found["robots"] = [*found["robots"], *REQUIREMENTS["robots_without_ros"]]
+    return found
+
+
 def ros_dependent() -> dict[str, Any]:
     """The arguments of setup() that differ where ROS is sourced."""
     if ROS_IS_SOURCED:
@@ -150,11 +158,7 @@ def ros_dependent() -> dict[str, Any]:
     if COMPILING.intersection(sys.argv) and (line := complaint()):
         sys.exit(line)
     return {
-        "install_requires": [
-            *REQUIREMENTS["dependencies"],
-            *REQUIREMENTS["without_ros"],
-            *ROS["run"],
-        ],
+        "install_requires": [*REQUIREMENTS["dependencies"], *ROS["run"]],
         "setup_requires": ROS["build"],
         "ext_modules": extensions(),
         "packages": [*OWN_PACKAGES, *TF2_PACKAGES],
@@ -184,6 +188,7 @@ setup(
             **PROJECT["entry-points"],
         }.items()
     },
+    extras_require=extras(),
     zip_safe=False,
     **ros_dependent(),
 )

@@ -3,8 +3,8 @@
 grader.scenes       what an exercise's `scene:` names: a `grader.recording.subject.Subject`
 grader.exercises    a module or package in the exercise's folder
 grader.reports      a `grader.reports.Format`
-grader.inspections  what an inspection's facts are shown by: `robot_description` has the functions
-                    `window`, `solid`, `links` and `words` of a package's trace
+grader.inspections  what an exercise's `inspections:` name: a `grader.scenes.package.inspector.
+                    Inspector`
 """
 
 from __future__ import annotations

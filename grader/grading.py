@@ -177,6 +177,7 @@ def plan(submission: Submission, exercise: Exercise, seed: int | None = None) ->
         interfaces=interfaces,
         setting=exercise.setting,
         looks_at_package=exercise.looks_at_package and submission.package is not None,
+        inspections=exercise.inspections,
         budget=budget,
     )
     varied = [replace(nominal, start=start, seed=None) for start in starts]
@@ -251,20 +252,18 @@ def start(
     pool = ThreadPoolExecutor(max_workers=at_once or many)
     try:
         numbers = {pool.submit(run_twice_at_most, each): n for n, each in enumerate(plans)}
-        looked = pool.submit(_look_twice_at_most, submission, plans[0].budget) if looks else None
+        looked = pool.submit(_inspect_twice_at_most, submission, plans[0]) if looks else None
         over = ((numbers[future], future.result()) for future in as_completed(numbers))
         yield ((n, r if n else _nominal(r, origin, looked)) for n, r in over)
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _look_twice_at_most(
-    submission: Submission, budget: CpuBudget
-) -> tuple[Trace, tuple[Message, ...]]:
+def _inspect_twice_at_most(submission: Submission, plan: Plan) -> tuple[Trace, tuple[Message, ...]]:
     try:
-        return inspecting.inspect_beside(submission, budget)
+        return inspecting.inspect_beside(submission, plan)
     except GraderFailure:
-        return inspecting.inspect_beside(submission, budget)
+        return inspecting.inspect_beside(submission, plan)
 
 
 def _nominal(

@@ -24,8 +24,8 @@ pyproject = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_te
 ours = pyproject["tool"]["turtlesim-py"]
 build = pyproject["build-system"]["requires"]
 is_sourced = bool(os.environ.get("ROS_DISTRO"))  # the same rule as in setup.py
-dependencies = ours["dependencies"] + ([] if is_sourced else ours["without_ros"])
-tests = pyproject["project"]["optional-dependencies"]["test"] if "test" in sys.argv else []
+dependencies = [*ours["dependencies"], *([] if is_sourced else ours["robots_without_ros"])]
+tests = [*ours["extras"]["robots"], *ours["extras"]["test"]] if "test" in sys.argv else []
 if os.environ.get("BOUNDS") == "lowest":
     # our own build needs a newer setuptools than packages are read with
     dependencies = [each for each in dependencies if not each.startswith("setuptools")]

@@ -83,7 +83,7 @@ for python in "${pythons[@]}"; do
     rm -rf "$tools" "$work/built"
     quietly "$python" -m venv "$tools"
     mapfile -t requirements < <("$python" -c 'import tomllib; print(*tomllib.load(
-        open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["release"], sep="\n")')
+        open("pyproject.toml", "rb"))["tool"]["turtlesim-py"]["extras"]["release"], sep="\n")')
     quietly "$tools/bin/pip" install --progress-bar off "${requirements[@]}"
     # Not `pip wheel`: for pip setuptools leaves the label out of the name of the wheel's folder
     # .data, and what is in it (package.xml, the programs of ros2 run) is then installed by pip alone

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import subprocess
 from collections.abc import Iterator
 from itertools import count
 from typing import Any
@@ -38,6 +39,18 @@ settings.register_profile(
 settings.load_profile("ours")
 
 _numbers = count(1)
+
+_leave = subprocess.Popen.__exit__
+
+
+def _kill_or_leave(process: subprocess.Popen[Any], kind: Any, *error: Any) -> None:
+    """Leave a `with Popen(...)`; where its block has failed, do not wait for the process."""
+    if kind is not None:
+        process.kill()
+    _leave(process, kind, *error)
+
+
+subprocess.Popen.__exit__ = _kill_or_leave  # type: ignore[method-assign]
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -25,8 +25,8 @@ from tests.grader.batch.page.classes import entry, result
 from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in
 from tests.grader.driving import Spiral, drive
 from tests.grader.reports import samples
-from tests.grader.reports.page.test_parts import package_trace, page_of
 from tests.grader.reports.samples import evidence, verdict
+from tests.grader_robots.reports.test_parts import package_trace, page_of
 from tests.grader_robots.scene.robots import walks
 from tests.grader_robots.scene.test_view import URDF
 

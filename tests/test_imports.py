@@ -187,15 +187,23 @@ MAY_IMPORT: dict[str, set[str]] = {
     | below("grader.cli", "place", "options")
     | {"turtlesim_py.browser"},
     "grader.__main__": {"grader.cli"},
-    # an extension: a scene with a robot, and what is asked of robots; nothing in grader/ knows it
+}
+
+#: An extension: robots, and what is asked of them; nothing in grader/ knows it, or needs it.
+EXTENSION = {
     "grader_robots.__init__": set(),
     "grader_robots.scene": GROUND
     | below("grader", "recording", "scenes.scene", "scenes.by_hand")
     | {"grader.scenes.package.trace", "robot_py", "turtlesim_py.ros.program"},
+    "grader_robots.inspection": {"grader.message"}
+    | below("grader", "recording", "scenes.package")
+    | {"grader_robots.scene"},
     "grader_robots.exercises": GROUND
     | below("grader", "recording", "scenes.package", "exercise")
     | {"grader_robots.scene", "robot_py", "tf2_ros"},
 }
+if (ROOT / "grader_robots").is_dir():
+    MAY_IMPORT |= EXTENSION
 
 #: Importer -> what it imports against its rule or in a circle, and is to do without.
 KNOWN = {

@@ -18,7 +18,7 @@ from grader import content, extensions
 from grader.errors import ExerciseError
 from grader.exercise import handing_in, places, translated
 from grader.exercise.check import Checks
-from grader.exercise.exercise import CPU, LOOKS, PER_STUDENT, Exercise, VariedRuns
+from grader.exercise.exercise import CPU, INSPECTIONS, LOOKS, PER_STUDENT, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
 from grader.exercise.yaml_file import Mistake, check_known, expect, is_amount
 from grader.extensions import SCENES
@@ -70,6 +70,7 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         scene=scene,
         setting=setting,
         looks_at_package=data.get(LOOKS, False),
+        inspections=_inspections(data, scene, subject),
         cpu_s=_cpu_s(data.get(CPU)),
         program=data.get("program", ""),
         folder=place.folder,
@@ -171,6 +172,18 @@ def _check_words(data: Mapping[str, Any], scene: str, subject: Subject) -> None:
         raise Mistake(
             (LOOKS,), "the scene {scene} does nothing else: leave it out", scene=repr(scene)
         )
+
+
+def _inspections(data: Mapping[str, Any], scene: str, subject: Subject) -> tuple[str, ...]:
+    """The names of the inspectors that examine packages."""
+    given = data.get(INSPECTIONS, [])
+    known = extensions.points(extensions.INSPECTIONS)
+    is_known = isinstance(given, list) and all(isinstance(n, str) and n in known for n in given)
+    what = "expected a list of some of {names}, found {found}"
+    expect(is_known, (INSPECTIONS,), what, given, names=", ".join(known) or "none")
+    if given and isinstance(subject, Scene) and not data.get(LOOKS, False):
+        raise Mistake((INSPECTIONS,), "no package is examined here without looks_at_package: true")
+    return tuple(given)
 
 
 def _cpu_s(given: Any) -> float:

@@ -19,6 +19,8 @@ from grader.scenes.scene import Limits, Scene
 
 #: Keys of an exercise.yaml: whether setup.py and launch files are evaluated beside the run ...
 LOOKS = "looks_at_package"
+#: ... what examines packages besides ...
+INSPECTIONS = "inspections"
 #: ... how much processor time a whole grading may take [s] ...
 CPU = "cpu_s"
 #: ... and, of `varied_runs`, whether they start elsewhere for each student.
@@ -30,7 +32,7 @@ class Opening(TypedDict, total=False):
 
     is_started: bool
     usual: str
-    is_whole: bool
+    inspections: tuple[str, ...] | None
     cpu_s: float
 
 
@@ -69,7 +71,8 @@ class Exercise:
         explained: tolerance -> language -> what it is, for the sheet.
         scene: the name of what runs beside the submission.
         setting: the text of the file that it is set up with; '' for none.
-        looks_at_package: whether the package around what is started is looked at as well.
+        looks_at_package: whether the package around what is started is inspected as well.
+        inspections: the names of the inspectors that examine packages.
         program: what is started of several that were handed in; '' for the usual one.
         folder: where its files are.
         starter: the folder that `grader new` copies; None where there is none.
@@ -87,6 +90,7 @@ class Exercise:
     scene: str = "turtlesim"
     setting: str = ""
     looks_at_package: bool = False
+    inspections: tuple[str, ...] = ()
     cpu_s: float = math.inf
     program: str = ""
     folder: Path = Path()
@@ -112,7 +116,7 @@ class Exercise:
         """How a submission to it is opened."""
         opening: Opening = {
             "is_started": self.is_started,
-            "is_whole": self.looks_at_package,
+            "inspections": self.inspections if self.looks_at_package else None,
             "cpu_s": self.cpu_s,
         }
         if self.program:

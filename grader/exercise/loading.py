@@ -14,7 +14,7 @@ from typing import Any
 from grader.errors import ExerciseError
 from grader.exercise import places, translated
 from grader.exercise.building import NAME, build
-from grader.exercise.exercise import CPU, LOOKS, PER_STUDENT, Exercise
+from grader.exercise.exercise import CPU, INSPECTIONS, LOOKS, PER_STUDENT, Exercise
 from grader.exercise.places import CHECKS, DESCRIPTION, Place, names
 from grader.exercise.yaml_file import (
     Mistake,
@@ -30,6 +30,7 @@ from grader.message import reason
 SUFFIXES = (".yaml", ".yml")
 KEYS = (
     *("exercise", "title", "task", "scene", "setting", "limits", "varied_runs", LOOKS, CPU),
+    INSPECTIONS,
     *("points", "visible", "late", "tolerances", "starter", "program", translated.PART),
 )
 

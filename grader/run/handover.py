@@ -38,6 +38,7 @@ class Plan:
             its usual ones.
         setting: what the exercise sets the scene up with; '' for nothing.
         looks_at_package: whether the package around the submission's program is inspected as well.
+        inspections: the names of the inspectors that examine a package.
         budget: the one of the whole grading, which the simulator's process does not know.
     """
 
@@ -49,6 +50,7 @@ class Plan:
     interfaces: str = ""
     setting: str = ""
     looks_at_package: bool = False
+    inspections: tuple[str, ...] = ()
     budget: CpuBudget = field(
         default_factory=CpuBudget, compare=False, metadata=strict_json.UNSTORED
     )

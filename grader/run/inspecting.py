@@ -31,7 +31,7 @@ from grader.run.finish import Ending, ended, record
 from grader.run.handover import Plan
 from grader.run.limits import INSPECTION_BYTES, INSPECTION_S, CpuBudget
 from grader.run.processes.started_process import SubmissionProcess
-from grader.scenes.package import inspection
+from grader.scenes.package import inspection, inspector
 from grader.scenes.package.by_itself import unlike_launched
 from grader.scenes.package.inspection import Inspection, SetUp, Told
 from grader.scenes.package.trace import FAILED, PackageTrace
@@ -57,7 +57,8 @@ def run(submission: Submission, plan: Plan, progress: Progress | None = None) ->
         GraderFailure: the process could not be started.
     """
     asked = submission.start.package if isinstance(submission.start, Whole) else ""
-    found, ending = _inspected(submission, {"package": asked}, plan.budget)
+    order = {"package": asked, "inspectors": inspector.places(plan.inspections)}
+    found, ending = _inspected(submission, order, plan.budget)
     trace = load_subject(plan.scene).untouched(None) if found is None else found.trace
     return record(plan, trace, (), ending)
 
@@ -67,8 +68,7 @@ def inspect(
     folders: Sequence[str],
     program: str,
     budget: CpuBudget,
-    *,
-    is_whole: bool,
+    inspections: Sequence[str] | None,
 ) -> tuple[Inspection, tuple[Message, ...]]:
     """Find what of packages there is to start; with remarks on what kept it from being found.
 
@@ -76,19 +76,20 @@ def inspect(
         submission: all that was handed in.
         folders: those with set-up files, below its root.
         program: the console script that is asked for.
-        is_whole: whether its package is inspected as by `inspect_beside`.
+        inspections: by which its package is inspected as by `inspect_beside`; None for not at all.
 
     Raises:
         GraderFailure: the process could not be started.
     """
-    asked = {"set_ups": list(folders), "program": program, "is_whole": is_whole}
+    inspectors = None if inspections is None else inspector.places(inspections)
+    asked = {"set_ups": list(folders), "program": program, "inspectors": inspectors}
     found, ending = _inspected(submission, asked, budget)
     if found is None or [each.folder for each in found.set_ups] != list(folders):
         found = Inspection(tuple(SetUp(each, Told(), None) for each in folders))
     return found, ending.run.flags
 
 
-def inspect_beside(submission: Submission, budget: CpuBudget) -> tuple[Trace, tuple[Message, ...]]:
+def inspect_beside(submission: Submission, plan: Plan) -> tuple[Trace, tuple[Message, ...]]:
     """Inspect the package in which a submission's program is, and those beside it.
 
     Returns:
@@ -103,7 +104,8 @@ def inspect_beside(submission: Submission, budget: CpuBudget) -> tuple[Trace, tu
     if not isinstance(found, PackageTrace):
         whole = replace(submission, root=submission.folder, start=Whole())
         added = [str((submission.root / each).relative_to(whole.root)) for each in submission.added]
-        inspected, ending = _inspected(whole, {"added": added}, budget)
+        order = {"added": added, "inspectors": inspector.places(plan.inspections)}
+        inspected, ending = _inspected(whole, order, plan.budget)
         found, flags = (inspected or Inspection()).trace, ending.run.flags
     unlike: list[Message] = []
     if isinstance(submission.start, EntryPoint):

@@ -9,7 +9,7 @@ launch files, so an inspection evaluates them in between, in a process of the su
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -35,7 +35,7 @@ def open_submission(
     *,
     is_started: bool = True,
     usual: str = USUAL_NAME,
-    is_whole: bool = False,
+    inspections: Sequence[str] | None = None,
     cpu_s: float = math.inf,
 ) -> Iterator[Submission]:
     """Find what to start, in a copy that is there until the context ends.
@@ -46,7 +46,8 @@ def open_submission(
     `executable` then chooses among packages.
 
     Args:
-        is_whole: whether the same inspection looks at the whole package around what is started.
+        inspections: by which the whole package around what is started is inspected at the same
+            time; None for not at all.
         cpu_s: the processor time that it may take [s].
 
     Raises:
@@ -62,7 +63,7 @@ def open_submission(
             found = reader.read(path, executable, scratch, is_started=is_started, usual=usual)
         except NotInspected as asked:
             budget = CpuBudget(cpu_s)
-            found, copy = _inspected(path, executable, scratch, usual, asked, budget, is_whole)
+            found, copy = _inspected(path, executable, scratch, usual, asked, budget, inspections)
         else:
             copy = copy_privately(path, found.root, scratch)
         yield _in_private(found, copy)
@@ -75,7 +76,7 @@ def _inspected(
     usual: str,
     asked: NotInspected,
     budget: CpuBudget,
-    is_whole: bool,
+    inspections: Sequence[str] | None,
 ) -> tuple[Submission, PrivateCopy]:
     """A package as it is started by what an inspection says of it, and the copy of it."""
     from grader.run import inspecting  # here: most submissions are a file
@@ -83,11 +84,11 @@ def _inspected(
     copy = copy_privately(path, asked.base, scratch)
     everything = Submission(path.name, copy.of(asked.base), Whole(), NOTHING, copy=copy)
     said, remarks = inspecting.inspect(
-        everything, asked.folders, executable or usual, budget, is_whole=is_whole
+        everything, asked.folders, executable or usual, budget, inspections
     )
     found = reader.read(path, executable, scratch, usual=usual, again=(asked, said))
     notes = (*remarks, *found.notes)
-    if not is_whole:  # else that is reported with the run
+    if inspections is None:  # else that is reported with the run
         notes = (*notes, *_by_itself(found, said.trace))
     elif said.trace.setup and found.package == asked.base / said.package and not found.added:
         found = replace(found, seen=said.trace)

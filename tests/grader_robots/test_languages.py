@@ -16,7 +16,7 @@ from grader.recording.recording import Recording, Recordings
 from grader.recording.subject import load_subject
 from grader.recording.view import Table, Tree
 from grader.scenes import load_scene
-from grader.scenes.package.examining.looking import _FROM_A_FILE, _HANDED_ON
+from grader.scenes.package.examining.examination import FROM_A_FILE, FROM_A_LAUNCH_FILE
 from grader.scenes.package.examining.steps import (
     _NO_END,
     NONSENSE,
@@ -25,7 +25,6 @@ from grader.scenes.package.examining.steps import (
     not_there,
     problem_of,
 )
-from grader.scenes.package.oddities import odd_traces
 from grader.scenes.package.said import advice
 from grader.scenes.package.trace import (
     InstalledScript,
@@ -41,6 +40,8 @@ from grader.scenes.package.trace import (
 )
 from grader.translations import ENGLISH, LANGUAGES, translate
 from grader_robots.exercises.state_publisher.seen import sentence
+from grader_robots.inspection.oddities import odd_traces
+from grader_robots.scene import trace as robot_trace
 from grader_robots.scene.driving import drive, joint_state, tf
 from robot_py.robot_state import Placed
 from tests.grader.languages.holes import holes
@@ -224,11 +225,11 @@ def _of_package(trace: PackageTrace) -> list[Message]:
         (it(_NO_END), "it did not come to an end in 20 s of processor time, or 40 s"),
         (it(NONSENSE), "it spoils what is taken down of it"),
         (
-            it(_HANDED_ON[0].given(length="3,000,000", most="2,000,000")),
+            it(FROM_A_LAUNCH_FILE[0].given(length="3,000,000", most="2,000,000")),
             "it hands on a text of 3,000,000 characters; 2,000,000 at most are taken",
         ),
         (
-            it(_FROM_A_FILE[1].given(most=20)),
+            it(FROM_A_FILE[1].given(most=20)),
             "it is more than 20 descriptions and long texts",
         ),
         (
@@ -253,6 +254,10 @@ def test_a_sentence_of_the_process_that_looks_comes_out_of_it_as_a_message(text,
     back = decode(encode(made))
     assert back == made
     assert back.sha256() == made.sha256()
+
+
+def test_a_remark_on_what_is_left_out_can_be_said_in_every_language():
+    assert_told([robot_trace._NOT_ALL])
 
 
 def test_what_python_and_others_say_stays_theirs():

@@ -45,11 +45,12 @@ sys.meta_path.insert(0, Hidden())
 
 
 def dependencies(extra: str = "") -> dict[str, str]:
-    """What setup.py tells pip to install, or what an extra adds to it, by name."""
+    """What pip is to install, or what an extra adds where no ROS is sourced, by name."""
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    extras = pyproject["project"]["optional-dependencies"]
     ours = pyproject["tool"]["turtlesim-py"]
-    wanted = extras[extra] if extra else ours["dependencies"] + ours["without_ros"]
+    wanted = ours["extras"][extra] if extra else ours["dependencies"]
+    if extra == "robots":
+        wanted = [*wanted, *ours["robots_without_ros"]]
     return {_name(line): line for line in wanted}
 
 

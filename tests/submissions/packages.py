@@ -15,6 +15,7 @@ from unittest.mock import patch
 
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording, Recordings, Run
+from grader.scenes.package import inspector
 from grader.scenes.package.examining import steps
 from grader.scenes.package.examining.main import inspect
 from grader.scenes.package.trace import PackageTrace, decode, encode
@@ -25,6 +26,8 @@ FOLDER = Path(__file__).parent / "description_package"
 EXERCISE = load_exercise("description_package")
 SOLUTIONS = {solution.name: solution for solution in read_solutions(EXERCISE)}
 REFERENCE = SOLUTIONS["reference"].path
+#: What examines packages here.
+INSPECTORS = inspector.places(("robot_description",))
 #: The tutorials followed, and what a course makes of them.
 HANDED_IN = ("r2d2_tutorial", "urdf_to_package")
 
@@ -71,7 +74,9 @@ def look_without_end() -> None:
         path, package, cpu_s, wall_s = json.loads(line)
         limits = replace(steps.LIMITS, cpu_s=cpu_s, wall_s=wall_s)
         with patch.object(steps, "LIMITS", limits), tempfile.TemporaryDirectory() as scratch:
-            found = inspect(Path(path), Path(scratch).resolve(), package=package).trace
+            found = inspect(
+                Path(path), Path(scratch).resolve(), package=package, inspectors=INSPECTORS
+            ).trace
         told = encode(found)
         sys.stdout.buffer.write(len(told).to_bytes(8, "big") + told)
         sys.stdout.buffer.flush()

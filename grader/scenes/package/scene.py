@@ -6,15 +6,14 @@ Its trace is the one message of a bag: a std_msgs/String with its JSON, at tick 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, ClassVar, Final
+from typing import ClassVar, Final
 
-from grader import extensions
 from grader.message import Message, msg
 from grader.recording.cdr import string, string_of
 from grader.recording.channel import Channel
 from grader.recording.subject import PACKAGE_SCENE, BagMessage, Start, Subject, Trace
-from grader.recording.view import Pictures, View
-from grader.scenes.package import launched
+from grader.recording.view import Part, Pictures, View
+from grader.scenes.package import inspector, launched
 from grader.scenes.package.trace import PackageTrace, decode, encode
 from grader.translations import tr
 
@@ -86,15 +85,20 @@ class PackageSubject(Subject):
         return decode(data)
 
     def pictures(self, made: Trace) -> Pictures:
-        """The robot."""
-        return Pictures(_described().window(PackageTrace.of(made)))
+        """Return the first picture that an inspector has."""
+        trace = PackageTrace.of(made)
+        shown = (each.window(trace) for each in inspector.installed())
+        return Pictures(next((window for window in shown if window is not None), None))
 
     def view(self, made: Trace) -> View:
-        """The robot and the launch files; nothing over time."""
+        """Return what inspectors show, and the launch files; nothing over time."""
         trace = PackageTrace.of(made)
-        robot = _described()
-        parts = [part for part in (robot.solid(trace), robot.links(trace)) if part is not None]
-        return View(drawn=(robot.words(trace),), parts=(*parts, *launched.tables(trace)))
+        drawn: list[Message] = []
+        parts: list[Part] = []
+        for each in inspector.installed():
+            drawn += each.words(trace)
+            parts += each.parts(trace)
+        return View(drawn=tuple(drawn), parts=(*parts, *launched.tables(trace)))
 
     def remarks(self, made: Trace, published: Sequence[str], interfaces: str) -> list[Message]:
         """Which package was looked at, and what of it could not be."""
@@ -127,15 +131,11 @@ class PackageSubject(Subject):
         return found
 
     def odd_traces(self, setting: str, start: Start | None) -> Mapping[str, Trace]:
-        """Packages that nobody would hand in."""
-        from grader.scenes.package.oddities import odd_traces
-
-        return odd_traces()
-
-
-def _described() -> Any:
-    """What shows the robot that a package describes: an extension's, as robots are."""
-    return extensions.load(extensions.INSPECTIONS, "robot_description")
+        """Return what inspectors have, and a package of which nothing is known."""
+        odd: dict[str, Trace] = {"a package that nobody could look at": PackageTrace()}
+        for each in inspector.installed():
+            odd |= each.odd_traces()
+        return odd
 
 
 PACKAGE: Final = PackageSubject()

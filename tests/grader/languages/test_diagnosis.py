@@ -21,7 +21,6 @@ from grader.run.simulator import link, real_time
 from grader.run.simulator.virtual_time import VAIN
 from grader.scenes.turtlesim import allowance
 from grader.translations import translate
-from grader_robots.scene import trace as robot_trace
 from tests.grader.diagnosis.cases import run_of
 from tests.grader.diagnosis.test_rules import CAUSES
 from tests.grader.languages.holes import holes
@@ -40,7 +39,7 @@ REMARKS = (
     ),
     msg("graded in real time, because {why}", why=failed("KeyError in graph.py, line 3")),
     *(allowance._NOT_ALL, allowance._MANY_AT_A_TIME, allowance._MANY_IN_A_RUN),
-    *(*allowance.FIXED.values(), robot_trace._NOT_ALL),
+    *allowance.FIXED.values(),
 )
 
 

@@ -7,7 +7,6 @@ import pickle
 from dataclasses import replace
 from struct import pack as packed
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,13 +14,8 @@ from hypothesis import strategies as st
 from grader.recording.transfer import pack, unpack
 from grader.scenes.turtlesim.scene import SCENE
 from grader.scenes.turtlesim.trace import TurtleTrace
-from grader_robots.scene.driving import drive as drive_robot
-from grader_robots.scene.driving import joint_state
-from grader_robots.scene.scene import SCENE as ROBOT
-from grader_robots.scene.trace import JOINT_STATES, TF, Heard, RobotTrace
 from tests.grader.driving import Spiral, drive
 from tests.grader.scenes.turtlesim.traces import assert_same_trace, odd_events, odd_traces
-from tests.grader_robots.scene.robots import URDF, walks
 from turtlesim_py.world.events import KINDS
 
 
@@ -32,10 +26,6 @@ def trace() -> TurtleTrace:
 
 def there(trace: TurtleTrace) -> TurtleTrace:
     return TurtleTrace.of(unpack(pack(trace, SCENE), SCENE))
-
-
-def robot_there(trace: RobotTrace) -> RobotTrace:
-    return RobotTrace.of(unpack(pack(trace, ROBOT), ROBOT))
 
 
 # There and back -------------------------------------------------------------------------------
@@ -69,22 +59,6 @@ def test_names_that_no_file_could_have_survive(trace):
     way = trace.trajectory()
     odd = replace(trace, trajectories={"../a/b": way, "": way, "a\x85\u2028b": way, "\ud800": way})
     assert list(there(odd).trajectories) == list(odd.trajectories)
-
-
-def test_a_robot_s_messages_survive():
-    walk = drive_robot(walks, 200, URDF)
-    assert robot_there(walk).messages == walk.messages
-    assert robot_there(walk).sha256() == walk.sha256()
-    assert robot_there(RobotTrace(0)).messages == ()
-
-
-def test_a_number_that_is_none_stays_one():
-    def odd(tick, now_ns):
-        return [joint_state(now_ns, ["turn", "\udcff", "turn"], [float("nan"), float("inf"), 1])]
-
-    made = drive_robot(odd, 3, URDF)
-    assert robot_there(made).messages == made.messages
-    assert np.isnan(robot_there(made).joint_states[0].positions[0])
 
 
 # Strictness -----------------------------------------------------------------------------------
@@ -158,16 +132,3 @@ def test_columns_of_another_trace_are_refused(trace, column, value):
     whole[at : at + 8] = packed("<q", value)
     with pytest.raises(ValueError, match="no trace of turtlesim"):
         unpack(bytes(whole), SCENE)
-
-
-@pytest.mark.parametrize(
-    "message",
-    [
-        Heard(9, JOINT_STATES, "submission", b"\x00\x01\x00\x00"),
-        Heard(1, JOINT_STATES, "submission", b""),
-        Heard(1, TF, "scene", b"\x00\x01\x00\x00\xff\xff\xff\xff"),
-    ],
-)
-def test_what_a_robot_cannot_have_recorded_is_refused(message):
-    with pytest.raises(ValueError, match="no trace of robot"):
-        robot_there(RobotTrace(3, (message,)))

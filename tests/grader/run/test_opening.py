@@ -7,15 +7,31 @@ from pathlib import Path
 import pytest
 
 from grader.errors import SubmissionError
+from grader.exercise.building import NO_LIMITS
 from grader.run import inspecting
+from grader.run.handover import Plan
 from grader.run.limits import CpuBudget
 from grader.run.opening import open_submission
 from grader.scenes.package.inspection import Inspection, decode, encode
 from grader.submission.start import EntryPoint, Script, Submission, Whole
 from tests.files import lay
-from tests.grader.run.test_inspecting import FORGES
 from tests.grader.submission.test_entry_points import SETUP, package
 
+FORGES = """
+import os
+for number in range(3, 64):
+    try:
+        os.write(number, b'{"setup": null}')
+    except OSError:
+        pass
+for process in os.listdir("/proc"):
+    for number in range(3, 64):
+        try:
+            with open(f"/proc/{process}/fd/{number}", "wb") as file:
+                file.write(b"[]")
+        except OSError:
+            pass
+"""
 KILLS = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n"
 
 
@@ -107,11 +123,11 @@ def test_an_answer_about_other_folders_is_none(tmp_path: Path, monkeypatch) -> N
     with open_submission(lay(tmp_path, package("spiral"))) as found:
         assert found.copy is not None
         whole = Submission("a", found.copy.folder, Whole(), "", copy=found.copy)
-        asked = (whole, ["."], "turtle_controller", CpuBudget())
-        said, _ = inspecting.inspect(*asked, is_whole=False)
+        asked = (whole, ["."], "turtle_controller", CpuBudget(), None)
+        said, _ = inspecting.inspect(*asked)
         assert [each.told.name for each in said.set_ups] == ["spiral"]
         monkeypatch.setattr(inspecting.inspection, "decode", lambda _: Inspection())
-        said, _ = inspecting.inspect(*asked, is_whole=False)
+        said, _ = inspecting.inspect(*asked)
         assert [(each.folder, each.told.name) for each in said.set_ups] == [(".", "")]
 
 
@@ -135,12 +151,14 @@ def test_a_single_file_is_not_inspected(tmp_path: Path, monkeypatch) -> None:
 
 def test_one_look_serves_the_start_and_the_exercise(tmp_path: Path) -> None:
     lay(tmp_path, package("spiral"))
-    with open_submission(tmp_path, is_whole=True) as submission:
+    with open_submission(tmp_path, inspections=()) as submission:
         assert submission.seen is not None
-        trace, remarks = inspecting.inspect_beside(submission, CpuBudget(0.0))
+        trace, remarks = inspecting.inspect_beside(
+            submission, Plan(NO_LIMITS, budget=CpuBudget(0.0))
+        )
         assert (trace, remarks) == (submission.seen, ())
         again, _ = inspecting.inspect_beside(
-            Submission(**{**vars(submission), "seen": None}), CpuBudget()
+            Submission(**{**vars(submission), "seen": None}), Plan(NO_LIMITS)
         )
         assert again == trace
     with open_submission(tmp_path) as submission:

@@ -6,9 +6,9 @@ import pytest
 
 from grader.exercise.loading import load_exercise
 from grader.judging import judge
-from grader.scenes.package.oddities import odd_traces
 from grader.testing.checking import examine
 from grader.testing.solutions import read_solutions
+from grader_robots.inspection.oddities import odd_traces
 from tests.submissions.packages import looked_at, recorded, written
 
 EXERCISE = load_exercise("thymio_package")

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from grader.recording import bag
+from grader.recording.transfer import pack, unpack
 from grader_robots.scene import trace as messages
-from grader_robots.scene.driving import drive
+from grader_robots.scene.driving import drive, joint_state
 from grader_robots.scene.scene import SCENE
-from grader_robots.scene.trace import TF, RobotTrace
+from grader_robots.scene.trace import JOINT_STATES, TF, Heard, RobotTrace
 from tests.grader_robots.scene.robots import URDF, walks
 
 
@@ -52,3 +53,35 @@ def test_an_empty_trace_does_so_too(tmp_path):
 def test_a_bag_without_publishers_is_no_recording(walk, tmp_path):
     with pytest.raises(KeyError):
         messages.from_channels([], 3)
+
+
+def there(trace: RobotTrace) -> RobotTrace:
+    return RobotTrace.of(unpack(pack(trace, SCENE), SCENE))
+
+
+def test_messages_survive_the_way_from_process_to_process(walk):
+    assert there(walk).messages == walk.messages
+    assert there(walk).sha256() == walk.sha256()
+    assert there(RobotTrace(0)).messages == ()
+
+
+def test_a_number_that_is_none_stays_one():
+    def odd(tick, now_ns):
+        return [joint_state(now_ns, ["turn", "\udcff", "turn"], [float("nan"), float("inf"), 1])]
+
+    made = drive(odd, 3, URDF)
+    assert there(made).messages == made.messages
+    assert np.isnan(there(made).joint_states[0].positions[0])
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        Heard(9, JOINT_STATES, "submission", b"\x00\x01\x00\x00"),
+        Heard(1, JOINT_STATES, "submission", b""),
+        Heard(1, TF, "scene", b"\x00\x01\x00\x00\xff\xff\xff\xff"),
+    ],
+)
+def test_what_a_robot_cannot_have_recorded_is_refused(message):
+    with pytest.raises(ValueError, match="no trace of robot"):
+        there(RobotTrace(3, (message,)))

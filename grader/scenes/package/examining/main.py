@@ -17,6 +17,7 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
+from pkgutil import resolve_name
 
 ROOT = Path(__file__).resolve().parents[4]
 if __name__ == "__main__":
@@ -25,8 +26,8 @@ if __name__ == "__main__":
 from grader import linux  # noqa: E402
 from grader.scenes.package import inspection  # noqa: E402
 from grader.scenes.package.examining import layout, leftovers, packages, setup_call  # noqa: E402
+from grader.scenes.package.examining.examination import Examination  # noqa: E402
 from grader.scenes.package.examining.layout import Workspace  # noqa: E402
-from grader.scenes.package.examining.looking import Looking  # noqa: E402
 from grader.scenes.package.examining.steps import Ended, attempt, open_account  # noqa: E402
 from grader.scenes.package.inspection import Inspection, SetUp  # noqa: E402
 from grader.scenes.package.trace import FAILED, PackageTrace  # noqa: E402
@@ -62,9 +63,9 @@ def inspect(
     program: str = "",
     package: str = "",
     folder: str = "",
-    is_whole: bool = True,
+    inspectors: Sequence[str] | None = (),
 ) -> Inspection:
-    """What set-ups name to be started, and what there is of one package.
+    """Return what set-ups name to be started, and what there is of one package.
 
     Args:
         set_ups: folders that hold set-up files, below the root; the package that counts is then
@@ -72,7 +73,8 @@ def inspect(
         program: the console script that is asked for.
         package, folder: which package counts otherwise, by its name or by where it lies; '' for
             the one that describes a robot.
-        is_whole: whether more is looked at than launch files.
+        inspectors: where the inspectors are that examine it besides; None where only what launch
+            files would start is asked for.
     """
     root = root.resolve()
     said = tuple(SetUp(each, *setup_call.evaluate(root / each)) for each in set_ups)
@@ -85,28 +87,25 @@ def inspect(
     best = max(said, key=worth).folder if said else ""
     judged = root / best if said else Path(folder).resolve() if folder else None
     try:
-        found, plain = attempt(
-            lambda: _look(root, package, scratch, judged, known, is_whole=is_whole)
-        )
+        found, plain = attempt(lambda: _examine(root, package, scratch, judged, known, inspectors))
     except Ended as ended:  # nothing that a step was made of: so much can be said
         found, plain = PackageTrace(setup=layout.nothing("", ended.problem)), ()
     return Inspection(said, best, found, plain)
 
 
-def _look(
+def _examine(
     root: Path,
     asked: str,
     scratch: Path,
     folder: Path | None,
     known: layout.Known,
-    *,
-    is_whole: bool,
+    inspectors: Sequence[str] | None,
 ) -> tuple[PackageTrace, tuple[str, ...]]:
     """What was found, and launch files in which there is nothing but nodes.
 
     Args:
         known: set-ups that were evaluated already.
-        is_whole: whether more is looked at than launch files.
+        inspectors: see `inspect`.
     """
     open_account()
     found = packages.find(root)
@@ -123,8 +122,10 @@ def _look(
     laid = {id(each): layout.lay_out(each, root, prefix, known) for each in found}
     judged, everything = laid[id(one)], tuple(laid.values())
     place = Workspace(prefix, stubs, empty, scratch / "asked", judged, everything, root)
-    looking = Looking(place, scratch)
-    return looking.trace(is_whole=is_whole), tuple(looking.plain)
+    examination = Examination(place, scratch)
+    examine = [resolve_name(place).examine for place in inspectors or ()]
+    trace = examination.trace(examine, is_whole=inspectors is not None)
+    return trace, tuple(examination.plain)
 
 
 if __name__ == "__main__":

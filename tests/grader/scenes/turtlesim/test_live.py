@@ -148,7 +148,3 @@ def test_a_wipe_takes_away_what_was_drawn_before_it():
     assert told[-1].content == {"tick": 3, "drawn": [None], "calls": []}
     mirror.ask(None)
     assert not told[-1].canvas.rgba()[..., 3].any()
-
-
-def test_other_scenes_have_no_such_page():
-    assert load_scene("robot").live_page(0) is None

@@ -15,24 +15,10 @@ from grader.run import inspecting
 from grader.run.processes import isolation, levels
 from grader.scenes.package.trace import FAILED
 from tests import runs
+from tests.grader.run.test_opening import FORGES
 from tests.submissions.packages import EXERCISE, REFERENCE, looked_at, recorded, written
 
 NEVER_ENDS = "while True:\n    pass\n"
-FORGES = """
-import os
-for number in range(3, 64):
-    try:
-        os.write(number, b'{"setup": null}')
-    except OSError:
-        pass
-for process in os.listdir("/proc"):
-    for number in range(3, 64):
-        try:
-            with open(f"/proc/{process}/fd/{number}", "wb") as file:
-                file.write(b"[]")
-        except OSError:
-            pass
-"""
 
 
 def shares(result):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.scenes.package.examining import main, paths, steps, surfaces
+from grader.scenes.package.examining import main, paths, steps
 from grader.scenes.package.examining.steps import (
     NONSENSE,
     Ended,
@@ -26,7 +26,8 @@ from grader.scenes.package.examining.steps import (
 from grader.scenes.package.inspection import Told
 from grader.scenes.package.trace import FAILED, PackageTrace, decode, encode
 from grader.strict_json import from_json
-from tests.submissions.packages import REFERENCE, looked_at, written
+from grader_robots.inspection import meshes
+from tests.submissions.packages import INSPECTORS, REFERENCE, looked_at, written
 
 DISPLAY, SPAWN = "launch/display.launch.py", "launch/spawn.launch.py"
 SETUP = (REFERENCE / "setup.py").read_text(encoding="utf-8")
@@ -164,9 +165,9 @@ def test_a_mesh_counts_as_found_where_the_package_installs_it(tmp_path):
 
 
 def test_meshes_are_read_last_and_by_an_account_of_their_own(tmp_path, monkeypatch):
-    monkeypatch.setattr(surfaces, "CPU_S", -1.0)
+    monkeypatch.setattr(meshes, "CPU_S", -1.0)
     monkeypatch.setattr(steps, "_account", None)  # as before, afterwards
-    trace = main.inspect(REFERENCE, tmp_path).trace
+    trace = main.inspect(REFERENCE, tmp_path, inspectors=INSPECTORS).trace
     assert [each.problem for each in trace.launches] == [None, None]
     assert [each.state for each in trace.descriptions[0].meshes] == ["found"]
     assert trace.surfaces == ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grader.scenes.package.launched import HEADINGS, tables
-from tests.grader.scenes.package.test_launches import launched, looked_at, written
+from tests.grader_robots.inspection.test_launches import launched, looked_at, written
 
 
 def rows(folder, body: str):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grader.scenes.package.trace import Include
-from tests.grader.scenes.package.test_launches import launched
+from tests.grader_robots.inspection.test_launches import launched
 
 MODEL = "walker.urdf.xacro"
 

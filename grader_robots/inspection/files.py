@@ -31,7 +31,7 @@ _PROPERTY: Final = re.compile(_GIVEN.replace("{}", "property", 1).replace("{}", 
 _ARGUMENT: Final = re.compile(_GIVEN.replace("{}", "arg", 1).replace("{}", "default", 1))
 
 
-def meshes(text: str, place: Workspace) -> tuple[NamedMesh, ...] | None:
+def named_meshes(text: str, place: Workspace) -> tuple[NamedMesh, ...] | None:
     """The files that a description names; None where it is no XML."""
     try:
         if "<!DOCTYPE" in text:
@@ -84,7 +84,7 @@ def _looked_for(path: Path, place: Workspace) -> tuple[str, str]:
     return "missing", str(path)
 
 
-def from_files(place: Workspace) -> list[dict[str, str]]:
+def expanded(place: Workspace) -> list[dict[str, str]]:
     """In a copy of the process: the descriptions in the package's files, expanded.
 
     For packages whose launch files hand none to a robot_state_publisher.

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from trimesh.resolvers import FilePathResolver
 
-from grader.scenes.package.examining import surfaces
+from grader_robots.inspection import meshes
 
 ONE = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
 
@@ -34,7 +34,7 @@ def in_words(corners) -> bytes:
 
 def read(folder, data: bytes, name: str = "a.stl"):
     (folder / name).write_bytes(data)
-    told = surfaces.surface(str(folder / name))
+    told = meshes.surface(str(folder / name))
     return np.frombuffer(base64.b64decode(told), "<f4").reshape(-1, 3, 3)
 
 
@@ -66,8 +66,8 @@ def test_what_is_no_stl_is_nothing(data, tmp_path):
 
 
 def test_what_is_too_large_or_not_there_is_nothing(tmp_path, monkeypatch):
-    assert surfaces.surface(str(tmp_path / "none.stl")) == ""
-    monkeypatch.setattr(surfaces, "_MOST_BYTES", 100)
+    assert meshes.surface(str(tmp_path / "none.stl")) == ""
+    monkeypatch.setattr(meshes, "_MOST_BYTES", 100)
     assert len(read(tmp_path, binary(ONE))) == 0
 
 
@@ -79,7 +79,7 @@ def test_a_fine_mesh_becomes_coarse_and_keeps_its_shape(tmp_path):
     a, b, c = ball[:-1, :-1], ball[:-1, 1:], ball[1:, 1:]
     corners = np.stack((a, b, c), axis=2).reshape(-1, 3, 3)
     made = read(tmp_path, binary(corners))
-    assert 300 < len(made) <= surfaces.MOST_TRIANGLES
+    assert 300 < len(made) <= meshes.MOST_TRIANGLES
     assert np.abs(np.sqrt((made**2).sum(axis=2)) - 1).max() < 0.1
 
 
@@ -104,6 +104,6 @@ def test_an_archive_is_no_mesh(tmp_path):
 
 
 def test_of_a_mesh_in_words_no_more_is_read_than_may_be(tmp_path, monkeypatch):
-    monkeypatch.setattr(surfaces, "_MOST_READ", 2)
+    monkeypatch.setattr(meshes, "_MOST_READ", 2)
     assert len(read(tmp_path, in_words(ONE.repeat(2, axis=0)))) == 2
     assert len(read(tmp_path, in_words(ONE.repeat(3, axis=0)))) == 0

@@ -10,8 +10,8 @@ import pytest
 
 from grader_robots.scene.driving import drive
 from tests.browser import needs_browser, open_browser
-from tests.grader.reports.page.test_parts import package_trace, page_of
 from tests.grader.reports.samples import verdict
+from tests.grader_robots.reports.test_parts import package_trace, page_of
 from tests.grader_robots.scene.robots import walks
 from tests.grader_robots.scene.test_view import URDF
 from tests.tiers import others_are_more

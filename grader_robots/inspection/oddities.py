@@ -1,4 +1,4 @@
-"""Traces of packages that nobody would hand in, and that a process may tell of all the same."""
+"""Traces of packages that nobody would hand in, and that an inspection may find all the same."""
 
 from __future__ import annotations
 

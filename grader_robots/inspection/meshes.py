@@ -1,7 +1,7 @@
 """The files of a description's meshes, as few triangles as a picture needs.
 
 STL is read here, as ROS packages mostly have it; other kinds by trimesh, where it is installed (the
-extra `meshes`). A mesh is a stranger's file: it is read in a copy of the process, which has limits.
+extra `robots`). A mesh is a stranger's file: it is read in a copy of the process, which has limits.
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""Packages that describe robots, examined: which robots, their meshes, and other measures."""

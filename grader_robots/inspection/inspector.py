@@ -1,0 +1,202 @@
+"""The inspection `robot_description`: the robots that a package describes, and how they look.
+
+`examine` is called in the process of the inspection, so that what only reports need (numpy, the
+pictures of robots) is imported where it is shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from grader.message import Message, msg, plain_text
+from grader.scenes.package import trace
+from grader.scenes.package.examining.examination import Examination
+from grader.scenes.package.examining.steps import Ended, attempt, open_account, step
+from grader.scenes.package.inspector import Inspector
+from grader.scenes.package.trace import (
+    Description,
+    LaunchFile,
+    NamedMesh,
+    Obstacle,
+    PackageTrace,
+    Varied,
+)
+from grader_robots.inspection import files, meshes
+
+if TYPE_CHECKING:
+    from grader.recording.subject import Trace
+    from grader.recording.view import Part, Pixels
+
+
+class RobotInspector(Inspector):
+    """Robots by their descriptions: those that launch files hand on, else those of files."""
+
+    def examine(self, examination: Examination, trace: PackageTrace) -> PackageTrace:
+        """Return the trace with descriptions, what they are with other numbers, and meshes."""
+        robots = _Robots(examination)
+        for launch, found in examination.evaluated:
+            robots.add_launched(launch, found.sources, found.refused)
+        if not any(each.text >= 0 for each in robots.descriptions):
+            robots.add_files()
+        varied = robots.varied()
+        robots.read_meshes()
+        return replace(
+            trace,
+            descriptions=tuple(robots.descriptions),
+            varied=tuple(varied),
+            surfaces=tuple(robots.surfaces),
+        )
+
+    def window(self, trace: PackageTrace) -> Pixels | None:
+        """Return a picture of the robot with all joints at 0, uint8 (500, 500, 3)."""
+        from grader_robots.scene import described
+
+        return described.window(trace)
+
+    def words(self, trace: PackageTrace) -> Sequence[Message]:
+        """Return what robot that is."""
+        from grader_robots.scene import described
+
+        return (described.words(trace),)
+
+    def parts(self, trace: PackageTrace) -> Sequence[Part]:
+        """Return the robot as a solid that can be turned, and the tree of its links."""
+        from grader_robots.scene import described
+
+        found = described.solid(trace), described.links(trace)
+        return [part for part in found if part is not None]
+
+    def odd_traces(self) -> Mapping[str, Trace]:
+        """Return the traces of packages that describe odd robots."""
+        from grader_robots.inspection.oddities import odd_traces
+
+        return odd_traces()
+
+
+class _Robots:
+    """The robots of one package, as they are found."""
+
+    def __init__(self, examination: Examination) -> None:
+        self.descriptions: list[Description] = []
+        self.surfaces: list[str] = []
+        self._examination = examination
+        self._workspace = examination.workspace
+        self._surface_of: dict[str, int] = {}
+        #: the first description that is made of a file of the package: its number, and that file
+        self._first: tuple[int, str] | None = None
+
+    def add_launched(
+        self, launch: LaunchFile, sources: Sequence[str], refused: Sequence[str]
+    ) -> None:
+        """Add what a launch file hands to a robot_state_publisher.
+
+        Args:
+            sources: the files that were read for it.
+            refused: what xacro said where it made nothing.
+        """
+        for node in launch.nodes:
+            if "robot_state_publisher" not in (node.executable, node.package):
+                continue
+            for each in node.parameters:
+                if each.name == "robot_description":
+                    is_empty = not self._examination.texts[each.text].strip()
+                    why = refused[0][:400] if is_empty and refused else ""
+                    self._add(each.text, launch.file, sources, why)
+
+    def add_files(self) -> None:
+        """Add descriptions that no launch file hands on; they stand in for one that should."""
+        obstacle = self._examination.obstacle
+        try:
+            if obstacle:
+                raise Ended(Obstacle("limit", msg("nobody can look at it: {why}", why=obstacle)))
+            answer = self._examination.step(partial(files.expanded, self._workspace))
+            attempt(partial(self._add_answered, answer))
+        except Ended as ended:
+            problem = self._examination.shown(ended.problem)
+            self.descriptions.append(Description(-1, "", False, "", problem, (), False))
+
+    def varied(self) -> list[Varied]:
+        """Return the first description with one number doubled, for each number of its xacro."""
+        if self._first is None or not self._first[1].endswith((".xacro", ".xml", ".urdf")):
+            return []
+        of, source = self._first
+        with suppress(Ended):
+            answer = step(partial(files.varied, self._workspace, source), self._workspace.own)
+            return attempt(partial(self._varied, of, answer))
+        return []
+
+    def read_meshes(self) -> None:
+        """Read what meshes look like; last, and by an account of its own: it earns nothing."""
+        open_account(meshes.CPU_S)
+        for number, each in enumerate(self.descriptions):
+            read = tuple(replace(mesh, surface=self._surface(mesh)) for mesh in each.meshes)
+            self.descriptions[number] = replace(each, meshes=read)
+
+    def _add(
+        self, number: int, by: str, sources: Sequence[str], refused: str = "", launched: bool = True
+    ) -> None:
+        """Add a description, once; `refused`: why xacro has made none."""
+        if any(each.text == number for each in self.descriptions):
+            return
+        text = self._examination.texts[number] if number >= 0 else ""
+        named = files.named_meshes(self._examination.real(text), self._workspace)
+        description = Description(
+            text=number,
+            by=by,
+            is_launched=launched,
+            source=next((each for each in map(self._examination.own, sources) if each), ""),
+            problem=Obstacle("error", plain_text(refused)) if refused else None,
+            meshes=named or (),
+            is_xml=named is not None,
+        )
+        is_ours = bool(sources) and sources[0].startswith((f"{trace.PREFIX}/", "/source/"))
+        if is_ours and self._first is None:
+            self._first = len(self.descriptions), self._examination.real(sources[0])
+        self.descriptions.append(description)
+
+    def _add_answered(self, answer: list[dict[str, str]]) -> None:
+        for each in answer:
+            self._add_file(str(each["file"]), str(each["text"]), str(each["errors"]))
+
+    def _add_file(self, file: str, text: str, errors: str) -> None:
+        """Add what xacro makes of a file, or says of it."""
+        problem = Obstacle("error", plain_text(f"xacro: {errors}"[:1000]), file, 0)
+        if text:
+            try:
+                number = self._examination.number(text, is_file=True)
+                self._add(number, file, [file], launched=False)
+                return
+            except Ended as ended:
+                problem = replace(ended.problem, file=file)
+        self.descriptions.append(Description(-1, file, False, file, problem, (), False))
+
+    def _varied(self, of: int, answer: list[dict[str, str]]) -> list[Varied]:
+        made, texts = [], self._examination.texts
+        for each in answer:
+            name, text = str(each["name"])[:200], str(each["text"])
+            if len(text) > trace.LONGEST_TEXT or len(texts) > 100:
+                continue
+            if text and text not in texts:
+                texts.append(text)
+            made.append(Varied(of, name, texts.index(text) if text else -1))
+        return made
+
+    def _surface(self, mesh: NamedMesh) -> int:
+        """The number of a mesh's triangles; -1 where nobody can read it."""
+        path = mesh.path if mesh.is_mesh and mesh.state == "found" else ""
+        if path and path not in self._surface_of and len(self._surface_of) < meshes.MOST_MESHES:
+            self._surface_of[path] = -1
+            with suppress(Ended):
+                work = partial(meshes.surface, self._examination.real(path))
+                answer = str(step(work, self._workspace.own))
+                if answer and len(answer) <= trace.LONGEST_SURFACE:
+                    self._surface_of[path] = len(self.surfaces)
+                    self.surfaces.append(answer)
+        return self._surface_of.get(path, -1)
+
+
+INSPECTOR = RobotInspector()

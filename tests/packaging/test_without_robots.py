@@ -1,0 +1,62 @@
+"""The core needs no extension: without grader_robots all of tests/grader passes.
+
+A copy of the checkout lacks the folder, a copy of the environment its entry points.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from .conftest import ROOT, Environment
+
+#: With EXAMPLES=1000, `make test-all`: everything; else what is soon over.
+IS_WHOLE = int(os.environ.get("EXAMPLES") or 0) >= 1000
+SOON_OVER = (
+    "tests/test_imports.py",
+    "tests/grader/cli/test_run.py::test_a_right_solution_gets_full_marks_by_either_clock",
+)
+#: What is no part of a checkout, and what of it knows robots.
+LEFT_OUT = shutil.ignore_patterns(
+    *("grader_robots", ".git", ".venv*", "build", "dist", "demo", "*.egg-info", "__pycache__"),
+    *(".*_cache", ".hypothesis"),
+)
+
+
+@pytest.fixture
+def environment(tmp_path: Path) -> Iterator[Path]:
+    """Links to this environment, in which nothing says that there is grader_robots."""
+    place = tmp_path / "environment"
+
+    def leave_out(_: str, names: list[str]) -> set[str]:
+        return {name for name in names if name in ("grader_robots", "__pycache__")}
+
+    shutil.copytree(sys.prefix, place, symlinks=True, ignore=leave_out, copy_function=os.symlink)
+    (points,) = place.glob("lib/python*/site-packages/turtlesim_py-*.dist-info/entry_points.txt")
+    lines = points.read_text().splitlines(keepends=True)
+    points.unlink()
+    points.write_text("".join(line for line in lines if "grader_robots" not in line))
+    yield place
+    shutil.rmtree(place)  # ten thousands of links, which pytest would keep
+
+
+@pytest.mark.more("runs tests again, in a copy of the checkout")
+@pytest.mark.timeout(7200)
+def test_the_core_does_without_robots(environment: Path, tmp_path: Path, shell: Environment):
+    checkout = tmp_path / "checkout"
+    shutil.copytree(ROOT, checkout, ignore=LEFT_OUT, symlinks=True)
+    tests = ["tests/test_imports.py", "tests/grader"] if IS_WHOLE else SOON_OVER
+    words = ["-m", "pytest", "-q", "-ra", "-n", "2", "-m", "not more", *tests]
+    shell.pop("EXAMPLES", None)
+    done = subprocess.run(
+        [environment / "bin/python", *words], cwd=checkout, env=shell, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
+    assert not re.search(r"SKIPPED.*robot", done.stdout)
