@@ -56,7 +56,11 @@ def test_the_core_does_without_robots(environment: Path, tmp_path: Path, shell: 
     words = ["-m", "pytest", "-q", "-ra", "-n", "2", "-m", "not more", *tests]
     shell.pop("EXAMPLES", None)
     done = subprocess.run(
-        [environment / "bin/python", *words], cwd=checkout, env=shell, capture_output=True, text=True
+        [environment / "bin/python", *words],
+        cwd=checkout,
+        env=shell,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
     assert not re.search(r"SKIPPED.*robot", done.stdout)
