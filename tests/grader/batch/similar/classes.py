@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person, entries
 from grader.batch.similar import behaviour, sources
-from grader.batch.similar.page import Class, look_together
+from grader.batch.similar.page import Class, compare_class
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording
 
@@ -63,7 +63,7 @@ def hand_in(
 
 def looked_at(out: Path) -> Class:
     """The class in a folder, looked at together."""
-    return look_together(entries(out), CHALLENGE)
+    return compare_class(entries(out), CHALLENGE)
 
 
 def _files(path: Path) -> dict[str, bytes]:
