@@ -2,7 +2,7 @@
 
     python scripts/size.py [FOLDER]
 
-Counted is Python that git tracks, without tests and without students' programs. A room is a
+It counts the Python that git tracks, without tests and without students' programs. A room is a
 top-level folder, and below grader/ each sub-folder; the core is grader/ without exercises and
 batch. An arrow runs from a room to one that it imports; where two rooms import each other, it runs
 back up in the direction in which fewer imports go. Nothing of the code is imported.
@@ -17,9 +17,9 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-#: What students write or are given.
+#: Folders of students' programs.
 STUDENTS = {"starter", "reference", "right"}
-#: Not of the core.
+#: Rooms of grader/ that are not the core.
 AROUND_THE_CORE = {"grader/exercises", "grader/batch"}
 #: Folders from which packages are imported.
 IMPORTED_FROM = (PurePosixPath("."), PurePosixPath("tf2"))
