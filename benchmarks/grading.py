@@ -1,4 +1,4 @@
-"""What a grading costs: prints tables in Markdown, takes some two minutes.
+"""Measure what a grading costs: tables in Markdown, in about two minutes.
 
     .venv/bin/python benchmarks/grading.py [--real] [--repetitions N] [--only TABLE...]
 
@@ -296,7 +296,7 @@ def main() -> None:
     begun = time.monotonic()
     print(measuring.machine())
     print("Medians (lowest-highest). CPU: user and system time of all processes.")
-    few = max(2, options.repetitions - 2)  # of what takes longer
+    few = max(2, options.repetitions - 2)  # of slow figures
     with isolation.reserve_isolation() as number:
         discovery = {"ROS_DOMAIN_ID": str(number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         env = os.environ | discovery

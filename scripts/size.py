@@ -1,4 +1,4 @@
-"""Print how large the project is, which class names stand twice, and imports that run in circles.
+"""Print the size of the project, class names that occur twice, and imports that form cycles.
 
     python scripts/size.py [FOLDER]
 
@@ -49,7 +49,7 @@ def room(path: PurePosixPath) -> str:
 
 
 def double_names(trees: Trees) -> dict[str, list[PurePosixPath]]:
-    """Return the names of top-level classes that stand in several files."""
+    """Return the names of top-level classes that occur in several files."""
     found = defaultdict(list)
     for path, tree in trees.items():
         for name in {node.name for node in tree.body if isinstance(node, ast.ClassDef)}:
@@ -58,7 +58,7 @@ def double_names(trees: Trees) -> dict[str, list[PurePosixPath]]:
 
 
 def is_double_of_ros(paths: list[PurePosixPath]) -> bool:
-    """Whether a name stands in one file at most that is no double of ROS's API."""
+    """Whether a name occurs in at most one file that is no double of ROS's API."""
     others = [p for p in paths if "doubles" not in p.parts and not str(p).startswith(DOUBLES)]
     return len(others) < 2
 

@@ -23,7 +23,7 @@ from grader.run.processes.levels import ADVICE, LEVELS
 
 SCHEMA = "turtlesim-grader/class/v2"
 CLASS = "class.json"
-#: Characters of a value in a message: enough of a hash to tell two apart.
+#: Characters of a value in a message: enough of a hash to distinguish two.
 MOST_SHOWN = 24
 #: The fields that may change when everything is graded anew.
 MACHINE = {"grader", "ros", "python", "isolation"}

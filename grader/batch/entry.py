@@ -85,7 +85,7 @@ class Entry:
     """One hand-in, graded.
 
     Attributes:
-        hand_in: what was graded; without its path, for the submission lies elsewhere.
+        hand_in: what was graded, without its path.
         state: see `State`.
         key: of its run in the store; '' where there was none. See `grader.batch.store`.
         message: why there is no result; '' where there is one.

@@ -205,7 +205,7 @@ class Process:
                     pipe.close()
         if process.poll() is None and not self.is_over:
             with suppress(subprocess.TimeoutExpired):
-                process.wait(10.0)  # it ends by itself where nobody asks any more
+                process.wait(10.0)  # it ends by itself when its input is closed
         process.kill()
         code = process.wait()
         if code < 0:

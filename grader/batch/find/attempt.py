@@ -18,7 +18,7 @@ from grader.submission.folder import is_junk, listed
 from grader.text import clip, one_line, plain
 
 _MAX_NAME = 200  # characters of a person's name or id
-_MAX_NAME_BYTES: Final = 200  # of a file's name; file systems take 255
+_MAX_NAME_BYTES: Final = 200  # of a file's name; file systems allow 255
 #: ISO 8601, and its variants in names of files: 2026-11-01_12-30-05, 20261101T123005Z;
 #: Ruby's YAML has nanoseconds and a space before the zone.
 _TIME: Final = re.compile(

@@ -162,7 +162,7 @@ def _lay(piece: Piece, place: Path) -> Path | None:
     elif stat.S_ISREG(mode):
         try:
             os.link(piece.path, target)
-        except OSError:  # another file system, or not ours to link
+        except OSError:  # another file system, or no permission to link
             shutil.copyfile(piece.path, target)
     else:
         return None

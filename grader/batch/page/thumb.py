@@ -36,11 +36,11 @@ _TOLERANCES = (1.0, 1.5, 2.0, 3.0, 6.0, 12.0, 25.0, 50.0)
 _MOST_POINTS, _MOST_PIECES = 300, 20
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _PREFIX = "data:image/png;base64,"
-#: No file of ours is longer [bytes].
+#: The largest valid file [bytes].
 _LIMIT_BYTES = 40_000
 
 Piece = tuple[int, ...]
-#: A line with more points is thinned out evenly first: simplifying can take time with their square.
+#: A line with more points is thinned out evenly first: simplifying may be quadratic.
 _MOST_TO_SIMPLIFY = 2000
 
 

@@ -233,7 +233,7 @@ class Paths:
         self._who = [number for number, way in enumerate(ways) if way]
         self._place = {number: row for row, number in enumerate(self._who)}
         # Whole numbers, and their products summed up are below 2**53: floats hold them exactly,
-        # so the same comes out however a machine adds them up.
+        # so the order of additions does not matter.
         longest = max(map(len, ways), default=0)
         flat = np.array([ways[number] for number in self._who], dtype=np.float64)
         self._points = flat.reshape(len(self._who), longest)
