@@ -46,7 +46,7 @@ def steps(path: Path, place: Path) -> dict[str, float]:
         ends["three runs"] = time.perf_counter()
         if submission.copy is not None:
             sources.keep(submission.copy.folder, place / sources.SOURCE)
-        behaviour.behaved(place / sources.SOURCE, recordings.nominal)
+        behaviour.features_file(place / sources.SOURCE, recordings.nominal)
         thumb(recordings)
         ends["for the pages of the class"] = time.perf_counter()
     judging.save_recordings(recordings, place / "recording")

@@ -167,7 +167,9 @@ def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path)
     left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE)
     nominal = recordings.nominal
     files.put(place / THUMB, thumb(recordings))
-    files.put(place / behaviour.NAME, behaviour.behaved(place / sources.SOURCE, nominal, left_out))
+    files.put(
+        place / behaviour.NAME, behaviour.features_file(place / sources.SOURCE, nominal, left_out)
+    )
 
 
 def _without_path(submission: Submission) -> Submission:

@@ -47,7 +47,7 @@ class HashedFile(NamedTuple):
     sha256: str
 
 
-class Asked(NamedTuple):
+class TimedCommand(NamedTuple):
     """A command: its time after the first one [ns], and a hash of its values."""
 
     time_ns: int
@@ -61,11 +61,11 @@ def _has_points(path: tuple[int, ...]) -> tuple[int, ...]:
 
 
 @dataclass(frozen=True)
-class Behaved:
+class Features:
     """The content of similar.json; see the module."""
 
     files: tuple[HashedFile, ...] = ()
-    commands: tuple[Asked, ...] = ()
+    commands: tuple[TimedCommand, ...] = ()
     path: Annotated[tuple[int, ...], _has_points] = ()
     left_out: int = 0
     schema: Literal["turtlesim-grader/similar/v3"] = SCHEMA
@@ -82,7 +82,7 @@ def hash_of(words: Iterable[str]) -> int:
     return int.from_bytes(hashlib.blake2b(data, digest_size=_HASH_BYTES).digest(), "big")
 
 
-def behaved(source: Path, nominal: Recording | None, left_out: int = 0) -> bytes:
+def features_file(source: Path, nominal: Recording | None, left_out: int = 0) -> bytes:
     """Return the content of similar.json.
 
     Args:
@@ -95,17 +95,17 @@ def behaved(source: Path, nominal: Recording | None, left_out: int = 0) -> bytes
     """
     commands, path, too_many = _run(nominal)
     files = (HashedFile(each.name, hashlib.sha256(each.data).hexdigest()) for each in kept(source))
-    return strict_json.line(Behaved(tuple(files), commands, path, left_out + too_many))
+    return strict_json.line(Features(tuple(files), commands, path, left_out + too_many))
 
 
-def _run(nominal: Recording | None) -> tuple[tuple[Asked, ...], tuple[int, ...], int]:
+def _run(nominal: Recording | None) -> tuple[tuple[TimedCommand, ...], tuple[int, ...], int]:
     """Return the commands of a run, its path, and how many commands were left out."""
     if nominal is None:
         return (), (), 0
     done = load_subject(nominal.scene).behaviour(nominal.trace)
     begin = done.commands[0].time_ns if done.commands else 0
     kept_ones = islice(done.commands, MOST_COMMANDS)
-    commands = tuple(Asked(each.time_ns - begin, _hash(each)) for each in kept_ones)
+    commands = tuple(TimedCommand(each.time_ns - begin, _hash(each)) for each in kept_ones)
     return commands, _path(done.path), len(done.commands) - len(commands)
 
 

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from grader.batch.similar.behaviour import Asked, Behaved, hash_of
+from grader.batch.similar.behaviour import Features, TimedCommand, hash_of
 
 NEAR_MM: Final = 10
 #: Behaviour counts in a class of at least so many, if two behave so, or at most one in so many.
@@ -42,11 +42,11 @@ class Compared:
 
     Attributes:
         key: of its content; '' where there is none, or where everybody was given it.
-        behaved: None where it is unknown: then only the content is compared.
+        features: None where it is unknown: then only the content is compared.
     """
 
     key: str
-    behaved: Behaved | None
+    features: Features | None
 
 
 @dataclass(frozen=True)
@@ -100,9 +100,9 @@ class Comparison:
 
 def compare(hand_ins: Sequence[Compared]) -> Comparison:
     """Find the similar hand-ins of a class."""
-    found = [each.behaved or Behaved() for each in hand_ins]
-    asked = [each.commands for each in found]
-    commands, paths = Commands(asked), Paths([each.path for each in found])
+    found = [each.features or Features() for each in hand_ins]
+    of_each = [each.commands for each in found]
+    commands, paths = Commands(of_each), Paths([each.path for each in found])
     is_large = len(hand_ins) >= LARGE_CLASS
     contents = _equal_contents(hand_ins)
 
@@ -119,7 +119,7 @@ def compare(hand_ins: Sequence[Compared]) -> Comparison:
     of = {member: n for n, members in enumerate(groups, 1) for member in members}
 
     def pair(first: int, second: int) -> Pair:
-        equal_s, equal_commands = equal(asked[first], asked[second])
+        equal_s, equal_commands = equal(of_each[first], of_each[second])
         path_mm = paths.distance(first, second)
         return Pair(
             first,
@@ -151,11 +151,11 @@ class Commands:
     """The commands of a class, by what is alike.
 
     Args:
-        asked: the commands of each hand-in.
+        of_each: the commands of each hand-in.
     """
 
-    def __init__(self, asked: Sequence[Sequence[Asked]]) -> None:
-        self._kinds = [grams(each) for each in asked]
+    def __init__(self, of_each: Sequence[Sequence[TimedCommand]]) -> None:
+        self._kinds = [grams(each) for each in of_each]
         members: dict[Kind, list[int]] = defaultdict(list)
         for number, kind in enumerate(self._kinds):
             if len(kind) >= FEWEST:
@@ -188,11 +188,11 @@ class Commands:
         return sum(len(self._members[each]) for each in self._alike[kind])
 
 
-def grams(asked: Sequence[Asked]) -> Kind:
+def grams(commands: Sequence[TimedCommand]) -> Kind:
     """Return the n-grams of commands and the times between them: the start does not matter."""
     steps = [
         (str(each.time_ns - before.time_ns), str(each.hash))
-        for before, each in zip((Asked(0, 0), *asked), asked, strict=False)
+        for before, each in zip((TimedCommand(0, 0), *commands), commands, strict=False)
     ]
     last = len(steps) - LENGTH + 1
     return frozenset(
@@ -209,7 +209,7 @@ def _may_be_alike(short: Kind, long: Kind) -> bool:
     return len(short) >= LEAST_SHARE * len(long)
 
 
-def equal(one: Sequence[Asked], other: Sequence[Asked]) -> tuple[float, float]:
+def equal(one: Sequence[TimedCommand], other: Sequence[TimedCommand]) -> tuple[float, float]:
     """Return how long commands are equal [s], and the share of equal ones, 0 to 1."""
     if not one or not other:
         return 0.0, 0.0

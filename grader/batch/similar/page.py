@@ -20,7 +20,7 @@ from grader import files
 from grader.batch.entry import Entry
 from grader.batch.page.students import Student, students
 from grader.batch.similar import sources
-from grader.batch.similar.behaviour import Behaved
+from grader.batch.similar.behaviour import Features
 from grader.batch.similar.compare import LARGE_CLASS, ONE_IN, Compared, Comparison, Pair, compare
 from grader.exercise.exercise import Exercise
 from grader.message import Message, msg
@@ -74,7 +74,7 @@ def compare_class(entries: Sequence[Entry], exercise: Exercise) -> Class:
     given = {hashlib.sha256(each.data).hexdigest() for each in sources.given_files(exercise)}
     by_id = {student.entry.id: student for student in students(entries)}
     present = [entry for entry in entries if entry.state != "nothing"]
-    found = [Behaved.read(entry.folder) for entry in present]
+    found = [Features.read(entry.folder) for entry in present]
     only_given = tuple(
         number
         for number, each in enumerate(found)
@@ -87,7 +87,7 @@ def compare_class(entries: Sequence[Entry], exercise: Exercise) -> Class:
     return Class(tuple(by_id[entry.id] for entry in present), compare(compared), only_given)
 
 
-def _content(entry: Entry, found: Behaved | None) -> str:
+def _content(entry: Entry, found: Features | None) -> str:
     """Return a key of the content: of the Python files, else of everything."""
     if found is not None and found.files:
         return "\n".join(sorted(file.sha256 for file in found.files))

@@ -54,7 +54,7 @@ def hand_in(
         (copy / file).parent.mkdir(parents=True, exist_ok=True)
         (copy / file).write_bytes(data)
     left_out = sources.keep(copy, folder / sources.SOURCE)
-    made = behaviour.behaved(folder / sources.SOURCE, nominal, left_out)
+    made = behaviour.features_file(folder / sources.SOURCE, nominal, left_out)
     (folder / behaviour.NAME).write_bytes(made)
     entry = Entry(HandIn(who, (Person(who, name),)), "failed", 100.0, folder=folder)
     entry.put()
