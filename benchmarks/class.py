@@ -1,10 +1,10 @@
-"""What a class costs: `grader batch` for 1, 2, 4 jobs, and where the time goes.
+"""Measure what a class costs: `grader batch` for 1, 2, 4 jobs, and where the time goes.
 
     .venv/bin/python benchmarks/class.py [--count N] [--jobs 1 2 4] [--seed N]
 
-A class made of the fixtures (scripts/make_class.py) is graded anew for each number of jobs. Prints
-gradings a minute, CPU seconds a grading and the peak of memory, all processes together, and of one
-submission at a time how long each step takes; then what 1,000 and 100,000 submissions come to.
+A class made of the fixtures (scripts/make_class.py) is graded anew for each number of jobs. It
+prints gradings a minute, CPU seconds a grading and the peak of memory, all processes together; how
+long each step of one submission takes; and the cost of 1,000 and 100,000 submissions.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def batch(submissions: Path, out: Path, jobs: int) -> list[str]:
 
 
 def steps(path: Path, place: Path) -> dict[str, float]:
-    """Grade a submission; the wall time of each step [s]."""
+    """Grade a submission; return the wall time of each step [s]."""
     exercise, run = load_exercise("turtlesim_challenge"), grading.RUNNERS["virtual"]
     place.mkdir()
     ends = {"": time.perf_counter()}
@@ -46,7 +46,7 @@ def steps(path: Path, place: Path) -> dict[str, float]:
         ends["three runs"] = time.perf_counter()
         if submission.copy is not None:
             sources.keep(submission.copy.folder, place / sources.SOURCE)
-        behaviour.behaved(place / sources.SOURCE, recordings.nominal)
+        behaviour.features_file(place / sources.SOURCE, recordings.nominal)
         thumb(recordings)
         ends["for the pages of the class"] = time.perf_counter()
     judging.save_recordings(recordings, place / "recording")

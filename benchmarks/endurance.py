@@ -1,14 +1,14 @@
-"""Does the grader hold out? Many gradings, and kill -9 at random moments; prints what it came to.
+"""Test whether the grader endures many gradings, and kill -9 at random moments.
 
     .venv/bin/python benchmarks/endurance.py [--gradings N] [--seed N] [--kills SHARE]
 
 One grader process (`grader.grade`, as a course's service would call it) grades right, wrong and
 hostile fixtures in an order that the seed decides. Now and then the grader itself, a simulator or a
-fork server is killed in the middle of it. A grading that went down with its grader is done again;
-any other must have the verdict that it had in the beginning, when nothing was killed. After each
-are counted: memory and descriptors of the grader, its processes, the files below its temporary
-folder, shared memory. Exit code 1 if a verdict was another one, if something was left behind, or if
-a figure grew.
+fork server is killed in the middle of it. A grading whose grader was killed is done again; any
+other must have the verdict that it had at the beginning, when nothing was killed. After each it
+counts memory and descriptors of the grader, its processes, the files below its temporary folder,
+and shared memory. Exit code 1 if a verdict differed, if something was left behind, or if a figure
+grew.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ FIXTURES = [
     )),
 ]  # fmt: skip
 VICTIMS = ("grader", "simulator", "fork server")
-#: A grading takes about so long [s]: a process is killed within it.
+#: The range of the delay of a kill [s]; a grading takes about as long.
 MOMENTS_S = (0.0, 2.0)
-#: Nothing may be left of a killed grader after so long [s].
+#: All processes of a killed grader must end within this time [s].
 GONE_S = 20.0
-#: By so much may a figure grow from the first quarter of the gradings to the last: a share, and
-#: what chance alone makes.
+#: How much a figure may grow from the first quarter of the gradings to the last: a share, and an
+#: amount for chance.
 GROWTH = {
     "memory of the grader [MB]": (0.2, 20.0),
     "its descriptors": (0.0, 3.0),
@@ -63,7 +63,7 @@ GROWTH = {
 
 
 def scores(path: Path) -> dict[str, Any]:
-    """Grade in the grader's process; return what must be the same each time."""
+    """Grade in the grader's process; return the verdicts, which must be the same each time."""
     try:
         verdicts = grader.grade(path).verdicts
     except grader.GraderError as error:
@@ -72,7 +72,7 @@ def scores(path: Path) -> dict[str, Any]:
 
 
 class Grader:
-    """The process that grades; started anew when it was killed."""
+    """The process that grades; restarted when it was killed."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -94,7 +94,7 @@ class Grader:
             return None
 
     def figures(self) -> dict[str, float]:
-        """Return what it has at the moment; nothing is being graded."""
+        """Return its figures; call this only while nothing is being graded."""
         return {
             "memory of the grader [MB]": self.process.memory_info().rss / 2**20,
             "its descriptors": self.process.num_fds(),
@@ -111,11 +111,11 @@ class Grader:
 
 
 class Killer:
-    """Kills a process of a grader at a moment to come.
+    """Kills a process of a grader after a delay.
 
     Attributes:
         seen: the grader's descendants at that moment.
-        hit: what was killed; '' if nothing of the kind was there.
+        hit: what was killed; '' if there was no such process.
     """
 
     def __init__(
@@ -128,14 +128,14 @@ class Killer:
         self._timer.start()
 
     def join(self) -> None:
-        """Strike now or never."""
+        """Cancel the kill, unless it has begun."""
         self._timer.cancel()
         self._timer.join()
 
     def _strike(self) -> None:
         nearest = self._grader.children()
         self.seen = self._grader.children(recursive=True)
-        # no submission's supervisor: a run whose supervisor is killed was killed
+        # not a submission's supervisor: its death counts as the submission's
         servers = [process for process in nearest if "virtual_main" in _command(process)]
         simulators = [
             process
@@ -161,7 +161,7 @@ def _command(process: psutil.Process) -> str:
 
 
 def endure(gradings: int, seed: int, kills: float, folder: Path) -> list[str]:
-    """Grade and kill; what was not as it should be."""
+    """Grade and kill; return what was not as it should be."""
     chance = random.Random(seed)
     at_work = Grader(folder)
     expected = {path: at_work.grade(path) for path in FIXTURES}
@@ -194,7 +194,7 @@ def endure(gradings: int, seed: int, kills: float, folder: Path) -> list[str]:
 
 
 def grown(samples: list[dict[str, float]]) -> list[str]:
-    """Print every figure; those that have grown."""
+    """Print every figure; return those that have grown."""
     found = []
     quarter = max(1, len(samples) // 4)
     head("figure", "first", "median", "last", "max")
@@ -209,7 +209,7 @@ def grown(samples: list[dict[str, float]]) -> list[str]:
 
 
 def main() -> int:
-    """Do it; 1 if anything was not as it should be."""
+    """Run the test; 1 if anything was not as it should be."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--gradings", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)

@@ -1,9 +1,9 @@
-"""What a grading costs: prints tables in Markdown, takes some two minutes.
+"""Measure what a grading costs: tables in Markdown, in about two minutes.
 
     .venv/bin/python benchmarks/grading.py [--real] [--repetitions N] [--only TABLE...]
 
-Machines differ, so everything is given as multiples of two yardsticks too, which are measured again
-before each table: the start of a bare rclpy process, and a process that handles 3,449 poses.
+Machines differ, so every table also has multiples of two yardsticks, which are measured again
+before it: the start of a bare rclpy process, and a process that handles 3,449 poses.
 `measuring.py` explains these, and what processor time and memory are here. No test reads any of
 these numbers: they are for people.
 """
@@ -47,18 +47,18 @@ STYLES = {
     "multi_threaded": "MultiThreadedExecutor, awaits",
 }
 PLAN = Plan(Limits(first_motion_s=5, rest_s=3, total_s=120))
-STAGES = ("start", "discovery", "ticking", "shutdown")
+PHASES = ("start", "discovery", "ticking", "shutdown")
 AT_ONCE = (1, 2, 4)
-#: Of a processor, as the smallest container of Gradescope has.
+#: The share of a processor in the smallest container of Gradescope.
 HALF = 0.5
 TABLES = ("runs", "commands", "rates", "half")
 #: What `grader run --watch` prints when it has graded.
 GRADED = "Waiting for the next save"
-#: Between two readings of the processor time of a run, to divide it among its stages [s].
+#: Between two readings of the processor time of a run, to divide it among its phases [s].
 READ_S = 0.005
 
 
-# Work in a process of its own. Each returns when its parts began and ended [s, monotonic] -----
+# Work in a separate process. Each returns when its parts began and ended [s, monotonic] -------
 
 
 def virtual_run(path: Path) -> tuple[list[float], int]:
@@ -93,7 +93,7 @@ def gradings(path: Path, at_once: int) -> tuple[list[float], list[float]]:
 
 
 class CpuReadings:
-    """Reads a group's processor time again and again: how much was used between two times."""
+    """Samples a group's processor time: how much was used between two times."""
 
     def __init__(self, measured: Group) -> None:
         self._measured = measured
@@ -110,7 +110,7 @@ class CpuReadings:
         self._thread.join()
 
     def between(self, begin_s: float, end_s: float) -> Cost:
-        """What was used between two times of the monotonic clock [s]."""
+        """Return the cost between two times of the monotonic clock [s]."""
         has_any = len(self._readings) > 1
         return Cost(end_s - begin_s, self._at(end_s) - self._at(begin_s) if has_any else None)
 
@@ -130,7 +130,7 @@ class CpuReadings:
 
 
 class Worker:
-    """A process in a group, which does one piece of work after the other."""
+    """A process in a group, which does one job after the other."""
 
     def __init__(self, measured: Group, pool: ProcessPoolExecutor) -> None:
         self.group, self._pool = measured, pool
@@ -138,7 +138,7 @@ class Worker:
     def do(
         self, work: Callable[..., tuple[list[float], Any]], *arguments: object, times: int = 1
     ) -> list[tuple[Cost, list[Cost], Any]]:
-        """Do the work; each time the whole, its parts, and what the work returns besides."""
+        """Repeat the work; return each time the whole, its parts, and the work's other result."""
         with CpuReadings(self.group) as watch:
             answers = [self._pool.submit(work, *arguments).result() for _ in range(times)]
         return [
@@ -149,7 +149,7 @@ class Worker:
 
 @contextmanager
 def worker(cpus: float | None = None) -> Iterator[Worker]:
-    """Have a worker for some jobs."""
+    """Start a worker for some jobs."""
     spawn = multiprocessing.get_context("spawn")
     with measuring.group(cpus) as measured, ProcessPoolExecutor(1, spawn) as pool:
         with measured.entered():
@@ -167,14 +167,14 @@ def warm_runs(
 
 
 def command_cold(repetitions: int, cpus: float | None = None) -> list[Cost]:
-    """`grader run` of the reference, each in a fresh process, everything written."""
+    """Measure `grader run` of the reference, each in a fresh process, everything written."""
     with tempfile.TemporaryDirectory() as folder:
         words = [sys.executable, "-m", "grader", "run", str(REFERENCE), "--out", folder]
         return [measuring.command(words, cpus=cpus) for _ in range(repetitions)]
 
 
 def command_warm(repetitions: int) -> list[Cost]:
-    """The second verdict and those after it under `grader run --watch`, from save to verdict."""
+    """Measure later verdicts of `grader run --watch`, from save to verdict."""
     samples = []
     with tempfile.TemporaryDirectory() as folder, measuring.group() as measured:
         path = Path(folder) / "turtle_controller.py"
@@ -220,24 +220,24 @@ class Units:
         self.row("floor: 3,449 poses", floors, *[""] * len(titles))
 
     def row(self, name: str, samples: Sequence[Cost], *more: object) -> None:
-        """Print what something took: wall, CPU, both as multiples of both yardsticks."""
+        """Print costs: wall, CPU, both as multiples of both yardsticks."""
         multiples = [ratio(median(samples), unit) for unit in self._units]
         wall, cpu = spread(s.wall_s for s in samples), spread(s.cpu_s for s in samples)
         row(name, wall, cpu, *multiples, *more)
 
 
 def table_of_runs(env: dict[str, str], repetitions: int, with_real: bool) -> None:
-    """The reference and the styles, a run each."""
+    """Print the costs of a run of the reference and of each style."""
     print("\n## One run, warm: wall and CPU, and the stages of each (wall / CPU)")
-    titles = ("simulated [s]", *STAGES, "peak of the process and its runs [MiB]")
+    titles = ("simulated [s]", *PHASES, "peak of the process and its runs [MiB]")
     units = Units(env, 3, *titles, *["real time [s]"] * with_real)
     paths = {"reference": REFERENCE}
     for name, text in STYLES.items():
         paths[text] = ROOT / "tests" / "submissions" / "styles" / f"{name}.py"
     for name, path in paths.items():
         runs, peak_mib = warm_runs(path, repetitions)
-        stages = [median(samples) for samples in zip(*(parts for _, parts, _ in runs), strict=True)]
-        split = [f"{spread([s.wall_s], 3)} / {spread([s.cpu_s], 3)}" for s in stages]
+        phases = [median(samples) for samples in zip(*(parts for _, parts, _ in runs), strict=True)]
+        split = [f"{spread([s.wall_s], 3)} / {spread([s.cpu_s], 3)}" for s in phases]
         cells = [f"{runs[0][2] * TICK_S:.1f}", *split, spread([peak_mib], 0)]
         if with_real:
             with worker() as at_work:
@@ -246,7 +246,7 @@ def table_of_runs(env: dict[str, str], repetitions: int, with_real: bool) -> Non
 
 
 def table_of_commands(env: dict[str, str], repetitions: int) -> None:
-    """`grader run`, cold and warm."""
+    """Print the costs of `grader run`, cold and warm."""
     print("\n## `grader run` of the reference: three runs, everything written")
     units = Units(env, 3, "peak [MiB]")
     for name, samples in (
@@ -257,7 +257,7 @@ def table_of_commands(env: dict[str, str], repetitions: int) -> None:
 
 
 def table_of_rates(env: dict[str, str], repetitions: int) -> None:
-    """Whole gradings in one process, one and several at once."""
+    """Print the costs of whole gradings in one process, one and several at once."""
     print("\n## Gradings of the reference (three runs each) in one warm process; a row's time is")
     print("that of one grading: the wall time of all divided by their number")
     units = Units(env, 3, "gradings a minute", "peak [MiB]")
@@ -275,7 +275,7 @@ def table_of_rates(env: dict[str, str], repetitions: int) -> None:
 
 
 def table_at_half(env: dict[str, str]) -> None:
-    """The same on half a processor."""
+    """Print the costs of the reference on half a processor."""
     with measuring.group(HALF) as tried:
         neighbour = "a busy neighbour on the one core it may use"
         how = "cgroup quota" if tried.core is None else neighbour
@@ -296,7 +296,7 @@ def main() -> None:
     begun = time.monotonic()
     print(measuring.machine())
     print("Medians (lowest-highest). CPU: user and system time of all processes.")
-    few = max(2, options.repetitions - 2)  # of what takes longer
+    few = max(2, options.repetitions - 2)  # of slow figures
     with isolation.reserve_isolation() as number:
         discovery = {"ROS_DOMAIN_ID": str(number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         env = os.environ | discovery

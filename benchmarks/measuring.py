@@ -1,20 +1,20 @@
-"""How the benchmarks measure and print: time, processor time, memory, the machine, yardsticks.
+"""Measure and print for the benchmarks: time, processor time, memory, the machine, yardsticks.
 
-Processor time is the kernel's own count for a control group of its own (cgroup): user and system
-time of every process that was ever in it, also of those that had ended, were forked by others or
-were waited for by nobody. Where this process may not make such a group (a container without
-rights), the tables show "-" for it: no other way counts all of them.
+Processor time is that of a control group (cgroup), as the kernel counts it: user and system time of
+every process that was ever in it, also of those that had ended, were forked by others or were never
+waited for. If this process may not make such a group (a container without rights), the tables show
+"-": no other way counts all of them.
 
-Memory is the group's peak: everything at once, shared pages once, with the file cache that the
-processes filled.
+Memory is the group's peak: all processes together, shared pages once, with the file cache that they
+filled.
 
-Two yardsticks show what rclpy itself costs on this machine, so that gradings can be counted in
-them. Both are whole processes, from their start to their end:
+Two yardsticks show the cost of rclpy itself on this machine, as units for the cost of gradings.
+Both are whole processes, from their start to their end:
 
     python benchmarks/measuring.py start    a bare rclpy process: import, init, a node, shutdown
-    python benchmarks/measuring.py floor    takes and handles as many poses, from itself and by
-                                            rclpy's own executor, as a run of the reference
-                                            controller has ticks
+    python benchmarks/measuring.py floor    receives and handles as many poses, from itself and by
+                                            rclpy's executor, as a run of the reference controller
+                                            has ticks
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TypeVar
 
-#: The length in which a share of a processor is dealt out [us]; Docker's `--cpus` takes the same.
+#: The period of a quota of a processor [us]; that of Docker's `--cpus`.
 PERIOD_US = 100_000
 #: Ticks of the reference controller's nominal run.
 POSES = 3449
@@ -46,12 +46,12 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Cost:
-    """What something took; None where it could not be measured.
+    """The cost of something; None where it could not be measured.
 
     Attributes:
-        wall_s: [s]
+        wall_s: wall time [s].
         cpu_s: user and system time of all its processes [s].
-        peak_mib: the most memory it had [MiB].
+        peak_mib: the peak of its memory [MiB].
     """
 
     wall_s: float
@@ -60,7 +60,7 @@ class Cost:
 
 
 def in_turns(repetitions: int, *works: Callable[[], T]) -> list[list[T]]:
-    """Repeat several measurements in turns, so that other load on the machine concerns each."""
+    """Repeat several measurements in turns, so that other load on the machine affects each."""
     rounds = [[work() for work in works] for _ in range(repetitions)]
     return [list(values) for values in zip(*rounds, strict=True)]
 
@@ -103,7 +103,7 @@ def spread(values: Iterable[float | None], digits: int = 2) -> str:
 
 
 def ratio(value: Cost, unit: Cost) -> str:
-    """Format how many times a unit something is: wall / CPU."""
+    """Format a cost in multiples of another one: wall / CPU."""
     cpu = "-" if value.cpu_s is None or not unit.cpu_s else f"{value.cpu_s / unit.cpu_s:.1f}"
     return f"{value.wall_s / unit.wall_s:.1f} / {cpu}"
 
@@ -133,8 +133,8 @@ class Group:
 
     Attributes:
         name: of its folder in each hierarchy of control groups.
-        parents: controller -> the folder of the group that this process is in, below which the
-            new one is made; "" is cgroup v2's own.
+        parents: controller -> the folder of this process's group, below which the new one is made;
+            "" for cgroup v2.
         core: the only core that its processes may use, or None.
     """
 
@@ -144,7 +144,7 @@ class Group:
 
     @contextmanager
     def entered(self) -> Iterator[None]:
-        """Have this process in the group for a moment: those that it starts then stay there."""
+        """Move this process into the group for a moment: those that it starts then stay there."""
         cores = os.sched_getaffinity(0)
         if self.core is not None:
             os.sched_setaffinity(0, {self.core})  # of this thread; a child inherits it
@@ -171,7 +171,7 @@ class Group:
         return int(file.read_text()) / 2**20 if file else None
 
     def limit(self, cpus: float) -> bool:
-        """Give all its processes together so much of a processor; False where that is not ours."""
+        """Limit its processes together to so much of a processor; False if that is not allowed."""
         quota_us = int(cpus * PERIOD_US)
         file, text = self._file("", "cpu.max"), f"{quota_us} {PERIOD_US}"
         if not file:
@@ -204,8 +204,8 @@ class Group:
 def group(cpus: float | None = None) -> Iterator[Group]:
     """Make a group; with `cpus`, its processes get that much of a processor.
 
-    Where the kernel lets us deal out no share, a process that never rests shares one core with the
-    group, which gives it about half.
+    If no quota can be set, a busy process shares one core with the group, which then gets about
+    half of it.
     """
     made = _new_group()
     neighbour = None
@@ -224,10 +224,10 @@ def group(cpus: float | None = None) -> Iterator[Group]:
 
 
 def _new_group() -> Group:
-    """Make a group below our own in each hierarchy that we need and may change."""
+    """Make a group below the current one in each hierarchy that is needed and writable."""
     name = f"turtlesim-bench-{os.getpid()}-{time.monotonic_ns()}"
     usable: dict[str, Path] = {}
-    for controllers, parent in _own_groups():
+    for controllers, parent in _current_groups():
         folder = parent / name
         try:
             folder.mkdir()
@@ -246,8 +246,8 @@ def _enter(folder: Path) -> None:
     (folder / "cgroup.procs").write_text(str(os.getpid()))
 
 
-def _own_groups() -> Iterator[tuple[list[str], Path]]:
-    """Yield the folders of the groups that we are in, with their controllers; v2's is ""."""
+def _current_groups() -> Iterator[tuple[list[str], Path]]:
+    """Yield the folders of this process's groups, with their controllers; v2's is ""."""
     mounts = [line.split() for line in Path("/proc/mounts").read_text().splitlines()]
     for line in Path("/proc/self/cgroup").read_text().splitlines():
         _, names, path = line.split(":", 2)

@@ -1,4 +1,4 @@
-"""What the simulator costs, beside what the original costs: prints a table, in about four minutes.
+"""Measure what the simulator costs, beside the original: a table, in about four minutes.
 
     .venv/bin/python benchmarks/node.py
 
@@ -37,7 +37,7 @@ from grader.run.processes import isolation
 from turtlesim_py.world.arena import TICK_NS, Arena
 from turtlesim_py.world.canvas import Canvas, Pen
 
-#: How often a figure is taken.
+#: How often a figure is measured.
 REPETITIONS = 5
 #: How often and how long a process is measured for a figure of its cost [s].
 WINDOWS = 3
@@ -54,7 +54,7 @@ def figure(
 
 
 class Subscriber:
-    """The one rclpy subscriber: it listens to turtle1, and drives it on request."""
+    """An rclpy subscriber that listens to turtle1, and drives it on request."""
 
     def __init__(self) -> None:
         self.node = rclpy.create_node("benchmark")
@@ -102,7 +102,7 @@ class Subscriber:
 
 @contextmanager
 def simulator(*arguments: str) -> Iterator[psutil.Process]:
-    """A turtlesim_node of this checkout."""
+    """Start a turtlesim_node of this checkout."""
     command = [sys.executable, "-m", "turtlesim_py.ros.node", *arguments]
     with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL) as process:
         try:
@@ -113,7 +113,7 @@ def simulator(*arguments: str) -> Iterator[psutil.Process]:
 
 @contextmanager
 def heard(subscriber: Subscriber, *arguments: str) -> Iterator[psutil.Process]:
-    """A simulator whose poses arrive, and whose start is over."""
+    """Start a simulator, and wait until its poses arrive and its start is over."""
     with simulator(*arguments) as process:
         subscriber.stamps_ns.clear()
         subscriber.spin_until(lambda: subscriber.stamps_ns)
@@ -122,14 +122,14 @@ def heard(subscriber: Subscriber, *arguments: str) -> Iterator[psutil.Process]:
 
 
 def cpu_percent(process: psutil.Process, subscriber: Subscriber, drive: bool = False) -> float:
-    """Return the share of a core that a process takes for a while."""
+    """Return the share of a core that a process uses for a while."""
     process.cpu_percent()
     subscriber.spin_for(WINDOW_S, drive)
     return process.cpu_percent()
 
 
 def cost_of_node(subscriber: Subscriber) -> None:
-    """CPU and memory of the node, idle and driven, with one turtle and with ten."""
+    """Print CPU and memory of the node, idle and driven, with one turtle and with ten."""
 
     def shares(drive: bool) -> list[float]:
         return [cpu_percent(process, subscriber, drive) for _ in range(WINDOWS)]
@@ -147,7 +147,7 @@ def cost_of_node(subscriber: Subscriber) -> None:
 
 
 def start_to_first_pose() -> None:
-    """From the start of the process until a waiting client has a pose."""
+    """Print the time from the start of the process until a waiting client has a pose."""
     waits = []
     for _ in range(REPETITIONS):
         subscriber = Subscriber()
@@ -160,7 +160,7 @@ def start_to_first_pose() -> None:
 
 
 def pose_interval(subscriber: Subscriber) -> None:
-    """Between the stamps of two poses of an idle turtle."""
+    """Print the time between the stamps of two poses of an idle turtle."""
     with heard(subscriber):
         gaps_ms = subscriber.gaps_ms(20.0)
         others = subscriber.node.count_publishers("turtle1/pose") - 1
@@ -173,7 +173,7 @@ def pose_interval(subscriber: Subscriber) -> None:
 
 @contextmanager
 def viewers(port: int, count: int) -> Iterator[None]:
-    """Have so many clients of the page, which read everything that they are sent."""
+    """Connect so many clients to the page, which read everything that they are sent."""
 
     def read(connection: ClientConnection) -> None:
         with suppress(ConnectionClosed):
@@ -189,7 +189,7 @@ def viewers(port: int, count: int) -> Iterator[None]:
 
 
 def cost_of_page(subscriber: Subscriber) -> None:
-    """What the page costs the simulator, and whether poses stay as regular, with viewers."""
+    """Print what the page costs the simulator, and how regular poses are with viewers."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -220,7 +220,7 @@ def cost_of_page(subscriber: Subscriber) -> None:
 
 
 def most_turtles(subscriber: Subscriber) -> None:
-    """How many turtles hold 62.5 Hz while the node has one core only.
+    """Print how many turtles hold 62.5 Hz while the node has one core only.
 
     Turtles are added, a sixth more each time, until the poses of turtle1 come on average later
     than every 16.2 ms, in three tries: other programs want that core too.
@@ -246,7 +246,7 @@ def most_turtles(subscriber: Subscriber) -> None:
 
 
 def per_second(work: Callable[[int], None], count: int) -> list[float]:
-    """How often a second `work(count)` does what it does `count` times."""
+    """Return the rate at which `work(count)` repeats its job [1/s]."""
     rates = []
     for _ in range(REPETITIONS):
         begin = time.perf_counter()
@@ -256,7 +256,7 @@ def per_second(work: Callable[[int], None], count: int) -> list[float]:
 
 
 def bare_world() -> None:
-    """The world without ROS."""
+    """Print the rates of the world without ROS."""
 
     def ticks(count: int) -> None:
         arena = Arena()

@@ -1,10 +1,10 @@
-"""What confining a submission's process costs: prints a table in Markdown, takes some seconds.
+"""Measure what confining a submission's process costs: a table in Markdown, in some seconds.
 
     .venv/bin/python benchmarks/sandbox.py [--repetitions N]
 
-Each figure is the time from asking for a process to its end, where all that it does is to end:
+Each figure is the time from requesting a process to its end, for a process that ends at once:
 forked from a server, as nearly all runs are, and started. `none` is a process below its supervisor
-that is not confined; the difference to it is the sandbox's. No test looks at these numbers.
+that is not confined; the difference to it is the sandbox's. No test reads these numbers.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from grader.run.processes.fork_server import ForkServer
 from grader.run.processes.fork_server_main import ProcessCommand
 from grader.run.processes.started_process import SubmissionProcess
 
-#: A program that ends at once, started or forked; what a server is told comes after its code.
+#: A program that ends at once, started or forked; the arguments of a server follow its code.
 ENDS = f"""
 import os, sys
 sys.path.insert(0, {str(ROOT)!r})
@@ -39,7 +39,7 @@ COMMAND = [sys.executable, "-I", "-S", "-c", ENDS]
 
 @contextmanager
 def fork_server(env: dict[str, str]) -> Iterator[ForkServer]:
-    """One that forks processes which end at once."""
+    """Start a server that forks processes which end at once."""
     made = ForkServer(COMMAND, env)
     made.preloaded()
     try:
@@ -51,12 +51,12 @@ def fork_server(env: dict[str, str]) -> Iterator[ForkServer]:
 def measure(
     level: levels.Level, warm: ForkServer | None, env: dict[str, str], times: int
 ) -> list[float]:
-    """How long it takes to have a process and see its end [ms]."""
-    taken = []
+    """Measure how long it takes to get a process and see its end [ms]."""
+    times_ms = []
     for _ in range(times):
         with scratch.make_folder() as folder, isolation.obtain_isolation(folder) as isolated:
             (folder / "tmp").mkdir()
-            submission = folder / "handed_in"
+            submission = folder / "submission"
             submission.mkdir()
             begin = time.perf_counter()
             confinement = levels.prepare(
@@ -68,11 +68,11 @@ def measure(
             )
             process = SubmissionProcess(command, warm)
             code = process.wait(30.0)
-            taken.append(1000 * (time.perf_counter() - begin))
+            times_ms.append(1000 * (time.perf_counter() - begin))
             process.end(gently=False)
             if code != 0:
                 raise SystemExit(f"it ended with {code}: {process.output()}")
-    return taken
+    return times_ms
 
 
 def main() -> None:

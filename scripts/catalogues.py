@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Look for sentences in the code, and bring the catalogues of all languages up to date.
+"""Find the sentences in the code, and update the catalogues of all languages.
 
     make catalogues               after a sentence was written
-    scripts/catalogues.py holes   what has no translation yet
+    scripts/catalogues.py holes   list the sentences without a translation
 
-Translators edit `grader/languages/*.json`; what only the simulator's page says is in
+Translators edit `grader/languages/*.json`; the sentences of the simulator's page are in
 `turtlesim_py/live/page/*.json`.
 """
 
@@ -21,35 +21,35 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 LANGUAGES = ("fr", "zh")
-#: How many forms a sentence about a number has.
+#: The number of plural forms.
 FORMS = {"fr": 2, "zh": 1}
-#: The functions that get a sentence; of a pair the second is for more than one.
+#: The functions whose argument is a sentence, or a pair of singular and plural.
 ONE = ("msg", "tr", "Rejected", "_misfit", "Mistake", "expect")
 PAIR, IN_CONTEXT = ("msg_many", "tr_many"), "in_context"
 _STRING = r'"((?:[^"\\]|\\.)*)"'
 _IN_TEMPLATE = re.compile(rf"\btr\(\s*{_STRING}")
 _PAIR_IN_TEMPLATE = re.compile(rf"\btr_many\(\s*{_STRING},\s*{_STRING}")
 _IN_SCRIPT = re.compile(rf"\b(?:t|key)\(\s*{_STRING}")
-#: Errors get a sentence, too, where they get its values.
+#: The argument of an error is a sentence, too, if there are values for it.
 ERRORS = ("UsageError", "SubmissionError", "ExerciseError", "CheckFailed", "RecordingError")
 ERRORS += ("GraderFailure", "NotNow", "NotOffered")
-#: What is a student's, or another project's.
+#: Folders of students' programs, and of no sources.
 NOT_OURS = ("starter", "reference", "right", "__pycache__")
 
 ATTRIBUTES = ("aria-label", "placeholder", "title")
-#: Whose text is the same in all languages, or is said otherwise.
+#: Elements whose text is the same in all languages, or has another translation.
 SAME = ("script", "style", "noscript", "code", "kbd")
 EMPTY = ("meta", "link", "input", "br", "img")
-#: Two letters in a row that are no unit, and no name.
+#: A text with two letters in a row, without units and names, is translated.
 _WORD = re.compile(r"[A-Za-z]{2}")
 _UNIT = re.compile(r"\[[a-z/]+\]|\$\w+|turtle\d")
 
-#: A sentence, or the two forms of one about a number.
+#: A sentence, or its singular and plural.
 Sentence = str | tuple[str, str]
 
 
 def of_code(path: Path) -> Iterator[Sentence]:
-    """What functions of these names are given, and titles of checks: their docstrings' first."""
+    """Yield the sentences of Python code, and titles of checks: the first lines of docstrings."""
     for node in ast.walk(ast.parse(path.read_bytes())):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             texts = [a.value for a in node.args if isinstance(a, ast.Constant)]
@@ -68,19 +68,19 @@ def of_code(path: Path) -> Iterator[Sentence]:
 
 
 def of_template(path: Path) -> Iterator[Sentence]:
-    """What a template of a report renders."""
+    """Yield the sentences of a report's template."""
     text = path.read_text(encoding="utf-8")
     yield from map(_literal, _IN_TEMPLATE.findall(text))
     yield from ((_literal(one), _literal(many)) for one, many in _PAIR_IN_TEMPLATE.findall(text))
 
 
 def of_script(path: Path) -> Iterator[Sentence]:
-    """What a page's script renders in the browser."""
+    """Yield the sentences of a page's script."""
     yield from map(_literal, _IN_SCRIPT.findall(path.read_text(encoding="utf-8")))
 
 
 def of_html(path: Path) -> Iterator[Sentence]:
-    """The texts that stand in a page, as `language.js` finds them."""
+    """Yield the texts in a page, as `language.js` finds them."""
     reader = _Reader()
     reader.feed(path.read_text(encoding="utf-8"))
     for text in reader.found:
@@ -89,7 +89,7 @@ def of_html(path: Path) -> Iterator[Sentence]:
 
 
 def of_grader() -> Iterator[Sentence]:
-    """All that the grader says, its robots too; not what its player shares with the simulator."""
+    """Yield the sentences of the grader and its robots; not those that its player shares."""
     player = ROOT / "grader" / "scenes" / "turtlesim" / "player" / "page"
     shared = set(of_simulator())
     yield from (each for each in of_page(player) if each not in shared)
@@ -104,7 +104,7 @@ def of_grader() -> Iterator[Sentence]:
 
 
 def of_simulator() -> Iterator[Sentence]:
-    """Everything that the simulator's page says, and what its server answers."""
+    """Yield the sentences of the simulator's page, and of its server."""
     live = ROOT / "turtlesim_py" / "live"
     yield from of_page(live / "page")
     for path in sorted(live.glob("*.py")):
@@ -112,7 +112,7 @@ def of_simulator() -> Iterator[Sentence]:
 
 
 def of_page(folder: Path) -> Iterator[Sentence]:
-    """What the HTML and the scripts of a page say."""
+    """Yield the sentences in the HTML and the scripts of a page."""
     for path in sorted(folder.iterdir()):
         if path.suffix in (".html", ".js"):
             yield from (of_html if path.suffix == ".html" else of_script)(path)
@@ -126,13 +126,13 @@ CATALOGUES: dict[Path, Callable[[], Iterable[Sentence]]] = {
 
 
 def read(folder: Path, language: str) -> dict[str, Any]:
-    """A catalogue as it is."""
+    """Read a catalogue."""
     found: dict[str, Any] = json.loads((folder / f"{language}.json").read_text(encoding="utf-8"))
     return found
 
 
 def updated(folder: Path, language: str) -> dict[str, Any]:
-    """A catalogue with the sentences that there are now, and no others; "" is a hole."""
+    """Return a catalogue with exactly the current sentences; "" is a missing translation."""
     old, new = read(folder, language), dict[str, Any]()
     for sentence in CATALOGUES[folder]():
         if not sentence:
@@ -146,16 +146,16 @@ def updated(folder: Path, language: str) -> dict[str, Any]:
 
 
 def holes(folder: Path, language: str) -> list[str]:
-    """The sentences that have no translation."""
+    """Return the sentences that have no translation."""
     found = updated(folder, language).items()
-    return [key for key, said in found if not (said if isinstance(said, str) else all(said))]
+    return [key for key, to in found if not (to if isinstance(to, str) else all(to))]
 
 
 def text(catalogue: dict[str, Any]) -> str:
-    """A catalogue as its file has it: a line for each sentence."""
+    """Return the text of a catalogue's file: a line for each sentence."""
     lines = (
-        f" {json.dumps(key, ensure_ascii=False)}: {json.dumps(said, ensure_ascii=False)}"
-        for key, said in catalogue.items()
+        f" {json.dumps(key, ensure_ascii=False)}: {json.dumps(to, ensure_ascii=False)}"
+        for key, to in catalogue.items()
     )
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
@@ -169,7 +169,7 @@ class _Reader(HTMLParser):
         self._open: list[tuple[str, bool]] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Take the attributes that are read; remember whether what is within is translated."""
+        """Collect the translated attributes; record whether the content is translated."""
         given = dict(attrs)
         is_same = tag in SAME or given.get("translate") == "no" or self._is_same
         if not is_same:
@@ -183,7 +183,7 @@ class _Reader(HTMLParser):
         assert opened == tag, f"<{opened}> is closed as </{tag}>"
 
     def handle_data(self, data: str) -> None:
-        """Take a text."""
+        """Collect a text."""
         if not self._is_same:
             self.found.append(data)
 
@@ -193,12 +193,12 @@ class _Reader(HTMLParser):
 
 
 def _literal(inside: str) -> str:
-    said: str = json.loads(f'"{inside}"')
-    return said
+    literal: str = json.loads(f'"{inside}"')
+    return literal
 
 
 def main() -> int:
-    """Update, or list the holes."""
+    """Update the catalogues, or list what is not translated."""
     for folder in CATALOGUES:
         for language in LANGUAGES:
             missing = holes(folder, language)

@@ -1,10 +1,10 @@
-"""Send a simulator's process what no well-meant program sends, and see whether it survives.
+"""Fuzz a simulator's process with what no well-meant program sends, and check that it survives.
 
     python scripts/fuzz_simulator.py ros|link [--seconds N] [--seed N]
 
 `ros`: every service, topic and part of an action of a `turtlesim_node`, over DDS, with values that
 are random, huge, or none. `link`: a graded simulator in virtual time, whose student's side sends
-mutated packets and mutated CDR. What lies below DDS, `sends_broken_packets` tries (tests/attacks).
+mutated packets and mutated CDR. `sends_broken_packets` (tests/attacks) fuzzes the layer below DDS.
 
 It prints counts, and ends with 1 if a process has died or does not answer any more.
 """
@@ -40,7 +40,7 @@ NAMES = ("background_r", "holonomic", "image_rate", "canvas_folder", "use_sim_ti
 
 
 def scalar(kind: str, chance: random.Random) -> Any:
-    """Return a value for a field of a basic type; mostly one that is likely to break something."""
+    """Return a value of a basic type; mostly one that is likely to break something."""
     if kind in ("float", "double"):
         number = chance.choice((*FLOATS, float("nan"), chance.uniform(-12, 12)))
         return number if kind == "double" else struct.unpack("<f", _single(number))[0]
@@ -108,9 +108,9 @@ def mutated(data: bytes, chance: random.Random) -> bytes:
 
 
 def _class(kind: str) -> Any:
-    """Return the class of a type of ROS, of a field ("geometry_msgs/Vector3") or with its folder.
+    """Return the class of a ROS type, with its folder or without ("geometry_msgs/Vector3").
 
-    Also that of a part of an action, as "turtlesim/action/RotateAbsolute_SendGoal".
+    It may be a part of an action, as "turtlesim/action/RotateAbsolute_SendGoal".
     """
     package, *folder, name = kind.split("/")
     action, _, part = name.partition("_")
@@ -124,7 +124,7 @@ def _class(kind: str) -> Any:
 
 
 class Caller:
-    """A node that finds what a simulator serves, and calls it."""
+    """A node that finds the topics and services of a simulator, and calls them."""
 
     def __init__(self, chance: random.Random) -> None:
         import rclpy
@@ -141,7 +141,7 @@ class Caller:
         self._rclpy.shutdown()
 
     def find(self) -> int:
-        """Make clients and publishers for what is served now; return how many clients."""
+        """Make clients and publishers for what is served now; return the number of clients."""
         with suppress(Exception):  # it is not there yet
             for topic, (kind, *_) in self._node.get_subscriber_names_and_types_by_node(
                 "turtlesim", "/"
@@ -191,7 +191,7 @@ def _plain(name: str) -> str:
 def simulator(
     chance: random.Random,
 ) -> Iterator[tuple[subprocess.Popen[bytes], Caller, Callable[[], str]]]:
-    """Have a `turtlesim_node` in a process of its own, who calls it, and what reads its log."""
+    """Start a `turtlesim_node`; yield its process, a caller, and a function that reads its log."""
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-m", "turtlesim_py.ros.node"]
     with (
@@ -211,7 +211,7 @@ def simulator(
 
 
 def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
-    """Call everything; the counts, and what went wrong."""
+    """Call everything; return the counts, and what went wrong."""
     with simulator(chance) as (process, caller, log):
         until = time.monotonic() + seconds
         while time.monotonic() < until and process.poll() is None:
@@ -228,7 +228,7 @@ def fuzz_ros(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
 
 
 def fuzz_link(seconds: float, chance: random.Random) -> tuple[Counter[str], str]:
-    """Be the student's side of many runs; the counts, and what went wrong."""
+    """Be the student's side of many runs; return the counts, and what went wrong."""
     counts: Counter[str] = Counter()
     until = time.monotonic() + seconds
     while time.monotonic() < until:
@@ -316,7 +316,7 @@ def _converse(
     readers = [entry for entry in table.added if not entry.writes]
     requests = [(entry.id, *_samples(entry)) for entry in readers]
     channels = tuple(entry.channel for entry in table.added if entry.writes)
-    is_rude = chance.random() < 0.5  # also packets that are none, which end the run
+    is_rude = chance.random() < 0.5  # also invalid packets, which end the run
     with socket.socket(fileno=fds[0]) as mail:
         mail.setblocking(False)
         for turn in range(400):

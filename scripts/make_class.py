@@ -4,8 +4,8 @@
 
 The folder is like Moodle's "Download all submissions": `Full Name_ID_assignsubmission_file_/`.
 About half are right or lack one thing (the challenge's solution and its mutants), a third are
-beginners' mistakes, a tenth is hostile, some cannot be started, some handed in what somebody else
-did. The same seed makes the same class.
+beginners' mistakes, a tenth is hostile, some cannot be started, and some are copies of others. The
+same seed makes the same class.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tests.submissions.beginners import CHANGED, changed  # noqa: E402
 ATTACKS = ROOT / "tests" / "attacks" / "submissions"
 FIRST = ("Zoë", "Li", "José", "Anna Maria", "O'Neil", "Søren", "Fatıma", "Jürgen", "Nguyễn", "Ada")
 LAST = ("Müller", "van der Berg", "Ødegård", "D'Angelo", "Çelik", "Smith", "Łukasz", "García")
-#: Neither needs real time nor a minute of a processor, so that it shows what a usual class costs.
+#: None needs real time or a minute of a processor, so that the class costs as much as a usual one.
 HOSTILE = (
     *("imitates_results", "crashes", "fakes_a_traceback", "prints_escapes", "exits_oddly"),
     *("lies_about_itself", "turns_on_the_spot", "replaces_builtins", "drives_beyond_all_numbers"),
@@ -35,17 +35,17 @@ UNUSABLE: dict[str, bytes] = {
     "notes.txt": b"I could not do it.\n",
     "turtle_controller.py": b"import rclpy\ndef main()\n    pass\n",
 }
-#: Of ten submissions: (so many, what).
+#: Of ten submissions: (number, kind).
 SHARES = ((5, "right"), (3, "beginner"), (1, "hostile"), (1, "odd"))
 
 
 def programs() -> dict[str, list[str]]:
-    """Return the texts of programs by what they are."""
+    """Return the texts of programs by their kind."""
     right = [each.text() for each in read_solutions(load_exercise("turtlesim_challenge"))]
     return {
-        # with one thing spoiled each, but for the first; not all make a mistake
+        # the reference more often, as not all students make a mistake; and its mutants
         "right": right[:1] * (len(right) // 2) + right,
-        # but for those that burn a minute of a processor each
+        # except those that use a minute of a processor each
         "beginner": [changed(n) for n in sorted(CHANGED) if not n.startswith(("loops", "floods"))],
         "hostile": [(ATTACKS / f"{name}.py").read_text(encoding="utf-8") for name in HOSTILE],
     }

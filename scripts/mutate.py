@@ -2,12 +2,12 @@
 
     make mutate ARGS="grader/exercise grader/result --count 100"
 
-At places drawn by chance something is changed: a comparison, a number, a condition, an exception.
-For each the tests of the same folder run, those of its module first, until one fails. What no test
-has noticed is printed with the change that was made. The same call again goes on where it was
-stopped; after a commit it begins anew, at the same places as long as the code is the same.
+It changes random places: a comparison, a number, a condition, an exception. For each change the
+tests of the same folder run, those of its module first, until one fails. The changes that no test
+has noticed are printed. The same call again goes on where it was stopped; after a commit it begins
+anew, at the same places as long as the code is the same.
 
-As root the tests have processes of their own: a changed program may kill the wrong ones.
+As root the tests run in a separate process namespace: a changed program may kill the wrong ones.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ ROOT = Path(__file__).resolve().parents[1]
 TREE = ROOT / "build" / "mutants"
 #: Students' programs.
 EXCLUDED = [f"**/{name}/**/*.py" for name in ("starter", "reference", "right")]
-#: `|` stands in annotations, which are never run.
+#: `|` is mostly in annotations, which are never run.
 EQUIVALENT = "core/ReplaceBinaryOperator_BitOr_"
 PYTEST = "-m pytest -x -q -n0 -p no:randomly -p no:cacheprovider -m 'not more'"
 TIMEOUT_S = 300.0
@@ -68,7 +68,7 @@ def draw(session: WorkDB, modules: Sequence[str], count: int, seed: int) -> None
 
 
 def tests_of(module: Path) -> list[str]:
-    """Return the tests of a module's folder, or of the nearest one above that has any."""
+    """Return the tests of a module's folder, or of the nearest folder above with tests."""
     folder = Path("tests") / module.parent
     while not (found := sorted(map(str, folder.glob("test_*.py")))):
         folder = folder.parent

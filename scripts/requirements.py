@@ -1,7 +1,7 @@
-"""Prints everything to install into .venv beside the project itself, one requirement a line.
+"""Print everything to install into .venv beside the project itself, one requirement a line.
 
-    requirements.py         what building and running it needs
-    requirements.py test    ... and what `make test` and `make lint` need besides
+    requirements.py         for building and running it
+    requirements.py test    ... and also for `make test` and `make lint`
 
 BOUNDS=lowest asks for our dependencies at their lower bounds.
 """
@@ -16,7 +16,7 @@ NOT_AT_LOWEST = ("check-jsonschema",)
 
 
 def lowest(requirement: str) -> str:
-    """The requirement at its lower bound: name==1.2 for name>=1.2,<2."""
+    """Return the requirement at its lower bound: name==1.2 for name>=1.2,<2."""
     return requirement.partition(",")[0].replace(">=", "==")
 
 

@@ -18,24 +18,26 @@ EXERCISES = (
     *("turtlesim_challenge", "square", "state_publisher"),
     *("description_package", "thymio_package"),
 )
-#: What stands between these two lines is written here.
+#: The text between these two lines is generated.
 FIRST, LAST = "<!-- from the checks: python scripts/rubric.py -->", "<!-- so far -->"
 
 
 def page(old: str) -> str:
-    """The page with the rubrics as they are now; what two exercises share is told once."""
+    """Return the page with the current rubrics; a check of two exercises is described once."""
     before, _, rest = old.partition(FIRST)
     _, _, after = rest.partition(LAST)
     parts = []
-    told_by: dict[str, str] = {}  # what a check measures -> the exercise that told it first
+    described_in: dict[str, str] = {}  # what a check measures -> the first exercise with it
     for name in EXERCISES:
         exercise = load_exercise(name)
         texts = {check.name: told(check, exercise.tolerances) for check in exercise.checks}
         above = {
-            check: told_by[texts[check]] for check in exercise.points if texts[check] in told_by
+            check: described_in[texts[check]]
+            for check in exercise.points
+            if texts[check] in described_in
         }
         first = (texts[check] for check in exercise.points if check not in above)
-        told_by |= {text: name for text in first if text}
+        described_in |= {text: name for text in first if text}
         parts.append(f"## {exercise.title!s}\n\n`{name}`\n")
         if above:
             parts.append("\n".join(_as_in(exercise, *each) for each in above.items()) + "\n")

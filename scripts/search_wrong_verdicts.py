@@ -3,10 +3,10 @@
     python scripts/search_wrong_verdicts.py [--count 200] [--seed 1] [--limit-s 600] [--show]
 
 Random controllers, right ones of many styles and wrong ones with one or two faults, drive the world
-without ROS. What each really did is known from how it was made: the faults that were put in are the
-oracle, which uses no check. A wrong one is *killed* if it loses points in a check that its
-fault concerns; a right one is *spared* if it keeps all points. Printed are both rates, and every
-controller that was judged wrongly, with the numbers that make it again.
+without ROS. The injected faults are the oracle, which uses no check. A wrong controller is *killed*
+if it loses points in a check that its fault concerns; a right one is *spared* if it keeps all
+points. It prints both rates, and every controller that was judged wrongly, with the numbers to make
+it again.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from turtlesim_py.world.arena import Arena  # noqa: E402
 from turtlesim_py.world.turtle import SIZE_M, TICK_S, Pose  # noqa: E402
 
 CENTRE_M = SIZE_M / 2
-#: The checks of which at least one has to take points, and the faults for which it has to.
+#: Checks, of which at least one must deduct points for any of these faults.
 CONCERNED: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("edge_stop",): (
         *("never_stops", "stops_early", "silent", "drives_on", "turns_on", "one_wall", "counts"),
@@ -48,7 +48,7 @@ CONCERNED: Mapping[tuple[str, ...], tuple[str, ...]] = {
     ("picture",): ("background",),
 }
 FAULTS = {fault: checks for checks, faults in CONCERNED.items() for fault in faults}
-#: Colours that are easily told apart, one from each row.
+#: Colours that are easily distinguished, one from each row.
 PALETTES = (
     ((255, 255, 255), (0, 0, 0), (255, 255, 0)),
     ((255, 0, 0), (200, 0, 0), (255, 100, 100)),
@@ -59,7 +59,7 @@ PALETTES = (
 
 @dataclass(frozen=True)
 class Style:
-    """How a controller is written; with no faults, all of these are right.
+    """The style of a controller; without faults, every style is right.
 
     Attributes:
         period: ticks between velocity commands.
@@ -71,8 +71,8 @@ class Style:
         repeats: whether it goes on publishing zeros.
         backwards: whether it drives backwards.
         waits: ticks before anything.
-        faults: what was done wrong.
-        chance: a seed for what a fault leaves open.
+        faults: the injected mistakes.
+        chance: a seed for random details of a fault.
     """
 
     period: int
@@ -91,7 +91,7 @@ class Style:
 
 
 def some_style(chance: random.Random) -> Style:
-    """A right solution."""
+    """Draw the style of a right solution."""
     one_timer = chance.random() < 0.3
     turn = chance.choice((0.8, 1.0, 1.2, 1.5, 2.0))
     period = chance.choice((6, 12, 31) if one_timer else (3, 6, 12, 31, 50))
@@ -117,7 +117,7 @@ def some_style(chance: random.Random) -> Style:
 
 @dataclass
 class Controller:
-    """A style at work, in a submission's place."""
+    """A controller of a style, which drives as a submission would."""
 
     style: Style
     speed: float = 0.0
@@ -134,11 +134,11 @@ class Controller:
         self.next_at = self.style.waits + 1
 
     def has(self, fault: str) -> bool:
-        """Whether something is done wrong."""
+        """Whether the style has a fault."""
         return fault in self.style.faults
 
     def __call__(self, tick: int, pose: Pose | None, arena: Arena) -> None:
-        """What a submission would do before a tick."""
+        """Do what a submission would do before a tick."""
         for when in [when for when in self.due if when <= tick]:
             self.paint(self.due.pop(when), arena)
         if tick < self.style.waits or pose is None:
@@ -159,7 +159,7 @@ class Controller:
             self.publish(tick, arena)
 
     def publish(self, tick: int, arena: Arena) -> None:
-        """What its timer does."""
+        """Do what its timer would do."""
         if self.stopped_at and not self.has("drives_on"):
             if self.has("turns_on"):
                 twist(arena, 0.0, self.style.turn)
@@ -171,7 +171,7 @@ class Controller:
         twist(arena, -speed if self.style.backwards else speed, turn)
 
     def velocity(self, tick: int) -> tuple[float, float]:
-        """The next command, as the shape wants it."""
+        """Return the next command for the shape."""
         style = self.style
         seconds = tick * TICK_S
         if self.has("circle"):
@@ -192,7 +192,7 @@ class Controller:
         return self.speed, style.turn
 
     def watch(self, tick: int, pose: Pose, arena: Arena) -> None:
-        """What it does about a pose."""
+        """Do what its pose callback would do."""
         if self.is_near(pose):
             self.stopped_at = tick
             if not self.has("silent"):
@@ -206,7 +206,7 @@ class Controller:
             self.due[tick + self.style.answer + delay] = self.color_of(quadrant)
 
     def is_near(self, pose: Pose) -> bool:
-        """Whether it is to stop here."""
+        """Whether it stops here."""
         sides = (pose.x, pose.y, SIZE_M - pose.x, SIZE_M - pose.y)
         if self.has("never_stops"):
             return False
@@ -219,7 +219,7 @@ class Controller:
         return min(sides) < self.style.margin_m
 
     def quadrant_of(self, tick: int, pose: Pose) -> int:
-        """Where it believes to be."""
+        """Return the quadrant in which it believes to be."""
         if self.has("by_time"):
             return int(tick * TICK_S * abs(self.style.turn) / (math.pi / 2)) % 4 + 1
         centre = CENTRE_M + 1.5 * self.has("wrong_centre")
@@ -228,7 +228,7 @@ class Controller:
         return 3 if pose.x < centre else 4
 
     def color_of(self, quadrant: int) -> tuple[int, int, int]:
-        """The colour that it asks for."""
+        """Return the colour that it requests."""
         colors = list(self.style.colors)
         if self.has("two_alike"):
             colors[3] = colors[1]
@@ -242,7 +242,7 @@ class Controller:
         return colors[quadrant - 1]
 
     def paint(self, color: tuple[int, int, int], arena: Arena) -> None:
-        """The answer of the service."""
+        """Set the pen, as the service would."""
         if self.has("no_pen"):
             return
         if self.has("pen_off"):
@@ -262,7 +262,7 @@ def judged(style: Style, exercise: Exercise) -> dict[str, tuple[float, str]]:
 
 
 def main() -> None:
-    """Search, and print what was found."""
+    """Search, and print the wrong verdicts and both rates."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--count", type=int, default=200, help="controllers")
     parser.add_argument("--seed", type=int, default=1)

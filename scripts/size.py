@@ -1,8 +1,8 @@
-"""Print how large the project is, which class names stand twice, and imports that run in circles.
+"""Print the size of the project, class names that occur twice, and imports that form cycles.
 
     python scripts/size.py [FOLDER]
 
-Counted is Python that git tracks, without tests and without students' programs. A room is a
+It counts the Python that git tracks, without tests and without students' programs. A room is a
 top-level folder, and below grader/ each sub-folder; the core is grader/ without exercises and
 batch. An arrow runs from a room to one that it imports; where two rooms import each other, it runs
 back up in the direction in which fewer imports go. Nothing of the code is imported.
@@ -17,9 +17,9 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-#: What students write or are given.
+#: Folders of students' programs.
 STUDENTS = {"starter", "reference", "right"}
-#: Not of the core.
+#: Rooms of grader/ that are not the core.
 AROUND_THE_CORE = {"grader/exercises", "grader/batch"}
 #: Folders from which packages are imported.
 IMPORTED_FROM = (PurePosixPath("."), PurePosixPath("tf2"))
@@ -49,7 +49,7 @@ def room(path: PurePosixPath) -> str:
 
 
 def double_names(trees: Trees) -> dict[str, list[PurePosixPath]]:
-    """Return the names of top-level classes that stand in several files."""
+    """Return the names of top-level classes that occur in several files."""
     found = defaultdict(list)
     for path, tree in trees.items():
         for name in {node.name for node in tree.body if isinstance(node, ast.ClassDef)}:
@@ -58,7 +58,7 @@ def double_names(trees: Trees) -> dict[str, list[PurePosixPath]]:
 
 
 def is_double_of_ros(paths: list[PurePosixPath]) -> bool:
-    """Whether a name stands in one file at most that is no double of ROS's API."""
+    """Whether a name occurs in at most one file that is no double of ROS's API."""
     others = [p for p in paths if "doubles" not in p.parts and not str(p).startswith(DOUBLES)]
     return len(others) < 2
 

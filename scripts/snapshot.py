@@ -4,16 +4,16 @@
     python scripts/snapshot.py compare BEFORE AFTER
     python scripts/snapshot.py repeat DIR [--gradings 200] [--at-once 4] [--busy 16] [--seed N]
 
-A change that is to leave behaviour as it is takes a snapshot before and one after. `take` uses
-nothing but the command line, so it serves for any two versions of the grader. `compare` compares,
+To check that a change leaves behaviour as it is, take a snapshot before and one after it. `take`
+uses only the command line, so it works for any two versions of the grader. `compare` compares,
 byte for byte, the result, the recordings and every report format; what differs between equal runs
-(wall time, dates and versions) is taken out first, and pictures inside reports are compared by
-their pixels. What ran in real time is compared by its outcome alone.
+(wall time, dates and versions) is removed first, and pictures inside reports are compared by their
+pixels. Runs in real time are compared by their outcome alone.
 
-`repeat` shows that load decides nothing: it grades submissions of a snapshot again, drawn by
-chance, while as many processes as `--busy` says do nothing but use a processor. Compared are the
-score, the hash of every run's trace, how and by which clock it went. What ran in real time is not
-drawn. Both end with 1 where anything differs.
+`repeat` shows that load has no influence: it grades random submissions of a snapshot again, while
+`--busy` processes use all the processor they get. It compares the score, the hash of every run's
+trace, its outcome and its clock. Runs in real time are not drawn. Both end with 1 if anything
+differs.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ from typing import Any
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[1]
-#: Always the same place: tracebacks in a submission's output name its path.
+#: Always the same path: tracebacks in a submission's output contain it.
 FIXTURES = Path("/tmp/turtlesim-snapshot-fixtures")
 FORMATS = (
     *("html", "markdown", "csv", "junit", "gradescope", "prairielearn", "autolab"),
     *("moodle-vpl", "github-autograding", "terminal"),
 )
-#: What lies beside the fixtures, and is none.
+#: Files beside the fixtures that are none.
 HELPERS = ("beginners.py", "mutants.py", "packages.py")
-#: What of a recording differs between equal runs.
+#: The file of a recording that differs between equal runs.
 CIRCUMSTANCES = "circumstances.json"
-#: What is compared of a run that is repeated.
+#: The fields of a repeated run that are compared.
 OF_A_RUN = ("time", "outcome", "exit_code", "ticks", "flags", "trace_sha256")
-#: Ends by itself where whoever started it has gone, however that ended.
+#: Ends by itself when its parent has ended, however that happened.
 BUSY = "import os, sys\nwhile os.getppid() == int(sys.argv[1]):\n    for _ in range(100_000): pass"
 
 
@@ -85,7 +85,7 @@ def lay_out() -> dict[str, tuple[Path, str]]:
     return {**found, "starter": (starter, "turtlesim_challenge")}
 
 
-def take(grader: str, folder: Path, jobs: int, only: list[str]) -> None:
+def record(grader: str, folder: Path, jobs: int, only: list[str]) -> None:
     """Grade everything into a new folder."""
     folder.mkdir(parents=True)
     fixtures = {name: case for name, case in lay_out().items() if not only or name in only}
@@ -127,7 +127,7 @@ def _runs(result: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def compare(before: Path, after: Path) -> int:
-    """Print what differs; the number of submissions that do."""
+    """Print what differs; return the number of submissions that do."""
     names = sorted({path.name for folder in (before, after) for path in folder.iterdir()})
     different = traces = files = 0
     for name in names:
@@ -173,9 +173,9 @@ def _differences(before: Path, after: Path) -> tuple[list[str], int]:
 
 
 def _timeless(path: Path) -> bytes:
-    """A file's bytes without the time that rclpy's own logger prints, and where rclpy lies.
+    """Return a file's bytes without the times of rclpy's logger, and without rclpy's path.
 
-    A picture inside is what it shows: another encoder's bytes are not another picture.
+    A picture inside is replaced by a hash of its pixels: another encoder makes other bytes.
     """
     data = re.sub(rb"\[\d{10}\.\d{9}\]", b"[time]", path.read_bytes())
     data = re.sub(rb"/[^\s\"&]*/site-packages/", b"[site]/", data)
@@ -195,7 +195,7 @@ def _result(folder: Path) -> dict[str, Any] | None:
 
 @contextmanager
 def _busy(count: int) -> Iterator[None]:
-    """So many processes that use all the processor they get."""
+    """Run so many processes that use all the processor they get."""
     made: list[subprocess.Popen[bytes]] = []
     try:
         for _ in range(count):
@@ -209,7 +209,7 @@ def _busy(count: int) -> Iterator[None]:
 
 
 def _again(grader: str, case: tuple[Path, str], expected: dict[str, Any]) -> list[str]:
-    """Grade once more; what differs from the expected result."""
+    """Grade once more; return what differs from the expected result."""
     with tempfile.TemporaryDirectory(prefix="snapshot-") as folder:
         done = _run(grader, case, Path(folder) / "out")
         found = _result(Path(folder) / "out")
@@ -224,7 +224,7 @@ def _again(grader: str, case: tuple[Path, str], expected: dict[str, Any]) -> lis
 
 
 def repeat(grader: str, folder: Path, drawn: int, at_once: int, busy: int, seed: int) -> int:
-    """Grade what is drawn under load, and print what differs; the number of gradings that do."""
+    """Grade random submissions under load, and print what differs; return how many do."""
     cases, expected = lay_out(), {path.name: _result(path) for path in folder.iterdir()}
     possible = {
         name: result
@@ -253,7 +253,7 @@ def repeat(grader: str, folder: Path, drawn: int, at_once: int, busy: int, seed:
 
 
 def main() -> int:
-    """Command line; 1 where something differs."""
+    """Run a verb; 1 if something differs."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     verbs = parser.add_subparsers(dest="verb", required=True)
     taking, comparing = verbs.add_parser("take"), verbs.add_parser("compare")
@@ -272,7 +272,7 @@ def main() -> int:
         each.add_argument("--grader", default=str(ROOT / ".venv" / "bin" / "grader"))
     args = parser.parse_args()
     if args.verb == "take":
-        take(args.grader, args.folder, args.jobs, args.only)
+        record(args.grader, args.folder, args.jobs, args.only)
         return 0
     if args.verb == "compare":
         return int(compare(args.before, args.after) > 0)

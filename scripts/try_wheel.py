@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Installs a wheel as a user does who has nothing but Python, and uses it: seconds are printed.
+"""Install a wheel into a bare Python, use it, and print the seconds of each step.
 
     scripts/try_wheel.py PYTHON WHEEL
 

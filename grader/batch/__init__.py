@@ -1,1 +1,1 @@
-"""A whole class: found in an export, graded in parallel, looked at together."""
+"""A whole class: find it in an export, grade it in parallel, and compare its hand-ins."""

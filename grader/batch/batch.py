@@ -1,4 +1,4 @@
-"""A class, graded: what is still to be done is done, everything else stays as it is."""
+"""Grade a class: plan what is still to be done, do it, and write the gradebook and the pages."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from grader.recording.recording import Clock
 from grader.result.visible import View
 from grader.translations import tr
 
-#: Does tasks, in any order; `grader.batch.pool.work` with a number of jobs, or a cluster.
+#: Does tasks, in any order: `grader.batch.pool.work` with a number of jobs, or a cluster.
 Work = Callable[[Iterable[Task]], Iterator[Done]]
 PAGE = "index.html"
 
@@ -33,11 +33,12 @@ class Order:
     """How a class is graded.
 
     Attributes:
-        exercise: by its loaded self, and as `--exercise` named it.
-        time: the clock that submissions live by.
-        seed: chooses where the varied runs start; None takes the exercise's own.
-        again: what is done anew although it is there: "", "failed", "all" or the id of a hand-in.
-        isolation: the level at which all are run; '' where it is to be found out.
+        exercise: the loaded exercise.
+        exercise_path: what `--exercise` named.
+        time: the clock of the submissions.
+        seed: chooses where the varied runs start; None: the exercise's own.
+        again: what is graded again: "", "failed", "all" or the id of a hand-in.
+        isolation: the level at which all are run; '' until it is chosen.
     """
 
     exercise: Exercise
@@ -48,12 +49,12 @@ class Order:
     isolation: str = ""
 
     def seed_of(self, hand_in: HandIn) -> int | None:
-        """What chooses where the varied runs of a hand-in start; None: the exercise's own seed."""
+        """Return the seed of the varied runs of a hand-in; None: the exercise's own."""
         return self.exercise.seed_for(hand_in.id) if self.seed is None else self.seed
 
     @property
     def class_file(self) -> ClassFile:
-        """What the folder is for."""
+        """The class.json of what is graded so."""
         return ClassFile.of(self.exercise, self.time, self.seed, self.isolation)
 
 
@@ -62,10 +63,10 @@ class Planned:
     """What is to be done.
 
     Attributes:
-        tasks: one a content; their `into` is not made yet.
+        tasks: one for each distinct submission; their `into` is not made yet.
         trivial: hand-ins that need no worker.
         done: hand-ins that are graded already.
-        alike: so many hand-ins share the run of another one.
+        alike: how many hand-ins share the run of another one.
     """
 
     tasks: tuple[Task, ...]
@@ -75,15 +76,15 @@ class Planned:
 
     @property
     def hand_ins(self) -> int:
-        """How many there are."""
+        """The number of all hand-ins."""
         return sum(len(t.hand_ins) for t in self.tasks) + len(self.trivial) + len(self.done)
 
 
 def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
-    """Refuse to grade into the folder of another class; write down what a new one is for.
+    """Refuse to grade into the folder of another class; write class.json into a new one.
 
     Raises:
-        UsageError: it holds another class, or is no folder of one and not empty.
+        UsageError: the folder holds another class, or is no folder of a class and not empty.
     """
     if not (store.out / CLASS).is_file():
         wanted.put(store.out)
@@ -104,7 +105,7 @@ def check_same_class(store: Store, wanted: ClassFile, again: str = "") -> None:
 
 
 def _advice(differences: Mapping[str, Message], store: Store) -> Message:
-    """What to do about a folder of another class."""
+    """Return what to do about a folder of another class."""
     if differences.keys() == {"exercise_sha256"}:
         return msg(
             "See what the new one would change: grader batch --regrade {out} --exercise ...",
@@ -116,7 +117,7 @@ def _advice(differences: Mapping[str, Message], store: Store) -> Message:
 
 
 def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
-    """What is to be done for these hand-ins; how many they are is written down.
+    """Plan what is to be done for these hand-ins, and record their number in class.json.
 
     Raises:
         UsageError: `again` names nobody.
@@ -126,7 +127,7 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
     by_key: dict[str, list[HandIn]] = {}
     trivial, done = [], []
     for hand_in, run in _with_keys(hand_ins, order):
-        if _is_done(_there(store.student(hand_in.id)), hand_in, run, order):
+        if _is_done(_existing(store.student(hand_in.id)), hand_in, run, order):
             done.append(hand_in)
             continue
         if run:
@@ -141,7 +142,7 @@ def plan(hand_ins: Sequence[HandIn], order: Order, store: Store) -> Planned:
 
 
 def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Iterator[HandIn]:
-    """Do what is to be done; yields each hand-in as soon as all of it is in its place."""
+    """Do what is planned; yield each hand-in as soon as its folder is in its place."""
     for hand_in in planned.trivial:
         place = store.new_place()
         grade.nothing(hand_in, order.exercise, place / STUDENTS / hand_in.id)
@@ -163,7 +164,7 @@ def carry_out(planned: Planned, order: Order, store: Store, work: Work) -> Itera
 
 
 def _unusable(task: Task, order: Order) -> Message:
-    """Why what was made of a task is none of what was asked for; '' where it is.
+    """Return why the files of a finished task cannot be used; '' where they can.
 
     Raises:
         UsageError: it was judged by another exercise than everything else.
@@ -184,7 +185,7 @@ def _unusable(task: Task, order: Order) -> Message:
 
 
 def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandIn, str]]:
-    """Each with the key of its run; '' where there is nothing to run."""
+    """Yield each hand-in with the key of its run; '' where there is nothing to run."""
     for hand_in in hand_ins:
         if hand_in.path is None:
             yield hand_in, ""
@@ -199,7 +200,7 @@ def _with_keys(hand_ins: Iterable[HandIn], order: Order) -> Iterator[tuple[HandI
         yield hand_in, of_run(content, order.exercise, order.time, seed)
 
 
-def _there(folder: Path) -> Entry | None:
+def _existing(folder: Path) -> Entry | None:
     try:
         return Entry.read(folder)
     except UsageError:
@@ -207,7 +208,7 @@ def _there(folder: Path) -> Entry | None:
 
 
 def _is_done(entry: Entry | None, hand_in: HandIn, run: str, order: Order) -> bool:
-    """Whether what is there is what would be made; of the grader's failures nothing is known."""
+    """Whether an entry is what grading would make; a grader's failure has no run to compare."""
     if entry is None or order.again in ("all", entry.id):
         return False
     if order.again == "failed" and entry.state == "failed":
@@ -242,17 +243,17 @@ def write_outputs(
     view: View = "student",
     assignment: str = "",
 ) -> list[Message]:
-    """Write gradebook and pages.
+    """Write the gradebook and the pages of a class.
 
     Args:
-        view: who reads the feedback: a student before, or after the exercise is over.
-        assignment: what Canvas calls it.
+        view: who reads the feedback: a student before, or after the exercise is due.
+        assignment: what Canvas calls the exercise.
 
     Returns:
-        Notes, as sentences.
+        Notes for the teacher, as sentences.
 
     Raises:
-        UsageError: one of them cannot be written.
+        UsageError: a file cannot be written.
     """
     page.write(entries, exercise, out)
     links = {tr("Look at these together"): page.PAGE, tr("Gradebook"): CSV}

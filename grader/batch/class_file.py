@@ -1,8 +1,8 @@
-"""What the folder of a class is for: class.json. Only what fits together comes into one folder.
+"""class.json: what a class's folder is for, so that only gradings that fit together share it.
 
-All of a class are confined at one level, which makes two hand-ins comparable, and is safe. It is
-the best that there is where the class is begun, stands in class.json, and holds for all that is
-graded into that folder later.
+All hand-ins of a class are confined at one level, which makes them comparable, and is safe. It is
+the best level on the machine where the class is begun; class.json holds it, and it applies to all
+that is graded into that folder later.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from grader.run.processes.levels import ADVICE, LEVELS
 
 SCHEMA = "turtlesim-grader/class/v2"
 CLASS = "class.json"
-#: Characters of a value in a message: enough of a hash to tell two apart.
+#: Characters of a value in a message: enough of a hash to distinguish two.
 MOST_SHOWN = 24
-#: What may be another when everything is graded anew.
+#: The fields that may change when everything is graded anew.
 MACHINE = {"grader", "ros", "python", "isolation"}
 _NAMED = {
     "exercise": msg("the exercise"),
@@ -41,16 +41,16 @@ _NAMED = {
 
 @dataclass(frozen=True)
 class ClassFile:
-    """By what everything in the folder of a class was made.
+    """What everything in the folder of a class was graded with.
 
     Attributes:
         exercise: its name.
-        exercise_sha256: of all that it judges by.
-        time: the clock that submissions lived by.
+        exercise_sha256: the hash of all that it judges by.
+        time: the clock of the submissions.
         seed: chose where the varied runs start; None: the exercise's own.
         grader, ros, python: versions.
-        hand_ins: how many there will be when it is finished; 0 where nobody has said it yet.
-        isolation: the level at which all are run; '' where none has been yet, or there is none.
+        hand_ins: how many there will be when the class is finished; 0 while that is unknown.
+        isolation: the level at which all are run; '' before the first run, or where there is none.
     """
 
     exercise: str
@@ -65,13 +65,13 @@ class ClassFile:
 
     @classmethod
     def of(cls, exercise: Exercise, time: Clock, seed: int | None, isolation: str = "") -> Self:
-        """Of a call."""
+        """Return the class file of a call on this machine."""
         ros = f"rclpy {versions.rclpy()} {versions.ros_distro()}".strip()
         made_by = (versions.grader(), ros, versions.python())
         return cls(exercise.name, exercise.sha256, time, seed, *made_by, isolation=isolation)
 
     def put(self, out: Path) -> None:
-        """Write it.
+        """Write class.json.
 
         Raises:
             UsageError: it cannot be written.
@@ -81,7 +81,7 @@ class ClassFile:
 
     @classmethod
     def read(cls, out: Path) -> Self:
-        """What the folder of a class is for.
+        """Read the class.json of a folder.
 
         Raises:
             UsageError: it is not the folder of a class.
@@ -95,7 +95,7 @@ class ClassFile:
         return found
 
     def differences(self, other: Self) -> dict[str, Message]:
-        """What of two does not fit together: by its field, in words."""
+        """Return what differs between two class files: field -> a sentence."""
         pairs = {name: (getattr(self, name), getattr(other, name)) for name in _NAMED}
         return {
             name: msg(
@@ -114,8 +114,7 @@ class ClassFile:
             raise ValueError(msg("is no class: expected the schema {schema}", schema=SCHEMA))
         found = json_file.typed(cls, {n: value for n, value in data.items() if n != "schema"})
         if found.isolation not in ("", *LEVELS):
-            told = f"{found.isolation!r}"
-            raise ValueError(msg("is damaged: its isolation is {told}", told=told))
+            raise ValueError(msg("is damaged: its isolation is {told}", told=repr(found.isolation)))
         return found
 
 
@@ -125,9 +124,9 @@ def _shown(value: object) -> Text:
 
 
 def begun_at(out: Path, again: str = "", least: str = "") -> str:
-    """The level at which a class goes on; '' where it is new, or everything is done anew.
+    """Return the level at which a class goes on; '' where it is new, or all is done anew.
 
-    Where that is less than `least`, the latter, which is not what class.json says.
+    Where class.json has a lower level than `least`, return `least`: the difference is then refused.
     """
     if not (out / CLASS).is_file() or again == "all":
         return ""
@@ -136,18 +135,18 @@ def begun_at(out: Path, again: str = "", least: str = "") -> str:
 
 
 def note(out: Path, level: str) -> None:
-    """Write down at which level a class is graded."""
+    """Record in class.json at which level a class is graded."""
     found = ClassFile.read(out)
     if found.isolation != level:
         replace(found, isolation=level).put(out)
 
 
 def on_this_machine(level: str) -> str:
-    """The level at which this machine grades all of a class: that of its beginning, or the best.
+    """Return the level at which this machine grades a class: the recorded one, else the best.
 
     Raises:
-        UsageError: that is not to be had here.
-        NotNow: it may be, but not now.
+        UsageError: this machine does not offer it.
+        NotNow: it may offer it later.
     """
     try:
         return levels.here(level).level
@@ -167,7 +166,7 @@ class OfCluster:
     Attributes:
         level: '' until it is chosen.
         least: the lowest that may be; '' for any.
-        settle: is told what was chosen.
+        settle: called with the level that was chosen.
     """
 
     level: str = ""
@@ -175,7 +174,7 @@ class OfCluster:
     settle: Callable[[str], None] = lambda _: None
 
     def choose(self, offered: Iterable[str]) -> None:
-        """Unless that is done, take the best that workers offer; without any, that of this machine.
+        """Choose the best level that workers offer, once; without workers, that of this machine.
 
         Raises:
             UsageError: it is too low.
@@ -189,7 +188,7 @@ class OfCluster:
         self.settle(self.level)
 
     def none_offers(self, level: str) -> UsageError:
-        """Why a cluster cannot grade at a level."""
+        """Return the error of a cluster that cannot grade at a level."""
         return UsageError(
             "no worker of the cluster offers isolation by {level}. To get it: {advice}.",
             level=level,

@@ -1,10 +1,10 @@
-"""The tasks of a class on a dask cluster: `grader batch --scheduler ADDRESS`.
+"""Grade a class on a Dask cluster: `grader batch --scheduler ADDRESS`.
 
 Each worker of the cluster has the grader installed, as this machine has; nothing else is shared
-with it, no folder and no file. All are graded at one level of isolation: a worker that cannot offer
-it is named and gets no task. A task that was lost with a worker is given to another one by the
-scheduler. When the scheduler itself goes, everything that had not come back is given to the next
-that answers at its address.
+with it, no folder and no file. All tasks are graded at one level of isolation: a worker that cannot
+offer it is reported and gets no task. The scheduler gives a task that was lost with a worker to
+another one. When the scheduler itself goes, all unfinished tasks are given to the next one that
+answers at its address.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from grader.batch import pool, remote
 from grader.batch.class_file import OfCluster
 from grader.batch.pool import Answer, Done, Task
-from grader.batch.store import own_versions
+from grader.batch.store import installed_versions
 from grader.errors import UsageError
 from grader.message import Message, msg, msg_many
 from grader.requirements import require
@@ -28,33 +28,36 @@ from grader.requirements import require
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-#: So long a scheduler is waited for, at first and after it was lost [s].
+#: How long to wait for a scheduler, at first and after it was lost [s].
 FIRST_S, AGAIN_S = 30.0, 600.0
-#: So often in a row, with no task done between, a scheduler may be lost.
+#: How often in a row, with no task done between, a scheduler may be lost.
 MOST_LOSSES = 3
-#: So often a task goes to other workers, since those that should have it are gone or not fit.
+#: How often a task is moved to other workers, because its own are gone or not fit.
 MOST_MOVES = 3
-#: So many more tasks are underway than the cluster has threads: none of them waits for the next.
+#: How many more tasks are underway than the cluster has threads, so that no thread is idle.
 AHEAD = 2
 #: Of all that is underway [bytes]: the scheduler holds it in memory.
 MOST_BYTES = 1_000_000_000
-#: So long an answer may need from its worker to here, else we look again later [s].
+#: How long the transfer of an answer may take before it is tried again later [s].
 FETCH_S = 60.0
-LOOK_S = 1.0
+#: Between two polls of the scheduler [s].
+POLL_S = 1.0
 ADVICE = msg("Install the same there as where the class is")
 
-Tell = Callable[[Message], None]
+Notify = Callable[[Message], None]
 
 
-def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: OfCluster) -> Iterator[Done]:
-    """Do tasks on a cluster; yields each as soon as it is over.
+def work(
+    tasks: Iterable[Task], address: str, notify: Notify, isolation: OfCluster
+) -> Iterator[Done]:
+    """Do tasks on a cluster; yield each as soon as it is over.
 
-    A task is taken from the iterable when there is room for it. What is underway when the iterator
-    ends is cancelled: what runs already comes to its end over there, and goes nowhere.
+    The next task is drawn from the iterable when there is room for it. What is underway when the
+    iterator ends is cancelled: a task that runs already is finished by its worker, and dropped.
 
     Args:
-        address: of the scheduler, as dask takes it.
-        tell: is told what a person may want to know meanwhile.
+        address: of the scheduler, in the form that Dask expects.
+        notify: called with messages about the cluster, for people.
         isolation: the level at which all workers grade.
 
     Raises:
@@ -64,7 +67,7 @@ def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: OfCluster) 
     waiting, losses, patience_s = iter(tasks), 0, FIRST_S
     while True:
         with _connected(address, patience_s) as client:
-            session = _Session(client, waiting, isolation, tell)
+            session = _Session(client, waiting, isolation, notify)
             try:
                 for done in session.work():
                     losses = 0
@@ -81,7 +84,7 @@ def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: OfCluster) 
                 waiting = chain(session.unfinished(), waiting)
             finally:
                 session.cancel()
-        tell(
+        notify(
             msg(
                 "The scheduler at {address} is gone. Waiting for it, {minutes:g} minutes ...",
                 address=address,
@@ -92,15 +95,15 @@ def work(tasks: Iterable[Task], address: str, tell: Tell, isolation: OfCluster) 
 
 
 class _SchedulerLost(Exception):
-    """Nothing that is underway will come back."""
+    """The connection to the scheduler is lost, and all tasks that are underway with it."""
 
 
 @contextmanager
 def _connected(address: str, patience_s: float) -> Iterator[Client]:
-    """A client of a scheduler.
+    """Yield a client of a scheduler.
 
     Raises:
-        UsageError: there is none.
+        UsageError: there is no scheduler.
     """
     from distributed import Client
 
@@ -110,7 +113,7 @@ def _connected(address: str, patience_s: float) -> Iterator[Client]:
         try:
             client = Client(address, timeout=left_s)
             break
-        except OSError as error:  # also of one that goes as soon as it has come
+        except OSError as error:  # also if the scheduler ends right after it was reached
             if time.monotonic() > end:
                 raise UsageError(
                     "there is no scheduler at {address}: {why}", address=address, why=str(error)
@@ -119,7 +122,7 @@ def _connected(address: str, patience_s: float) -> Iterator[Client]:
             raise UsageError(
                 "{address} is no address of a scheduler: {why}", address=address, why=str(error)
             ) from None
-        time.sleep(LOOK_S)
+        time.sleep(POLL_S)
     try:
         yield client
     finally:
@@ -141,13 +144,13 @@ class _Underway(NamedTuple):
 
 
 class _Session:
-    """Tasks on one scheduler, for as long as that is there."""
+    """Tasks on one scheduler, while the connection to it lasts."""
 
     def __init__(
-        self, client: Client, waiting: Iterator[Task], isolation: OfCluster, tell: Tell
+        self, client: Client, waiting: Iterator[Task], isolation: OfCluster, notify: Notify
     ) -> None:
         self._client, self._waiting = client, waiting
-        self._isolation, self._tell = isolation, tell
+        self._isolation, self._notify = isolation, notify
         self._underway: dict[Future, _Underway] = {}
         #: address -> why it gets no task
         self._unfit: dict[str, Message] = {}
@@ -158,7 +161,7 @@ class _Session:
         self._here = pool.Process()
 
     def work(self) -> Iterator[Done]:
-        """Do tasks; yields each as soon as it is over.
+        """Do tasks; yield each as soon as it is over.
 
         Raises:
             _SchedulerLost: the scheduler is gone; the rest is `unfinished`.
@@ -169,26 +172,26 @@ class _Session:
             yield from self._fill()
             if not self._underway:
                 return
-            yield from self._look()
+            yield from self._collect()
 
     def unfinished(self) -> list[Task]:
-        """What was given to this scheduler, and did not come back."""
+        """Return the tasks that were given to this scheduler and are not done."""
         return [*(each.task for each in self._underway.values()), *self._moved]
 
     def cancel(self) -> None:
-        """Have nothing underway any more."""
+        """Cancel everything that is underway."""
         self._here.stop()
         self._here.end()
         if self._underway and self._client.status == "running":
-            with suppress(Exception):  # then there is nobody to tell it
+            with suppress(Exception):  # then there is no scheduler to cancel it
                 self._client.cancel(list(self._underway))
         self._underway.clear()
 
     def _check_workers(self) -> None:
-        """Refuse a cluster that would come to other verdicts, before anything is sent to it."""
+        """Refuse a cluster that may reach other verdicts, before any task is sent to it."""
         level = self._isolation.level
         found = self._ask(lambda: self._client.run(remote.offer, level, on_error="return"))
-        wanted = own_versions()
+        wanted = installed_versions()
         offers: dict[str, remote.Offer] = {}
         for address, theirs in found.items():
             worker = msg("the worker at {address}", address=address)
@@ -204,7 +207,7 @@ class _Session:
                 self._decline(address, theirs.why or best)
 
     def _decline(self, address: str, why: Message) -> None:
-        """Give a worker no task any more.
+        """Exclude a worker from getting tasks.
 
         Raises:
             UsageError: there is no other.
@@ -212,7 +215,7 @@ class _Session:
         if address in self._unfit:
             return
         self._unfit[address], level = why, self._isolation.level
-        self._tell(
+        self._notify(
             msg(
                 "The worker at {address} takes no hand-in: this class is graded with isolation by "
                 "{level} ({why}).",
@@ -225,21 +228,21 @@ class _Session:
             raise self._isolation.none_offers(level)
 
     def _fit(self) -> list[str]:
-        """The workers that may get tasks."""
+        """Return the addresses of the workers that may get tasks."""
         return [each for each in self._ask(self._client.nthreads) if each not in self._unfit]
 
     def _threads(self) -> int:
-        """How much the cluster does at once."""
+        """Return how many tasks the cluster can do at once."""
         there = self._ask(self._client.nthreads)
         threads: int = sum(n for address, n in there.items() if address not in self._unfit)
         if bool(threads) != self._has_workers:
             self._has_workers = bool(threads)
             none = msg("The scheduler has no worker. Waiting for one ...")
-            self._tell(msg("The scheduler has workers again.") if threads else none)
+            self._notify(msg("The scheduler has workers again.") if threads else none)
         return threads
 
     def _fill(self) -> Iterator[Done]:
-        """Have enough tasks underway; those that cannot be sent are over at once."""
+        """Submit tasks until enough are underway; yield those that cannot be sent."""
         most = AHEAD + self._threads()
         while len(self._underway) < most and self._bytes() < MOST_BYTES:
             task = self._moved.pop() if self._moved else next(self._waiting, None)
@@ -261,7 +264,7 @@ class _Session:
         quiet = {"distributed.admin.large-graph-warning-threshold": f"{2 * MOST_BYTES}B"}
         to = self._fit() if self._unfit else None  # any: also one that comes later
         with dask.config.set(quiet):
-            # each has a name of its own: an equal task is not an equal call
+            # not pure: two equal tasks are two calls
             future = self._ask(
                 lambda: self._client.submit(remote.graded, package, pure=False, workers=to)
             )
@@ -269,7 +272,7 @@ class _Session:
         self._moved.pop()
 
     def _move(self, future: Future) -> Iterator[Done]:
-        """Have a task wait for others again; after `MOST_MOVES` it is over."""
+        """Queue a task for other workers; after `MOST_MOVES` times, yield it as failed."""
         task = self._underway.pop(future).task
         self._moves[task.key] += 1
         if self._moves[task.key] > MOST_MOVES:
@@ -278,7 +281,7 @@ class _Session:
             self._moved.append(task)
 
     def _move_stranded(self) -> Iterator[Done]:
-        """Move tasks of which all workers are gone that may have them."""
+        """Move the tasks whose permitted workers are all gone."""
         fit = set(self._fit()) if self._unfit else set()
         for future, each in list(self._underway.items()):
             if fit and each.to is not None and not fit & set(each.to) and not future.done():
@@ -288,12 +291,12 @@ class _Session:
     def _bytes(self) -> int:
         return sum(each.size for each in self._underway.values())
 
-    def _look(self) -> Iterator[Done]:
-        """Wait a moment, and take out what is over."""
+    def _collect(self) -> Iterator[Done]:
+        """Wait a moment, and yield the tasks that are over."""
         from distributed import CancelledError, wait
 
         with suppress(TimeoutError, CancelledError):
-            wait(list(self._underway), timeout=LOOK_S, return_when="FIRST_COMPLETED")
+            wait(list(self._underway), timeout=POLL_S, return_when="FIRST_COMPLETED")
         if self._client.status not in ("running", "connecting"):
             raise _SchedulerLost(msg("the connection is closed"))
         # lost: with the worker that had it, and done again elsewhere
@@ -310,7 +313,7 @@ class _Session:
         yield from self._move_stranded()
 
     def _returned(self, future: Future) -> object:
-        """What came of a task, for `remote.unpack`; None: look again."""
+        """Return what a worker returned, for `remote.unpack`; None: not there yet."""
         if future.status == "error":
             return remote.Returned(self._failure(self._ask(future.exception)))
         try:
@@ -335,10 +338,10 @@ class _Session:
         return Answer("failed", msg("a worker failed: {what}", what=what))
 
     def _ask(self, call: Callable[[], Any]) -> Any:
-        """What the scheduler answers.
+        """Return what the scheduler answers.
 
         Raises:
-            _SchedulerLost: nothing.
+            _SchedulerLost: it does not answer.
         """
         from distributed import CancelledError
 

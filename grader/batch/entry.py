@@ -1,6 +1,6 @@
-"""What a graded class holds of one hand-in: DIR/submissions/ID/.
+"""A graded hand-in: the folder DIR/submissions/ID/ of a class.
 
-    entry.json     this, but for the result
+    entry.json     an `Entry`, except its result
     result.json    report.html  canvas.png  output.txt  recording/      where there is a result
 
 `entry.json` is written last: a folder without it is not finished, and made anew.
@@ -27,13 +27,13 @@ from grader.strict_json import UNSTORED
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody of a class.
+    """A member of a class.
 
     Attributes:
-        id: as the course system has it; unique within a class.
-        name: as people read it; '' where nobody has said it.
-        columns: what else the roster or the export says of him, by the names of its columns: what a
-            course system's import asks for.
+        id: that of the course system; unique within a class.
+        name: as people read it; '' where it is unknown.
+        columns: the other columns of the roster or the export: what a course system's import asks
+            for.
     """
 
     id: str
@@ -43,17 +43,17 @@ class Person:
 
 @dataclass(frozen=True)
 class HandIn:
-    """The newest attempt of a student or a group, or that there is none.
+    """The newest attempt of a student or a group; also of one who handed in nothing.
 
     Attributes:
         id: names its folder in the output: made of letters, digits and `._@+-` alone, unique within
             a class whatever the file system does with capital letters.
-        people: who gets its points; one, or the members of a group.
-        path: the file or the folder that is graded; None where nothing can be. It is that of one
+        people: the student, or the members of a group: they get the points.
+        path: the file or the folder that is graded; None where nothing can be. It is a path on one
             machine, and in no file.
-        filename: what it was called before the export gave it another name.
+        filename: its original name, before the export renamed it.
         attempt: counts from 1.
-        at: when it was handed in, with its time zone; None where the export does not tell.
+        at: when it was handed in, with its time zone; None where the export does not contain it.
         problem: why there is nothing to grade, as a sentence for teacher and student.
     """
 
@@ -67,7 +67,7 @@ class HandIn:
 
     @property
     def name(self) -> str:
-        """For people: the names, else the ids."""
+        """The names of the people, else their ids."""
         return ", ".join(person.name or person.id for person in self.people)
 
 
@@ -76,7 +76,7 @@ ENTRY = "entry.json"
 SUBMISSIONS = "submissions"
 
 #: judged: there is a result. unusable: the submission cannot be started, which is the student's
-#: doing and worth 0 points. nothing: nobody handed anything in. failed: the grader's own failure.
+#: fault and worth 0 points. nothing: nothing was handed in. failed: the grader failed.
 State = Literal["judged", "unusable", "nothing", "failed"]
 
 
@@ -85,14 +85,14 @@ class Entry:
     """One hand-in, graded.
 
     Attributes:
-        hand_in: whose; its path is None, for what was handed in lies elsewhere.
+        hand_in: what was graded, without its path.
         state: see `State`.
         key: of its run in the store; '' where there was none. See `grader.batch.store`.
         message: why there is no result; '' where there is one.
         max_score: what the exercise is worth [points].
-        exercise_sha256: of what it was judged by.
-        result: what was judged; None where `state` is not "judged".
-        folder: where its files are.
+        exercise_sha256: the hash of the exercise that it was judged by.
+        result: the verdicts; None where `state` is not "judged".
+        folder: the folder of its files.
     """
 
     hand_in: HandIn
@@ -106,23 +106,23 @@ class Entry:
 
     @property
     def id(self) -> str:
-        """The hand-in's."""
+        """The id of the hand-in."""
         return self.hand_in.id
 
     @property
     def score(self) -> float | None:
-        """What the gradebook says [points]; None where the grader failed, which nobody pays for."""
+        """The points for the gradebook; None where the grader failed, which costs nobody points."""
         if self.state == "failed":
             return None
         return 0.0 if self.result is None else self.result.final
 
     @cached_property
     def verdicts(self) -> Mapping[str, Verdict]:
-        """Those of its result, by check; none without one."""
+        """The verdicts of the result by check; empty without a result."""
         return {} if self.result is None else {each.check: each for each in self.result.verdicts}
 
     def put(self) -> None:
-        """Write entry.json; the result is there already.
+        """Write entry.json; result.json must be there already.
 
         Raises:
             UsageError: it cannot be written.
@@ -132,10 +132,10 @@ class Entry:
 
     @classmethod
     def read(cls, folder: Path) -> Self:
-        """What lies in the folder of a hand-in.
+        """Read the folder of a hand-in.
 
         Raises:
-            UsageError: it is not finished, or not one of ours.
+            UsageError: it is not finished, or the grader has not written it.
         """
         path = folder / ENTRY
         entry: Self = json_file.made(cls._from_json, path, json_file.read(path, is_ours=True))
@@ -149,13 +149,13 @@ class Entry:
         return replace(entry, folder=folder)
 
     def _check_result(self, result: Result) -> None:
-        """Hold a result against what entry.json says of it.
+        """Compare a result with entry.json.
 
         Raises:
             ValueError: it is that of another hand-in, or of another exercise.
         """
-        whose, origin = result.handed_in, result.provenance
-        if whose is not None and whose.id != self.id:
+        submitted, origin = result.handed_in, result.provenance
+        if submitted is not None and submitted.id != self.id:
             raise ValueError(msg("is that of another hand-in"))
         is_same = origin is None or origin.judged.exercise_sha256 == self.exercise_sha256
         if not is_same or abs(result.max_score - self.max_score) > ROUNDING:
@@ -175,11 +175,11 @@ class Entry:
 
 
 def entries(out: Path) -> list[Entry]:
-    """All that are finished in the folder of a class, by id."""
+    """Read all finished entries of a class's folder, sorted by id."""
     found = []
     for folder in sorted((out / SUBMISSIONS).glob("*/")):
         try:
             found.append(Entry.read(folder))
         except UsageError:
-            continue  # begun and not ended, or gone bad: the next `grader batch` makes it anew
+            continue  # unfinished or damaged: the next `grader batch` makes it anew
     return found

@@ -1,6 +1,6 @@
-"""One task: run what was handed in, unless that was done; judge it for everybody who handed it in.
+"""Do one task: run a submission, unless that was done; judge it for each who handed it in.
 
-Everything comes into the task's own folder. A worker does this (`grader.batch.pool`), on this
+All files are written into the task's own folder. A worker does this (`grader.batch.pool`), on this
 machine or on another one.
 """
 
@@ -49,11 +49,11 @@ from grader.submission.start import Submission
 from grader.text import plain
 from grader.translations import use
 
-#: Where a student's traceback says that the hand-in lies.
+#: The path of the submission that a student's traceback shows.
 SHOWN = "/submission"
-#: What a process may have run out of: another one, or the same a little later, may have it.
+#: A process has run out of something that another one, or the same a little later, may have.
 SCARCE = (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
-#: How a task ends with an error, the first that fits.
+#: How a task ends with an error: the first class that fits.
 _STATES: dict[type[GraderError], Ending] = {
     CheckFailed: "exercise",
     NotOffered: "unfit",
@@ -63,8 +63,8 @@ _STATES: dict[type[GraderError], Ending] = {
 
 
 def serve() -> None:
-    """Do what is asked for on standard input, a task a line, until that ends."""
-    # what anything prints by mistake must not look like an answer
+    """Do the tasks on standard input, one a line, until it ends."""
+    # what anything prints by mistake must not be read as an answer
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)
     tasks: queue.SimpleQueue[bytes] = queue.SimpleQueue()
@@ -76,7 +76,7 @@ def serve() -> None:
 
 
 def done(task: Task) -> Answer:
-    """Do a task; whatever goes wrong is an answer."""
+    """Do a task, and return how it ended; every exception becomes an answer."""
     try:
         use(task.language)
         levels.only(task.isolation)
@@ -107,7 +107,7 @@ def make(task: Task) -> None:
         GraderFailure: a run could not be made.
         CheckFailed: the exercise's code failed.
         UsageError: something cannot be written.
-        RecordingError: the run that is said to be there cannot be read.
+        RecordingError: the task names a run that cannot be read.
     """
     exercise = _exercise(task.exercise)
     found = _loaded(task) or _run(task, exercise)
@@ -121,60 +121,62 @@ def make(task: Task) -> None:
 
 @lru_cache(maxsize=1)
 def _exercise(name_or_path: str) -> Exercise:
-    """Loaded once for all tasks of a worker: that takes a third of the time of judging."""
+    """Load an exercise, once for all tasks of a worker: it takes a third of the time of judging."""
     return load_exercise(name_or_path)
 
 
 def nothing(hand_in: HandIn, exercise: Exercise, folder: Path) -> None:
-    """Fill the folder of somebody who has handed in nothing that can be graded."""
+    """Fill the folder of a hand-in that cannot be graded, or that is missing."""
     is_nothing = hand_in.problem in (NOT_HANDED_IN, UNCLEAR)
     _put(hand_in, exercise, folder, "nothing" if is_nothing else "unusable", hand_in.problem)
 
 
 def failed(hand_in: HandIn, exercise: Exercise, folder: Path, message: Message) -> None:
-    """Fill the folder of somebody whose hand-in the grader could not judge."""
+    """Fill the folder of a hand-in that the grader failed to judge."""
     _put(hand_in, exercise, folder, "failed", message.map_texts(plain))
 
 
 def _run(task: Task, exercise: Exercise) -> Recordings | Message:
-    """What a run has left, which is saved; or why there is nothing to run."""
+    """Run a submission, and save and return its recordings; or return why it cannot be started."""
     place = task.into / RUN
     files.make_folder(place)
     try:
         with ExitStack() as held:
-            path = handed_in = task.path
-            assert handed_in is not None and path is not None
-            if path.is_file():  # under its own name, and without its neighbours, who are others'
+            path = submitted = task.path
+            assert submitted is not None and path is not None
+            if path.is_file():  # by its original name, and apart from the files of others
                 name = task.filename or path.name
                 path = held.enter_context(scratch.make_folder()) / name
-                shutil.copyfile(handed_in, path)
+                shutil.copyfile(submitted, path)
             opened = held.enter_context(open_submission(path, **exercise.opening))
-            submission = _without_place(opened)
+            submission = _without_path(opened)
             runner = grading.runner(exercise, task.time)
             recordings = grading.run_all(submission, exercise, runner, seed=task.seed)
-            _look_at(submission, recordings, place)
+            _keep_for_pages(submission, recordings, place)
     except (SubmissionError, UsageError) as error:
-        told = ErrorResult.of(error, exercise.max_score)
-        files.put(place / ERROR, json_file.text(told.to_json()).encode())
-        return told.message
+        result = ErrorResult.of(error, exercise.max_score)
+        files.put(place / ERROR, json_file.text(result.to_json()).encode())
+        return result.message
     judging.save_recordings(recordings, place / RECORDING)
     return recordings
 
 
-def _look_at(submission: Submission, recordings: Recordings, place: Path) -> None:
-    """Keep what the pages of a whole class need to know of a run: they open no recording."""
+def _keep_for_pages(submission: Submission, recordings: Recordings, place: Path) -> None:
+    """Write what the pages of the whole class show of a run: they open no recording."""
     copy = submission.copy
     left_out = 0 if copy is None else sources.keep(copy.folder, place / sources.SOURCE)
     nominal = recordings.nominal
     files.put(place / THUMB, thumb(recordings))
-    files.put(place / behaviour.NAME, behaviour.behaved(place / sources.SOURCE, nominal, left_out))
+    files.put(
+        place / behaviour.NAME, behaviour.features_file(place / sources.SOURCE, nominal, left_out)
+    )
 
 
-def _without_place(submission: Submission) -> Submission:
-    """The same, but that nothing tells where it was handed in.
+def _without_path(submission: Submission) -> Submission:
+    """Return the submission with `SHOWN` in the place of its path.
 
-    That may be the folder of another student who has handed in the same; and it is another one on
-    each machine, or each time that an archive is unpacked.
+    The path may be in the folder of another student who handed in the same; and it differs on each
+    machine, and each time that an archive is unpacked.
     """
     copy = submission.copy
     if copy is None:
@@ -183,7 +185,7 @@ def _without_place(submission: Submission) -> Submission:
 
 
 def _loaded(task: Task) -> Recordings | Message | None:
-    """What an earlier run has left; None where that is nothing, or nothing that can be read.
+    """Load an earlier run, or why there was none; None where there is nothing readable.
 
     Raises:
         RecordingError, UsageError: it cannot be read, and there is nothing to run instead.
@@ -205,7 +207,7 @@ def _loaded(task: Task) -> Recordings | Message | None:
 def _judge(
     recordings: Recordings, exercise: Exercise, hand_in: HandIn, task: Task, folder: Path
 ) -> None:
-    """Everything about a student; the recording itself is linked when it comes to its place."""
+    """Write the folder of a hand-in, except the recording, which `Store.put` links into it."""
     result = judging.judge(recordings, exercise, submission=hand_in.name)
     whose = HandedIn.of(hand_in.id, hand_in.name, hand_in.attempt, hand_in.at, exercise.late)
     result = replace(result, artifacts=artifacts(recordings.nominal), handed_in=whose)
@@ -217,7 +219,7 @@ def _judge(
 
 
 def _show(recordings: Recordings, result: Result, folder: Path) -> None:
-    """What people look at."""
+    """Write the report page and the files beside it."""
     put_artifacts(recordings.nominal, folder)
     page = render("html", [Report.of(result, folder, recordings, "whole")])
     files.put(folder / PAGE, page.encode("utf-8"))

@@ -1,10 +1,9 @@
-"""Several workers at once on this machine: processes that each grade one task after another.
+"""A pool of worker processes on this machine, each of which grades one task after another.
 
-A task goes as a line of JSON to a process's standard input, its answer comes as a line from what
-was its standard output. A process ends when nobody is there to ask it any more, in the middle of a
-task too: whoever is killed leaves nothing behind that goes on working. One that dies takes nothing
-with it: its task goes to a new one, once more, and is then told as failed. So does the task of one
-that cannot confine it now, or not as asked.
+A task is a line of JSON on a worker's standard input, its answer a line from its original standard
+output. A worker ends when its standard input closes, in the middle of a task too: when the grader
+is killed, nothing goes on working. When a worker dies, its task is given to a new one, once, and
+fails if that dies too. So does the task of a worker that cannot confine it now, or not as asked.
 """
 
 from __future__ import annotations
@@ -29,21 +28,21 @@ from grader.translations import current
 
 @dataclass(frozen=True)
 class Task:
-    """One content, to be run and judged for everybody who has handed it in.
+    """A submission to run, and to judge for each who handed it in.
 
     Attributes:
-        key: the run's; see `grader.batch.store`.
-        hand_ins: everybody's; their paths are not carried along.
-        path: what was handed in; None where nothing is run any more.
-        filename: what it was called there.
+        key: of the run; see `grader.batch.store`.
+        hand_ins: those with this content; their paths are not serialised.
+        path: the submission; None where its run is only judged again.
+        filename: its original name.
         exercise: its name or path.
-        time: the clock that it lives by.
-        seed: chooses where the varied runs start; None takes the exercise's own.
-        run: the folder of the run, if it is made already; one that cannot be read is made anew.
-        into: an empty folder for what is made; see `grader.batch.store`.
-        judge_only: whether results alone are asked for: no pages, no pictures.
+        time: the clock of the submission.
+        seed: chooses where the varied runs start; None: the exercise's own.
+        run: the folder of the run, if there is one; one that cannot be read is made anew.
+        into: an empty folder for the files; see `grader.batch.store`.
+        judge_only: whether to write results alone: no pages, no pictures.
         isolation: the level at which it is run, of `grader.run.processes.levels`; '': the best.
-        language: of the pages; that of whoever asks.
+        language: of the pages.
     """
 
     key: str
@@ -68,9 +67,9 @@ class Answer:
     """How a task ended.
 
     Attributes:
-        state: "done": everything is in its folder. "failed": the grader could not; "exercise":
-            the exercise's own code failed; "again": it could not now, but may the next time;
-            "unfit": it cannot confine submissions as the task asks.
+        state: "done": everything is in its folder. "failed": the grader failed; "exercise": the
+            exercise's code failed; "again": it failed now, but may work the next time; "unfit": the
+            worker cannot confine submissions as the task asks.
         message: why.
     """
 
@@ -79,7 +78,7 @@ class Answer:
 
     @property
     def why(self) -> Message:
-        """Why it is not done, for people."""
+        """Why it is not done, as a sentence for people."""
         if self.state == "exercise":
             return msg("The exercise's own code failed: {why}", why=self.message)
         return self.message
@@ -100,9 +99,10 @@ Done = tuple[Task, Answer]
 
 
 def work(tasks: Iterable[Task], jobs: int, patience_s: float = MOST_S) -> Iterator[Done]:
-    """Do tasks, each in one of `jobs` processes; yields each as soon as it is over.
+    """Do tasks, each in one of `jobs` processes; yield each as soon as it is over.
 
-    A task is taken from the iterable when a process is free. The processes end with the iterator.
+    The next task is drawn from the iterable when a process is free. The processes end with the
+    iterator.
     """
     waiting = iter(tasks)
     processes = [Process(patience_s) for _ in range(jobs)]
@@ -134,7 +134,7 @@ def work(tasks: Iterable[Task], jobs: int, patience_s: float = MOST_S) -> Iterat
 
 
 class Process:
-    """A worker, started when it is first asked and, if it has ended since, once more.
+    """A worker process, started with its first task, and again if it has ended since.
 
     It ends with this process, and with this object.
     """
@@ -146,14 +146,14 @@ class Process:
         self.is_over = False
 
     def stop(self) -> None:
-        """End it, whatever it does, for good; any thread may."""
+        """Kill it for good, also from another thread."""
         with self._lock:
             self.is_over = True
             if self._process is not None:
                 self._process.kill()
 
     def done(self, task: Task) -> Answer:
-        """Have a task done; whatever becomes of the process is an answer."""
+        """Have a task done, and return how it ended; the death of the process is an answer too."""
         ended: Text = ""
         answer = None
         for _ in range(_TRIES):
@@ -174,7 +174,7 @@ class Process:
         )
 
     def _ask(self, task: Task) -> bytes:
-        """The line that the process answers; empty if it ends instead."""
+        """Return the line that the process answers; empty if it ends instead."""
         with self._lock:
             if self._process is None and not self.is_over:
                 self._process = start()
@@ -194,7 +194,7 @@ class Process:
             patience.cancel()
 
     def end(self) -> Text:
-        """Have it gone; how it ended."""
+        """End the process, and return how it ended."""
         with self._lock:
             process, self._process = self._process, None
         if process is None:
@@ -205,7 +205,7 @@ class Process:
                     pipe.close()
         if process.poll() is None and not self.is_over:
             with suppress(subprocess.TimeoutExpired):
-                process.wait(10.0)  # it ends by itself where nobody asks any more
+                process.wait(10.0)  # it ends by itself when its input is closed
         process.kill()
         code = process.wait()
         if code < 0:
@@ -214,7 +214,7 @@ class Process:
 
 
 def start() -> subprocess.Popen[bytes]:
-    """Start a worker with our own modules; Ctrl-C in a terminal is not for it."""
+    """Start a worker with the modules of this grader; Ctrl-C in a terminal does not reach it."""
     return subprocess.Popen(
         [sys.executable, *_COMMAND],
         stdin=subprocess.PIPE,

@@ -1,8 +1,8 @@
-"""One task on another machine: everything it needs goes there, everything it made comes back.
+"""Grade a task on another machine: pack its files, do it there, and unpack the files it made.
 
-What travels is plain data, which dask serialises. `graded` is what a cluster calls. A submission's
-links go as links: a run sees to where they lead. Of what comes back nothing is taken but what was
-asked for.
+Both shipments are plain data, which Dask serialises. A cluster calls `graded`. A submission's links
+are sent as links: a run deals with where they lead. What was not asked for is refused when the
+files come back.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Literal, NamedTuple
 from grader import files, scratch
 from grader.batch import pool
 from grader.batch.pool import Answer, Task
-from grader.batch.store import RUN, STUDENTS, below, own_versions
+from grader.batch.store import RUN, STUDENTS, below, installed_versions
 from grader.errors import GraderFailure, NotNow, UsageError
 from grader.exercise import places
 from grader.exercise.places import CHECKS
@@ -27,21 +27,20 @@ from grader.message import NOTHING, Message, joined, msg, reason
 from grader.run.processes import levels
 from grader.submission.folder import UNREADABLE
 
-#: Of all that travels with a task [bytes]: more than a submission may have. And of its files,
-#: folders and links: likewise.
+#: Limits of a shipment: bytes, and files, folders and links; both above those of a submission.
 MOST_BYTES, MOST_ENTRIES = 250_000_000, 20_000
-#: Where all else lies on the worker, below a folder of the task's own.
+#: The folders of a shipment on the worker, below a folder for the task.
 SUBMISSION, EXERCISE, STORED, MADE = map(Path, ("submission", "exercise", "stored", "made"))
 
 _of_thread = threading.local()
 
 
 class Unfit(Exception):
-    """It is too large to travel; the text says how much may."""
+    """A shipment is too large; the text has the limit."""
 
 
 class Shipped(NamedTuple):
-    """Something in a folder: what is in a file, or where a link leads."""
+    """An entry of a shipment; `data` is a file's content, or the target of a link."""
 
     kind: Literal["file", "program", "link", "folder"]
     data: bytes = b""
@@ -49,31 +48,31 @@ class Shipped(NamedTuple):
 
 @dataclass(frozen=True)
 class Shipment:
-    """A task that travels.
+    """A task with all files that it needs.
 
     Attributes:
-        task: with paths below the folder that the files will lie in.
+        task: with paths relative to the folder of the files.
         files: by their names in that folder; a folder comes before what is in it.
-        versions: what the worker has to have, from `own_versions`.
+        versions: those that the worker must have, from `installed_versions`.
     """
 
     task: Task
     files: Mapping[str, Shipped]
-    versions: Mapping[str, str] = field(default_factory=own_versions)
+    versions: Mapping[str, str] = field(default_factory=installed_versions)
 
     @property
     def size(self) -> int:
-        """Of its files [bytes]."""
+        """The size of its files [bytes]."""
         return sum(len(each.data) for each in self.files.values())
 
 
 @dataclass(frozen=True)
 class Returned:
-    """How a task ended, and what came of it.
+    """How a task ended, with the files that it made.
 
     Attributes:
         files: by their names in the task's folder.
-        unfit: the worker that cannot confine submissions as all of the class are; others may.
+        unfit: the address of a worker that cannot confine submissions at the level of the class.
     """
 
     answer: Answer
@@ -83,13 +82,13 @@ class Returned:
 
 @dataclass(frozen=True)
 class Offer:
-    """What a worker of a cluster says of its machine.
+    """The versions and the isolation of a cluster's worker.
 
     Attributes:
-        versions: from `own_versions`.
+        versions: from `installed_versions`.
         isolation: the level that it offers; '' for none.
-        why: it does not offer more.
-        again: whether it may, another time.
+        why: why it offers no better one.
+        again: whether it may offer one later.
     """
 
     versions: Mapping[str, str]
@@ -99,14 +98,14 @@ class Offer:
 
 
 def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: Message) -> None:
-    """Refuse to grade with others than those of whoever asks.
+    """Refuse a worker whose versions are not those of the machine with the class.
 
     Args:
-        wanted, found: from `own_versions`, where the class is and of the worker.
-        worker: what a message calls it.
+        wanted, found: from `installed_versions`, where the class is and of the worker.
+        worker: its name in messages.
 
     Raises:
-        UsageError: they are not the same.
+        UsageError: they differ.
     """
     differences = [
         msg(
@@ -127,23 +126,23 @@ def check_versions(wanted: Mapping[str, str], found: Mapping[str, str], worker: 
 
 
 async def offer(level: str) -> Offer:
-    """What this machine offers, as a worker of a cluster.
+    """Return what this machine offers, as a worker of a cluster.
 
     Args:
-        level: the one that it should offer; '': its best. See `grader.run.processes.levels`.
+        level: the level to offer; '': the best. See `grader.run.processes.levels`.
     """
     try:  # in a thread: the worker has more to do meanwhile
-        return Offer(own_versions(), (await asyncio.to_thread(levels.here, level)).level)
+        return Offer(installed_versions(), (await asyncio.to_thread(levels.here, level)).level)
     except GraderFailure as error:
-        return Offer(own_versions(), "", error.message, isinstance(error, NotNow))
+        return Offer(installed_versions(), "", error.message, isinstance(error, NotNow))
 
 
 def packed(task: Task) -> Shipment:
-    """A task with what was handed in, the run if there is one and, unless installed, the exercise.
+    """Pack a task: its submission, its run if there is one and, unless installed, its exercise.
 
     Raises:
         Unfit: it is too large.
-        OSError: something of it cannot be read.
+        OSError: one of its files cannot be read.
     """
     assert task.path is not None
     sent = replace(task, path=Path(SUBMISSION, task.path.name), into=Path(MADE))
@@ -161,20 +160,20 @@ def packed(task: Task) -> Shipment:
 
 
 def graded(package: Shipment) -> Returned:
-    """Do a task that was packed, in a process of its own; returns what `unpack` takes.
+    """Do a packed task in a separate process, and return what `unpack` expects.
 
     Raises:
-        UsageError: this machine is not fit for it; no other task should come here either.
+        UsageError: this machine cannot grade the class; no other task should be sent here.
     """
     worker = msg("the worker {name}", name=socket.gethostname())
-    check_versions(package.versions, own_versions(), worker)
+    check_versions(package.versions, installed_versions(), worker)
     with scratch.make_folder() as folder:
         try:
             _write(package.files, folder)
         except OSError as error:
             why = error.strerror or str(error)
-            said = msg("{worker} has no room for it: {why}", worker=worker, why=why)
-            return Returned(Answer("failed", said))
+            full = msg("{worker} has no room for it: {why}", worker=worker, why=why)
+            return Returned(Answer("failed", full))
         task = _here(package.task, folder)
         answer = _process().done(task)
         if answer.state == "unfit":
@@ -187,7 +186,7 @@ def graded(package: Shipment) -> Returned:
 
 
 def unpack(returned: object, task: Task) -> Answer:
-    """Put what `graded` has made into a task's folder; how it ended.
+    """Write the files that `graded` returned into the task's folder; return how it ended.
 
     Raises:
         UsageError: it cannot be written.
@@ -209,7 +208,7 @@ def unpack(returned: object, task: Task) -> Answer:
 
 
 def _here(task: Task, folder: Path) -> Task:
-    """The same task with the places of this machine."""
+    """Return the task with paths on this machine."""
     assert task.path is not None
     (folder / MADE).mkdir()
     is_sent = Path(task.exercise).is_relative_to(EXERCISE)
@@ -225,7 +224,11 @@ def _here(task: Task, folder: Path) -> Task:
 def _read(
     trees: Mapping[str, Path], is_left_out: Callable[[Path], bool] | None = None
 ) -> dict[str, Shipped]:
-    """Files, folders and links below some folders, or files; by the names that these get.
+    """Read files, folders and links; name in the shipment -> entry.
+
+    Args:
+        trees: name in the shipment -> the file or folder to read.
+        is_left_out: see `below`.
 
     Raises:
         Unfit: they are too large.
@@ -257,7 +260,7 @@ def _read(
 
 
 def _write(sent: Mapping[str, Shipped], folder: Path) -> None:
-    """Put what `_read` has found into a folder.
+    """Write the entries of a shipment into a folder.
 
     Raises:
         OSError: something cannot be written.
@@ -281,10 +284,10 @@ def _write(sent: Mapping[str, Shipped], folder: Path) -> None:
 
 
 def _process() -> pool.Process:
-    """The process that does the tasks of this thread of a worker.
+    """Return the process that does the tasks of this thread of a worker.
 
-    Of its own, because a grading forks, handles signals and adopts orphans, and a worker of a
-    cluster has threads that know nothing of that. It ends when this process does.
+    It is separate because a grading forks, handles signals and adopts orphans, which a worker of a
+    cluster with its threads would not survive. It ends with this process.
     """
     if not hasattr(_of_thread, "process"):
         _of_thread.process = pool.Process()
@@ -293,7 +296,7 @@ def _process() -> pool.Process:
 
 
 def _address() -> str:
-    """What the cluster calls this worker."""
+    """Return the address of this worker in the cluster."""
     from distributed import get_worker
 
     return str(get_worker().address)

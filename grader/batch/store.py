@@ -1,11 +1,11 @@
-"""The folder of a class, as it is written: everything comes into its place whole or not at all.
+"""Write the folder of a class: every folder moves into its place whole or not at all.
 
-    store/KEY/          what one run has left: recording/, source/, similar.json, thumb.json, which
-                        everybody who has handed it in has too; or error.json
-    submissions/ID/     what came of it for one hand-in; see `grader.batch.entry`
+    store/KEY/          the files of one run: recording/, source/, similar.json, thumb.json, which
+                        are linked into the folder of each who handed it in; or error.json
+    submissions/ID/     the result of one hand-in; see `grader.batch.entry`
     aside/ID/           what is no longer among the submissions
     before/N/           what a regrade has replaced; see `grader.batch.regrade.judging`
-    .unfinished/        what is being made; whatever an interrupted call has left there goes
+    .unfinished/        what is being made; what an interrupted call has left there is removed
 
 A worker fills a folder below .unfinished; only `grader batch` itself moves it to its place.
 """
@@ -37,14 +37,14 @@ STORE, UNFINISHED, ASIDE, BEFORE = "store", ".unfinished", "aside", "before"
 #: What a worker leaves: one run, and a folder for each hand-in.
 RUN, STUDENTS = "run", "students"
 RECORDING, ERROR = "recording", "error.json"
-#: What of a run lies in the folder of everybody who has handed it in, too.
+#: The files of a run that are also in the folder of each who handed it in.
 SHARED = (RECORDING, SOURCE, BEHAVIOUR, THUMB)
-#: Before the name of what is being replaced, beside what replaces it.
+#: Prefix of a folder that is being replaced, beside what replaces it.
 _OLDER = "older-"
 
 
 class Store:
-    """The folder of a class; nobody else writes into it while `opened` holds."""
+    """The folder of a class; `opened` locks it against other writers."""
 
     def __init__(self, out: Path) -> None:
         self.out = out
@@ -52,7 +52,7 @@ class Store:
     @classmethod
     @contextmanager
     def opened(cls, out: Path) -> Iterator[Store]:
-        """Make the folder, if need be, and clear what an interrupted call has left.
+        """Make the folder, if need be, lock it, and clear what an interrupted call has left.
 
         Raises:
             UsageError: it cannot be written, or another grading writes into it.
@@ -74,19 +74,19 @@ class Store:
                             (out / name).rmdir()
 
     def run(self, key: str) -> Path:
-        """Where a run is, or will be."""
+        """The path of a run's folder, also before there is one."""
         return self.out / STORE / key[:2] / key
 
     def has(self, key: str) -> bool:
-        """Whether a run is there; then it is whole."""
+        """Whether a run is stored; a stored run is complete."""
         return bool(key) and self.run(key).is_dir()
 
     def student(self, hand_in: str) -> Path:
-        """Where the folder of a hand-in is, or will be."""
+        """The path of a hand-in's folder, also before there is one."""
         return self.out / SUBMISSIONS / hand_in
 
     def set_aside(self, hand_ins: Iterable[str]) -> list[str]:
-        """Move all folders of hand-ins but these out of the class; which they were.
+        """Move the folders of all other hand-ins out of the class, and return their names.
 
         Raises:
             UsageError: one cannot be moved.
@@ -103,7 +103,7 @@ class Store:
         return sorted(path.name for path in others)
 
     def new_place(self) -> Path:
-        """An empty folder for a worker.
+        """Make an empty folder for a worker.
 
         Raises:
             UsageError: it cannot be made.
@@ -113,7 +113,7 @@ class Store:
         return place
 
     def put(self, key: str, place: Path) -> None:
-        """Move what a worker has made to its place: the run first, then each hand-in.
+        """Move the files of a worker into their places: the run first, then each hand-in.
 
         Raises:
             UsageError: it cannot be written.
@@ -133,7 +133,7 @@ class Store:
 
 
 def _check_is_ours(out: Path) -> None:
-    """Refuse a folder in which somebody else's files have our names, or links lead out of it."""
+    """Refuse a folder in which another program's files have our names, or that is a link."""
     for name in (STORE, SUBMISSIONS, ASIDE, BEFORE):
         if (out / name).is_symlink():
             raise files.cannot_write(out / name, msg("it is a link; expected a folder, or nothing"))
@@ -159,7 +159,7 @@ def _replace(made: Path, target: Path, place: Path) -> None:
 
 
 def _put_back(out: Path) -> None:
-    """Give a hand-in its folder back that an interrupted call had taken away to replace it."""
+    """Restore the folders of hand-ins that an interrupted call had moved aside to replace them."""
     for older in sorted((out / UNFINISHED).glob(f"*/{_OLDER}*")):
         target = out / SUBMISSIONS / older.name.removeprefix(_OLDER)
         if (older / ENTRY).is_file() and not os.path.lexists(target):
@@ -168,7 +168,7 @@ def _put_back(out: Path) -> None:
 
 
 def _flush(place: Path) -> None:
-    """Have it on the disk before it gets its name: power may go at any moment."""
+    """Sync the files to the disk before they get their names: power may fail at any moment."""
     for at, _, names in os.walk(place):
         for path in (Path(at, name) for name in names):
             with suppress(OSError), path.open("rb") as file:  # what cannot be opened is a link
@@ -176,10 +176,10 @@ def _flush(place: Path) -> None:
 
 
 def _link_all(run: Path, student: Path) -> None:
-    """What is shared, in a student's folder too: as links, or as copies where there are none."""
+    """Put the shared files of a run into a student's folder: as links, else as copies."""
     for name in SHARED:
         if (run / name).is_symlink():
-            continue  # none of ours
+            continue  # the grader makes no links
         if (run / name).is_dir():
             shutil.copytree(run / name, student / name, symlinks=True, copy_function=_link)
         elif (run / name).exists():
@@ -194,8 +194,8 @@ def _link(source: str, target: str) -> str:
     return target
 
 
-def own_versions() -> dict[str, str]:
-    """On what a run depends besides; the same on all machines that grade one class."""
+def installed_versions() -> dict[str, str]:
+    """Return the versions that a run depends on; the same on all machines of one class."""
     return {
         "grader": versions.grader(),
         "python": versions.python(),
@@ -205,11 +205,11 @@ def own_versions() -> dict[str, str]:
 
 
 def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -> str:
-    """The name of a run.
+    """Return the key of a run: a hash of everything that it depends on.
 
     Args:
-        submission: the hash of what was handed in, from `of_hand_in`.
-        seed: chooses where the varied runs start; None takes the exercise's own.
+        submission: the hash of the submission, from `of_hand_in`.
+        seed: chooses where the varied runs start; None: the exercise's own.
     """
     depends_on = {
         "submission": submission,
@@ -217,7 +217,7 @@ def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -
         "conditions": exercise.conditions,
         "time": time,
         "seed": exercise.varied.seed if seed is None else seed,
-        **own_versions(),
+        **installed_versions(),
     }
     if exercise.setting:
         depends_on["setting"] = content.of_bytes(exercise.setting.encode())
@@ -225,7 +225,7 @@ def of_run(submission: str, exercise: Exercise, time: Clock, seed: int | None) -
 
 
 def of_hand_in(path: Path, filename: str) -> str:
-    """The hash of what was handed in, as it was called there.
+    """Return the hash of a submission's names and contents.
 
     What nobody hands in by intention, as a .git, a __pycache__ or a venv, does not count.
 
@@ -235,7 +235,7 @@ def of_hand_in(path: Path, filename: str) -> str:
     if path.is_dir():
         # no pipe, socket or device: they would be waited for
         found = (each for each in below(path) if each[1].is_symlink() or each[1].is_file())
-        # of so many whoever opens it refuses all
+        # a submission with more files is refused when it is opened
         return content.of_files({name: _hash(at) for name, at in islice(found, MAX_ENTRIES + 1)})
     return content.of_files({filename or path.name: content.of_file(path)})
 
@@ -243,10 +243,10 @@ def of_hand_in(path: Path, filename: str) -> str:
 def below(
     top: Path, is_left_out: Callable[[Path], bool] | None = None
 ) -> Iterator[tuple[str, Path]]:
-    """What lies in a folder, by its name there; a folder comes before what is in it.
+    """Yield what is below a folder, as relative name and path; a folder before its content.
 
     Args:
-        is_left_out: with all that is in it; else what a run would not see of a submission.
+        is_left_out: whether to leave out a path and all below it; None: what no run would see.
     """
     left_out = is_left_out or _is_unseen
     for at, folders, names in os.walk(top):

@@ -1,7 +1,7 @@
 """The command line `grader`, one file a verb.
 
 Exit codes: 0 judged, whatever the score (1 below --fail-under); 2 the call or the submission
-cannot be used; 3 the grader itself failed; 130 interrupted, which was the caller's wish.
+cannot be used; 3 the grader itself failed; 130 interrupted by the caller.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from grader.message import Text, msg
 # numpy's worker threads would spin a while after its import, and have nothing to do here
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-try:  # somebody may think better of it at once
+try:  # Ctrl-C may come as early as this
     import importlib
 
     from grader import system
@@ -33,7 +33,7 @@ except KeyboardInterrupt:
     print("grader: interrupted", file=sys.stderr)
     sys.exit(130)
 
-#: Each verb with the first line of its module, which is imported where the verb is called.
+#: Each verb with the first line of its module, which is imported only when the verb is called.
 VERBS = {
     "run": msg("Run a submission and judge it."),
     "check": msg("Judge a saved recording again."),
@@ -50,7 +50,7 @@ VERBS = {
         "to fix."
     ),
 }
-#: What runs submissions; all else works anywhere.
+#: The verbs that run submissions; the others work anywhere.
 NEED_LINUX = ("run", "batch", "check-exercise")
 ELSEWHERE = msg(
     "submissions are run on Linux with /proc, which this is not. Take WSL 2, a devcontainer or "
@@ -58,38 +58,38 @@ ELSEWHERE = msg(
 )
 FAILED = msg("The grader failed; this is not the submission's fault:")
 JUDGED, BELOW, UNUSABLE, GRADER_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
-#: A full disk, a closed folder: where they show is no place in our code.
+#: Errors of the machine, as a full disk or a closed folder: they need no traceback.
 _OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one verb; the exit code is the return value."""
-    for stream in (sys.stdout, sys.stderr):  # a terminal may lack what a language is written in
+    """Run one verb, and return the exit code."""
+    for stream in (sys.stdout, sys.stderr):  # a terminal may lack the letters of a language
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")
     try:
         return _main(sys.argv[1:] if argv is None else argv)
-    except KeyboardInterrupt:  # before a verb was at work
+    except KeyboardInterrupt:  # before a verb has started
         print(tr("{who}: interrupted", who="grader"), file=sys.stderr)
         return INTERRUPTED
 
 
 def load(verb: str) -> Any:
-    """The module of a verb."""
+    """Import and return the module of a verb."""
     return importlib.import_module(f"{__name__}.{verb.replace('-', '_')}")
 
 
 def _main(words: Sequence[str]) -> int:
-    options.choose_language(words)  # help and errors of the call are in it, too
+    options.choose_language(words)  # for help and errors of the call, too
     if _asked(words) in NEED_LINUX and not system.runs_submissions():
-        _say(_who(_asked(words)), ELSEWHERE)
+        _print_error(_who(_asked(words)), ELSEWHERE)
         return UNUSABLE
     try:
         args = _parser(words).parse_args(words)
     except options.Misuse as error:
-        said = tr("{prog}: error: {message}", prog=error.prog, message=error.message)
-        print(f"{error.usage}{for_terminal(said)}", file=sys.stderr)
-        return _misused(error, options.look_for(words))
+        text = tr("{prog}: error: {message}", prog=error.prog, message=error.message)
+        print(f"{error.usage}{for_terminal(text)}", file=sys.stderr)
+        return _misused(error, options.parse_partly(words))
     if system.runs_submissions():
         from grader.run.processes import started_process
 
@@ -98,7 +98,7 @@ def _main(words: Sequence[str]) -> int:
     try:
         options.prepare(args)
     except UsageError as error:
-        _say(_who(args.verb), error.message)
+        _print_error(_who(args.verb), error.message)
         return error.exit_code
     try:
         return int(load(args.verb).main(args))
@@ -106,14 +106,16 @@ def _main(words: Sequence[str]) -> int:
         print(tr("{who}: interrupted", who=f"grader {args.verb}"), file=sys.stderr)
         return _ended(UsageError(msg("interrupted")), args, INTERRUPTED)
     except GraderError as error:
-        _say(_heading(error, args.verb), error.message)
+        _print_error(_heading(error, args.verb), error.message)
         return _ended(error, args)
     except Exception as error:
         what = "".join(traceback.format_exception_only(error)).strip()
         if isinstance(error, OSError) and error.errno in _OF_THE_MACHINE:
-            _say(FAILED, what)
+            _print_error(FAILED, what)
         else:
-            _say(msg("The grader failed; this is not the submission's fault. Please report:"))
+            _print_error(
+                msg("The grader failed; this is not the submission's fault. Please report:")
+            )
             print(for_terminal(traceback.format_exc()), end="", file=sys.stderr)
         return _ended(GraderFailure("unexpected: {what}", what=what), args)
 
@@ -130,23 +132,23 @@ def _who(verb: str) -> str:
     return tr("{who}:", who=f"grader {verb}")
 
 
-def _say(red: Text, message: Text = "") -> None:
+def _print_error(heading: Text, message: Text = "") -> None:
     from rich import text
-    from rich.console import Console  # here: most calls have nothing to say
+    from rich.console import Console  # here: most calls print no error
 
-    said = text.Text(translate(red), "red")
+    line = text.Text(translate(heading), "red")
     if message:
-        said.append(f" {for_terminal(translate(message))}", "default")
-    Console(stderr=True, soft_wrap=True, highlight=False).print(said)
+        line.append(f" {for_terminal(translate(message))}", "default")
+    Console(stderr=True, soft_wrap=True, highlight=False).print(line)
 
 
 def _asked(words: Sequence[str]) -> str:
-    """The verb of a call; '' where there is none."""
+    """Return the verb of a call; '' where there is none."""
     return next((word for word in words if not word.startswith("-")), "")
 
 
 def _parser(words: Sequence[str]) -> options.Parser:
-    """The parser of a call: of the verb that it asks for it knows the arguments."""
+    """Return the parser of a call, with the arguments of its verb alone."""
     asked = _asked(words)
     parser = options.Parser(prog="grader", description=tr("Grade the turtlesim challenge."))
     known = _versions() if "--version" in words else ""
@@ -162,7 +164,7 @@ def _parser(words: Sequence[str]) -> options.Parser:
 
 
 def _versions() -> str:
-    """Ours, and those that somebody who reports a fault is asked for."""
+    """Return the version of the grader, and those that belong into the report of a fault."""
     from grader import versions
 
     ros = f", ROS 2 {distro}" if (distro := versions.ros_distro()) else ""
@@ -179,7 +181,7 @@ def _misused(error: options.Misuse, args: Namespace) -> int:
 
 
 def _ended(error: GraderError, args: Namespace, exit_code: int | None = None) -> int:
-    """Write the error as data, if that was asked for; the exit code."""
+    """Write the error as data, if that was asked for, and return the exit code."""
     try:
         options.write(error, args)
     except UsageError as unwritten:

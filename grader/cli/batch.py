@@ -92,7 +92,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Grade a class; 0: all are judged, 3: the grader failed for some."""
+    """Grade a class, and return the exit code; 3: the grader failed for some hand-ins."""
     _check_words(args)
     view: View = "after_due" if args.after_due else "student"
     if args.regrade:
@@ -120,14 +120,16 @@ def main(args: argparse.Namespace) -> int:
         check_same_class(store, order.class_file, order.again)
         _grade(args, order, found, store, messages)
         graded = entries(args.out)
-        _tell(messages, batch.write_outputs(args.out, graded, exercise, view, args.assignment))
+        _print_notes(
+            messages, batch.write_outputs(args.out, graded, exercise, view, args.assignment)
+        )
     class_progress.summarise(messages, graded, args.out)
     return GRADER_FAILED if any(entry.state == "failed" for entry in graded) else JUDGED
 
 
 @contextmanager
 def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
-    """Who has handed in what."""
+    """Find the hand-ins, and print the notes on them."""
     from grader.batch.class_file import CLASS
     from grader.batch.find.finding import find
 
@@ -139,7 +141,7 @@ def _found(args: argparse.Namespace, messages: Console) -> Iterator[Found]:
             submissions=args.submissions,
         )
     with find(args.submissions, args.pattern, args.roster) as found:
-        _tell(messages, found.notes)
+        _print_notes(messages, found.notes)
         yield found
 
 
@@ -169,14 +171,14 @@ def _grade(
             aside=store.out / ASIDE,
             names=listed(aside),
         )
-        _tell(messages, [note])
+        _print_notes(messages, [note])
     with class_progress.shown(messages, planned, store) as show:
         for hand_in in batch.carry_out(planned, order, store, work):
             show(hand_in)
 
 
 def _check_words(args: argparse.Namespace) -> None:
-    """Refuse a call that asks for two things, or for none."""
+    """Refuse options that contradict each other, or lack another one."""
     if bool(args.submissions) == bool(args.regrade):
         raise UsageError(msg("name one: the submissions, or a class to --regrade"))
     if args.apply and not args.regrade:
@@ -195,20 +197,20 @@ def _on_a_cluster(args: argparse.Namespace, order: Order, store: Store, messages
     from grader.batch import class_file, cluster
 
     def note(text: Message) -> None:
-        _tell(messages, [text])
+        _print_notes(messages, [text])
 
     settle = partial(class_file.note, args.out)
     isolation = class_file.OfCluster(order.isolation, args.isolation or "", settle)
     return lambda tasks: cluster.work(tasks, args.scheduler, note, isolation)
 
 
-def _tell(console: Console, notes: Sequence[Message]) -> None:
+def _print_notes(console: Console, notes: Sequence[Message]) -> None:
     for note in notes:
         console.print(Text(for_terminal(translate(note))), soft_wrap=True)
 
 
 def processes(text: str) -> int:
-    """A number of processes from the command line."""
+    """Parse a number of processes of the command line."""
     if not re.fullmatch(r"[1-9]\d{0,3}", text):
         raise argparse.ArgumentTypeError(
             tr("expected a number of processes, found {text}", text=text)

@@ -78,9 +78,8 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _is_made_for(origin: Provenance | None, exercise: Exercise) -> bool:
-    """Whether recordings were made for just this exercise, as far as they tell."""
-    told = "" if origin is None else origin.exercise_sha256
-    return told in ("", exercise.sha256)
+    """Whether recordings were made for exactly this exercise, as far as that is recorded."""
+    return origin is None or origin.exercise_sha256 in ("", exercise.sha256)
 
 
 def _show(
@@ -90,12 +89,12 @@ def _show(
     recordings: Recordings,
     is_meant: bool,
 ) -> None:
-    """Write what is to be written, and show the result.
+    """Write the result where it belongs, and print it.
 
     Args:
-        is_meant: whether the exercise is one by which an older result may be replaced.
+        is_meant: whether a result by this exercise may replace an older one.
     """
-    from grader.reports import terminal  # here: what takes long to import
+    from grader.reports import terminal  # here: it takes long to import
 
     page, folder = None, place.recording
     if args.json and not _is_same(args.json, place):
@@ -109,7 +108,7 @@ def _show(
         result, folder = replace(result, artifacts=place.older.artifacts), place.folder
         page = _rewrite(place, result, recordings)
     elif place.older is not None:
-        _say_left(
+        _report_left(
             msg(
                 "the installed exercise {exercise!r} is another one than they were made"
                 " with; say with --exercise which one you mean",
@@ -120,7 +119,7 @@ def _show(
 
 
 def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) -> Exercise:
-    """The one that is asked for, else the one that the recording was made for.
+    """Load the exercise of the call, else the one that the recording was made for.
 
     Raises:
         UsageError: that one is not installed.
@@ -139,13 +138,13 @@ def _exercise(asked: str | None, place: RecordingPlace, recordings: Recordings) 
 
 
 def _is_same(file: Path, place: RecordingPlace) -> bool:
-    """Whether a file is the result that the recording lies beside."""
+    """Whether a file is the result beside the recording."""
     beside = place.folder / RESULT
     return place.older is not None and file.exists() and file.samefile(beside)
 
 
 def _rewrite(place: RecordingPlace, result: Result, recordings: Recordings) -> Path | None:
-    """Replace the older result and its page; the page, or None where they cannot be written."""
+    """Replace the older result and its page; return the page, None if they cannot be written."""
     from grader.reports import render
 
     page = place.folder / PAGE
@@ -157,11 +156,11 @@ def _rewrite(place: RecordingPlace, result: Result, recordings: Recordings) -> P
             report = Report.of(result, place.folder, recordings)
             files.put(page, render("html", [report]).encode("utf-8"))
     except UsageError as error:
-        _say_left(error.message)
+        _report_left(error.message)
         return None
     return page
 
 
-def _say_left(why: Message) -> None:
+def _report_left(why: Message) -> None:
     left = tr("Left as they were: {files}: {why}", files=f"{RESULT}, {PAGE}", why=why)
     print(for_terminal(left), file=sys.stderr)

@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Try it; 1 if there is something to mend. See `grader.cli` for the other exit codes."""
+    """Try an exercise; 1 if there is something to fix. See `grader.cli` for other exit codes."""
     exercise = load_exercise(args.exercise)
     with _shown(Console(stderr=True, highlight=False), exercise.name) as show:
         examination = check_exercise(exercise, mutants=args.mutants, jobs=args.jobs, progress=show)
@@ -87,7 +87,7 @@ def _print(examination: Examination, console: Console) -> None:
 
 @contextmanager
 def _shown(console: Console, name: str) -> Iterator[Progress]:
-    """Show which solution is through; yields the function that is told."""
+    """Show the progress; yield the function to call after each solution."""
     if console.is_terminal:
         with console.status(tr("{name}: running its solutions ...", name=name)) as status:
             yield lambda count, total, last: status.update(

@@ -1,4 +1,4 @@
-"""Say how far a class is: a bar in a terminal, a line for each hand-in in a log; and a summary."""
+"""Show the progress of a class: a bar in a terminal, lines in a log; and print a summary."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _STATES: dict[State, Message] = {
 
 @contextmanager
 def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable[[HandIn], None]]:
-    """Show how far it is; yields the function that is told of each that is over."""
+    """Show the progress; yield the function to call with each finished hand-in."""
     total, before = planned.hand_ins, len(planned.done)
     if planned.alike:
         alike = tr_many(
@@ -62,7 +62,7 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
         over += 1
         entry = Entry.read(store.student(hand_in.id))
         console.print(
-            Text(for_terminal(f"[{over}/{total}] {hand_in.id}: {_told(entry)}")), soft_wrap=True
+            Text(for_terminal(f"[{over}/{total}] {hand_in.id}: {_outcome(entry)}")), soft_wrap=True
         )
 
     yield line
@@ -72,11 +72,12 @@ def shown(console: Console, planned: Planned, store: Store) -> Iterator[Callable
 def bar(
     console: Console, what: str, total: int, *columns: TextColumn | TimeRemainingColumn, **task: Any
 ) -> Iterator[Callable[..., None]]:
-    """A bar in a terminal, behind what is done; yields the function that moves it on by one.
+    """Show a bar in a terminal; yield the function that advances it by one.
 
     Args:
+        what: stands before the bar.
         columns: behind the bar.
-        task: what else is known of it at first; the function takes what is new.
+        task: initial fields of the bar; the function accepts new values.
     """
     counted = tr("{done} of {total}", done="{task.completed}", total="{task.total}")
     before = TextColumn(f"{what} {counted}".lstrip())
@@ -106,14 +107,14 @@ def _bar(console: Console, planned: Planned, store: Store) -> Iterator[Callable[
             advance(
                 rate=tr("{a_minute:.0f} a minute", a_minute=a_minute),
                 failed=tr("{failed} failed", failed=failed) if failed else "",
-                description=clip(for_terminal(f"{hand_in.id}: {_told(entry)}"), 60),
+                description=clip(for_terminal(f"{hand_in.id}: {_outcome(entry)}"), 60),
             )
 
         yield show
 
 
 def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
-    """Say what came of it."""
+    """Print the numbers of hand-ins by state, their mean score, and what failed."""
     states = Counter(entry.state for entry in entries)
     counts = ", ".join(
         tr("{number} {state}", number=states[state], state=what)
@@ -121,12 +122,12 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
         if states[state]
     )
     if counts:
-        all_told = tr_many(
+        summary = tr_many(
             "{n:,} hand-in: {counts}.", "{n:,} hand-ins: {counts}.", len(entries), counts=counts
         )
     else:
-        all_told = tr_many("{n:,} hand-in.", "{n:,} hand-ins.", len(entries))
-    console.print(all_told)
+        summary = tr_many("{n:,} hand-in.", "{n:,} hand-ins.", len(entries))
+    console.print(summary)
     scores = [
         entry.score for entry in entries if entry.state == "judged" and entry.score is not None
     ]
@@ -152,7 +153,7 @@ def summarise(console: Console, entries: Sequence[Entry], out: Path) -> None:
     console.print(Text(tr("The class: {out}", out=out)), soft_wrap=True)
 
 
-def _told(entry: Entry) -> str:
+def _outcome(entry: Entry) -> str:
     if entry.state == "judged" and entry.score is not None:
         score, most = points(entry.score), points(entry.max_score)
         return tr("{score} of {max_score}", score=score, max_score=most)

@@ -1,8 +1,8 @@
-"""One grading of `grader run`: from what was handed in to the files of its result.
+"""One grading of `grader run`: from the submission to the files of its result.
 
-What only those files need is imported when the first run is over, or at once where a core is free:
-on two cores the third run leaves one idle. Each recording is written and drawn as soon as its run
-is over.
+Modules that only those files need are imported when the first run is over, or at once if a core is
+free: on two cores the third run leaves one idle. Each recording is written and drawn as soon as its
+run is over.
 """
 
 from __future__ import annotations
@@ -47,23 +47,23 @@ if TYPE_CHECKING:
 
 #: Where no line can be overwritten, as in a CI log, one is printed this often [simulated s].
 LINE_EVERY_S = 10.0
-#: What is not needed before a run is over.
+#: Modules that are not needed before a run is over.
 LATER = ("grader.recording.bag", "grader.reports.page.html", "grader.reports.terminal")
 
 
 def grade(args: argparse.Namespace, live: Live | None) -> int:
-    """Grade once; the exit code."""
+    """Grade once, and return the exit code."""
     result = graded(args, live)
     return int(args.fail_under is not None and result.score < args.fail_under)
 
 
 def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
-    """Grade once: run, judge, write, show; `live` shows the runs while they go on."""
+    """Grade once: run, judge, write, print; `live` shows the runs while they go on."""
     out = out_of(args)
     if args.out is None:
         files.check_leads_nowhere_else(out, Path.cwd())
-    handed_in: Path = args.submission
-    files.check_leads_nowhere_else(out, handed_in if handed_in.is_dir() else handed_in.parent)
+    path: Path = args.submission
+    files.check_leads_nowhere_else(out, path if path.is_dir() else path.parent)
     _withdraw(out, args.json, options.inputs(args))
     exercise = load_exercise(args.exercise)
     with ExitStack() as held:
@@ -77,7 +77,7 @@ def graded(args: argparse.Namespace, live: Live | None = None) -> Result:
 
 
 def out_of(args: argparse.Namespace) -> Path:
-    """The folder of the result.
+    """Return the folder of the result.
 
     By default each submission has its own: alice/turtle_controller.py is not bob's.
     """
@@ -97,7 +97,7 @@ def _run_and_judge(
     held: ExitStack,
     live: Live | None,
 ) -> tuple[Result, Recordings]:
-    """Run a submission, judge it, and keep its recordings; `held` holds what is written to."""
+    """Run a submission, judge it, and save its recordings; `held` keeps the folder locked."""
     messages = Console(stderr=True, highlight=False)
     messages.print(
         Text(for_terminal(tr("Found: {found}", found=submission.found))),
@@ -110,7 +110,7 @@ def _run_and_judge(
     _make_folders(out, args.json, held)
     messages.print(_how(args.time, exercise.is_started))
 
-    def tell(nominal: Recording) -> None:
+    def show_nominal(nominal: Recording) -> None:
         if not args.watch and live is None:
             return
         from grader.reports import Report, terminal
@@ -132,7 +132,7 @@ def _run_and_judge(
             if cores.share() > len(plans):
                 for module in LATER:
                     importlib.import_module(module)
-            recordings = grading.gather(_kept(runs, len(plans), unsaved, tell))
+            recordings = grading.gather(_kept(runs, len(plans), unsaved, show_nominal))
         result = judging.judge(recordings, exercise, submission=submission.name)
         unsaved.put()
     return replace(result, artifacts=artifacts(recordings.nominal)), recordings
@@ -147,21 +147,24 @@ def _how(time: str, is_started: bool) -> str:
 
 
 def _kept(
-    runs: Iterable[Finished], count: int, unsaved: saving.Unsaved, tell: Callable[[Recording], None]
+    runs: Iterable[Finished],
+    count: int,
+    unsaved: saving.Unsaved,
+    show_nominal: Callable[[Recording], None],
 ) -> Iterator[Finished]:
-    """Do with each run what can be done before the others are over."""
+    """Save and draw each run while the others go on, and yield it."""
     from grader.reports.page import html
 
     for over, (number, recording) in enumerate(runs, 1):
         if number == 0 and over < count:
-            tell(recording)
+            show_nominal(recording)
         unsaved.write(number, recording)
         html.draw(recording)
         yield number, recording
 
 
 def _report(args: argparse.Namespace, result: Result, recordings: Recordings, out: Path) -> Report:
-    """Write the result and what lies beside it, and show it."""
+    """Write the result and the files beside it, and print it."""
     from grader.reports import Report, render, terminal
 
     put_artifacts(recordings.nominal, out)
@@ -176,12 +179,12 @@ def _report(args: argparse.Namespace, result: Result, recordings: Recordings, ou
 
 
 def _withdraw(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
-    """Find out whether a result can be written, and remove an older one.
+    """Check that a result can be written, and remove an older one.
 
-    It must outlive neither a call that is refused nor a run that fails.
+    An old result must not remain after a refused call or a failed run.
 
     Raises:
-        UsageError: one of the places cannot be written; nothing has changed then.
+        UsageError: one of the paths cannot be written; then nothing has changed.
     """
     read = list(inputs)
     files.check_can_put(out / RESULT, FAMILY, read)
@@ -199,7 +202,7 @@ def _withdraw(out: Path, copy: Path | None, inputs: Iterable[Path]) -> None:
 
 
 def _make_folders(out: Path, copy: Path | None, held: ExitStack) -> None:
-    """Make what is not there; nobody else writes into it for as long as `held` is open."""
+    """Make the folders, and lock the result's for as long as `held` is open."""
     if copy:
         files.make_folder(copy.parent)
     files.make_folder(out)
@@ -210,7 +213,7 @@ def _make_folders(out: Path, copy: Path | None, held: ExitStack) -> None:
 
 @contextmanager
 def _shown(console: Console, what: str) -> Iterator[Callable[[float], None]]:
-    """Show `what` and the simulated seconds; yields the function that takes them."""
+    """Show `what` and the simulated seconds; yield the function to call with these."""
     if console.is_terminal:
         with console.status(what) as status:
             yield lambda seconds: status.update(

@@ -1,7 +1,6 @@
-"""The page of `grader run --live`: opened before the first run, told what comes to be known, kept.
+"""The page of `grader run --live`: opened before the first run, updated, and kept at the end.
 
-A quick run is over before somebody has a page open, so the first one waits for a viewer, for a
-while.
+A quick run is over before a page is open, so the first run waits for a viewer, for a while.
 """
 
 from __future__ import annotations
@@ -11,7 +10,6 @@ import threading
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from types import TracebackType
 from typing import Any, Final, Self
 
 from rich.console import Console
@@ -30,20 +28,20 @@ from grader.text import for_terminal
 from grader.translations import tr
 from turtlesim_py import browser
 
-#: What --speed takes -> how many times as fast as in real time, and that in words.
+#: A value of --speed -> how many times as fast as in real time, and that in words.
 SPEEDS: Final[Mapping[str, tuple[float | None, Message]]] = {
     "1": (1.0, msg("as fast as in real time")),
     "5": (5.0, msg("five times as fast as in real time")),
     "free": (None, msg("as fast as it goes")),
 }
-#: Where the page is, unless somebody has that port.
+#: The port of the page, unless it is in use.
 USUAL_PORT: Final = 8080
-#: So long the first run waits for somebody to look [s].
+#: How long the first run waits for a viewer [s].
 PATIENCE_S: Final = 30.0
 
 
 class Live:
-    """A page for as long as its context is open; an `Audience` for runs.
+    """The `Audience` of runs: a page that is served while the context is open.
 
     Args:
         speed: a key of `SPEEDS`.
@@ -59,19 +57,14 @@ class Live:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._page is not None:
             self._page.close()
 
     def open(
         self, exercise: Exercise, submission: str, plans: Sequence[Plan], messages: Console
     ) -> None:
-        """Serve the page, say where, and wait for somebody; later only show who is graded now.
+        """Serve the page, print its address, and wait for a viewer; later only show what is graded.
 
         Raises:
             UsageError: runs of this exercise cannot be shown, or not on this system.
@@ -89,11 +82,11 @@ class Live:
     def _invite(self, messages: Console) -> None:
         assert self._page is not None
         address = self._page.address
-        said = tr("See the runs at {address}", address=address)
-        messages.print(Text(for_terminal(said)), soft_wrap=True)
+        line = tr("See the runs at {address}", address=address)
+        messages.print(Text(for_terminal(line)), soft_wrap=True)
         if tunnel := browser.tunnel(address):
-            said = tr("To see it on your own machine, run there: {command}", command=tunnel)
-            messages.print(Text(for_terminal(said)), soft_wrap=True)
+            line = tr("To see it on your own machine, run there: {command}", command=tunnel)
+            messages.print(Text(for_terminal(line)), soft_wrap=True)
         browser.show(address)
         wait = tr("Waiting for the page to be opened, {most_s:g} s at most ...", most_s=PATIENCE_S)
         messages.print(wait)
@@ -103,7 +96,7 @@ class Live:
     # An audience ------------------------------------------------------------------------------
 
     def begins(self, plan: Plan, time: Clock) -> None:
-        """Show an empty window, and which run it is."""
+        """Show an empty window, and the name of the run."""
         starts = [each.start for each in self._plans]
         number, varied = starts.index(plan.start), len(starts) - 1
         pace = msg("in real time") if time == "real" else self._pace
@@ -126,20 +119,20 @@ class Live:
         self._page.hear(news)
 
     def ends(self, is_whole: bool) -> None:
-        """Say so where the run could not be shown to its end."""
+        """Mark a run that could not be shown to its end."""
         if not is_whole:
             run = self._grading.run
             self._change(run=tr("{run} (not all of it could be shown)", run=run))
 
-    # What comes to be known -------------------------------------------------------------------
+    # Verdicts ---------------------------------------------------------------------------------
 
     def know_of_nominal(self, report: Report) -> None:
-        """Show what the nominal run decides while the others still go."""
+        """Show the verdicts of the nominal run while the others go on."""
         score = tr("The nominal run is over, the others still go.")
         self._change(score=score, judged=playback.judged(report, 1))
 
     def know(self, report: Report) -> None:
-        """Show the verdicts."""
+        """Show the final verdicts."""
         self._change(
             score=tr("Score: {score}", score=report.score_text),
             first=report.first_line,
@@ -148,12 +141,12 @@ class Live:
         )
 
     def stay(self) -> None:
-        """In a terminal, keep the page until Ctrl-C."""
+        """Keep the page until Ctrl-C, if this is a terminal."""
         if self._page is None or not sys.stderr.isatty():
             return
-        said = tr("The page stays at {address}; Ctrl-C ends it.", address=self._page.address)
-        with suppress(KeyboardInterrupt):  # from here on: who reads the line may press at once
-            Console(stderr=True, highlight=False).print(Text(for_terminal(said)), soft_wrap=True)
+        line = tr("The page stays at {address}; Ctrl-C ends it.", address=self._page.address)
+        with suppress(KeyboardInterrupt):  # from here on: Ctrl-C may come at once
+            Console(stderr=True, highlight=False).print(Text(for_terminal(line)), soft_wrap=True)
             threading.Event().wait()
 
     def _change(self, grading: Grading | None = None, **known: Any) -> None:

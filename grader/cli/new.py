@@ -22,10 +22,10 @@ from grader.translations import tr
 
 #: The ROS 2 releases that a starter can be for.
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
-#: What of a starter depends on the release.
+#: The files of a starter that depend on the release.
 ADAPTED = ("*.py", "package.xml", "README.md")
 SHEET = "README.md"
-#: What the sheet calls the program of who begins with nothing.
+#: The name of the program on the sheet if there is no starter.
 PROGRAM = "my_node.py"
 
 
@@ -44,10 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Copy the starter and write the sheet; nothing that is already there is touched.
+    """Copy the starter and write the sheet, into a new or empty folder alone.
 
     Raises:
-        UsageError: the folder holds something, or cannot be written.
+        UsageError: the folder is not empty, or cannot be written.
     """
     folder: Path = args.folder
     exercise = load_exercise(args.exercise)
@@ -94,7 +94,7 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _grading(folder: str, exercise: str) -> str:
-    """The command that grades what is written there."""
+    """Return the command that grades a folder."""
     words = ["grader", "run", f"./{folder}" if folder.startswith("-") else folder]
     if exercise != DEFAULT:
         words += ["--exercise", exercise]
@@ -115,7 +115,7 @@ def _write_sheet(folder: Path, exercise: Exercise, grade: str) -> None:
 
 @contextmanager
 def _whole_or_not_at_all(folder: Path) -> Iterator[Path]:
-    """A place for a copy, which comes into the folder when it is whole; else nothing is left."""
+    """Yield a path for a copy, which is moved into the folder when it is whole, else removed."""
     is_new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     unfinished = folder / f".unfinished.{os.getpid()}"
@@ -130,13 +130,13 @@ def _whole_or_not_at_all(folder: Path) -> Iterator[Path]:
 
 
 def _adapt(folder: Path, subject: Subject, ros_distro: str) -> None:
-    """Give the files the names that things have in a ROS 2 release."""
+    """Change the files for a ROS 2 release, whose names may differ."""
     for path in (path for pattern in ADAPTED for path in folder.rglob(pattern)):
         text = path.read_bytes().decode("utf-8", "surrogateescape")
         path.write_bytes(subject.adapted(text, ros_distro).encode("utf-8", "surrogateescape"))
 
 
 def _with_todos(folder: Path) -> list[str]:
-    """The Python files that leave something to do."""
+    """Return the Python files that contain a TODO."""
     found = (path for path in sorted(folder.rglob("*.py")) if b"TODO" in path.read_bytes())
     return [str(path.relative_to(folder)) for path in found]

@@ -1,7 +1,7 @@
-"""What every verb takes: `--lang`, and `--error-json FILE`, which gets what went wrong as data.
+"""The options of every verb: `--lang`, and `--error-json FILE`, where an error is written as data.
 
-That the file is there means an error: an old one is removed at the start of a call, and a new
-one is written whole or not at all.
+The file exists only after an error: an old one is removed at the start of a call, and a new one is
+written whole or not at all.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.result.visible import View
 
 LANG = "--lang"
-#: What argparse says by itself, of Python 3.11 to 3.13; here so that it comes into the catalogues.
+#: The sentences of argparse in Python 3.11 to 3.13; here so that they are in the catalogues.
 ARGPARSE = (
     msg("usage: "),
     msg("positional arguments"),
@@ -44,7 +44,7 @@ ARGPARSE = (
 
 
 class Misuse(UsageError):
-    """The words of the call are not those of the command line."""
+    """The arguments of a call cannot be parsed."""
 
     def __init__(self, message: str, parser: argparse.ArgumentParser) -> None:
         super().__init__(message)
@@ -53,16 +53,16 @@ class Misuse(UsageError):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that raises what it has to say.
+    """A parser that raises its errors.
 
     Attributes:
-        make_epilog: makes what stands below the help, where only this needs it; None: nothing.
+        make_epilog: makes the text below the help, when the help is printed; None: nothing.
     """
 
     make_epilog: Callable[[], str] | None = None
 
     def format_help(self) -> str:
-        """The help."""
+        """Return the help."""
         self.epilog = self.make_epilog() if self.make_epilog else self.epilog
         return super().format_help()
 
@@ -72,23 +72,18 @@ class Parser(argparse.ArgumentParser):
 
 
 def choose_language(words: Sequence[str]) -> None:
-    """Speak what a call asks for; else what the user's locale does.
+    """Use the language that a call asks for; else that of the user's locale.
 
-    It is looked for before the call is parsed: what is wrong with the call is said in it as well.
+    It is searched before the call is parsed: errors of the call are in this language as well.
     """
-    _argparse_too()
+    vars(argparse).update(_=tr, ngettext=tr_many)  # by which it translates its sentences
     for word, after in zip_longest(words, words[1:], fillvalue=""):
         name, _, value = word.partition("=")
         language = value or after
-        is_meant = len(name) > 3 and LANG.startswith(name)  # argparse takes '--la', too
+        is_meant = len(name) > 3 and LANG.startswith(name)  # argparse accepts '--la', too
         if is_meant and language in LANGUAGES:
             return use(language)
     return use(of_environment())
-
-
-def _argparse_too() -> None:
-    """Its own words in our language: it looks them up by these two of gettext's names."""
-    vars(argparse).update(_=tr, ngettext=tr_many)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -114,7 +109,7 @@ def _add_error_file(parser: argparse.ArgumentParser) -> None:
 
 
 def add_view(parser: argparse.ArgumentParser, whole: str) -> None:
-    """Declare who looks at a result; `whole` says what a teacher sees."""
+    """Declare the options for the reader of a result; `whole` is the help on a teacher's."""
     who = parser.add_mutually_exclusive_group()
     who.add_argument(
         "--after-due",
@@ -125,14 +120,14 @@ def add_view(parser: argparse.ArgumentParser, whole: str) -> None:
 
 
 def view_of(args: argparse.Namespace) -> View:
-    """Return who looks, as `add_view` declares it."""
+    """Return the reader of a result, by the options of `add_view`."""
     return "whole" if args.whole else "after_due" if args.after_due else "student"
 
 
-def look_for(words: Sequence[str]) -> argparse.Namespace:
-    """The option, and the exercise, in a call that cannot be parsed; None where they are not.
+def parse_partly(words: Sequence[str]) -> argparse.Namespace:
+    """Parse --error-json and --exercise in a call that cannot be parsed; None where they are not.
 
-    Any other word may be meant as a file to read, so it counts as one.
+    Any other word may be the name of an input file, so it counts as one.
     """
     parser = Parser(add_help=False)
     _add_error_file(parser)
@@ -146,7 +141,7 @@ def look_for(words: Sequence[str]) -> argparse.Namespace:
 
 
 def inputs(args: argparse.Namespace) -> Iterator[Path]:
-    """The files and folders that a call reads."""
+    """Yield the files and folders that a call reads."""
     for name in ("submission", "recording", "compare", "result", "exercise", "mutants"):
         given = getattr(args, name, None)
         for one in given if isinstance(given, list) else [given]:
@@ -155,10 +150,10 @@ def inputs(args: argparse.Namespace) -> Iterator[Path]:
 
 
 def prepare(args: argparse.Namespace) -> None:
-    """Remove an old file.
+    """Remove an old file of --error-json.
 
     Raises:
-        UsageError: no new one could be written, or what is there is something else.
+        UsageError: no new one could be written, or the file is not one of the grader's.
     """
     if args.error_json is not None:
         from grader.result.error import FAMILY
@@ -169,7 +164,7 @@ def prepare(args: argparse.Namespace) -> None:
 
 
 def write(error: GraderError, args: argparse.Namespace) -> None:
-    """Write what went wrong, if it was asked for.
+    """Write an error to the file of --error-json, if there is one.
 
     Raises:
         UsageError: it cannot be written.
@@ -188,5 +183,5 @@ def _max_score(args: argparse.Namespace) -> float | None:
 
     try:
         return round(sum(load_exercise(name).points.values()), 2)
-    except Exception:  # it may be this that is reported
+    except Exception:  # this may be the error that is written
         return None

@@ -1,4 +1,4 @@
-"""Where a recording lies that somebody has named, and the result beside it."""
+"""Find the recording that a path means, and the result beside it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from grader.result.result import ARTIFACTS, RESULT, Result
 
 @dataclass(frozen=True)
 class RecordingPlace:
-    """Where a recording lies.
+    """The place of a recording.
 
     Attributes:
         recording: its folder.
-        older: the result that it lies beside; None where there is none.
+        older: the result beside it; None where there is none.
     """
 
     recording: Path
@@ -24,18 +24,18 @@ class RecordingPlace:
 
     @property
     def folder(self) -> Path:
-        """That of the older result."""
+        """The folder of the older result."""
         return self.recording.parent
 
     @property
     def name(self) -> str:
-        """What the folder is called that somebody would look for it by."""
+        """The name of the folder that contains the result, or else the recording."""
         at = Path(os.path.abspath(self.recording))  # noqa: PTH100  a link keeps its own name
         return at.parent.name if at.name == ARTIFACTS["recording"] else at.name
 
 
 def find(given: Path) -> RecordingPlace:
-    """What is meant: the folder of a recording, that of its result, or a file in one of them."""
+    """Find a recording by its folder, that of its result, or a file in one of them."""
     folder = given if given.is_dir() else given.parent
     if (folder / ARTIFACTS["recording"]).is_dir():
         folder /= ARTIFACTS["recording"]
@@ -44,7 +44,7 @@ def find(given: Path) -> RecordingPlace:
     beside = folder.parent / RESULT
     try:
         older = Result.read(beside) if beside.is_file() else None
-    except UsageError:  # somebody else's, or too damaged to be one
+    except UsageError:  # another program's, or damaged
         older = None
     if older is not None and older.artifacts.get("recording") != folder.name:
         older = None

@@ -1,4 +1,4 @@
-"""`grader batch --regrade DIR --exercise NEW.yaml [--apply]`: what a changed rubric changes."""
+"""`grader batch --regrade DIR --exercise NEW.yaml [--apply]`: the effects of a changed rubric."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from grader.cli import class_progress
 from grader.result.visible import View
 from grader.translations import tr, tr_many
 
-#: Where the table and the page come, in the folder of the class.
+#: The folder of the table and the page, in the folder of the class.
 REGRADE = "regrade"
 DONE, GRADER_FAILED = 0, 3
 
 
 def run(args: Namespace, jobs: int, view: View) -> int:
-    """Show what a changed rubric changes in the folder of a class, and write it if that is asked.
+    """Show the effects of a changed rubric on a class, and with --apply write them.
 
-    The table and the page come into --out, or into the folder REGRADE of the class.
+    The table and the page are written into --out, or into the folder REGRADE of the class.
 
     Returns:
         The exit code: 0; or 3 if some could not be judged again.
@@ -63,7 +63,7 @@ def run(args: Namespace, jobs: int, view: View) -> int:
 def _write(found: Regrade, into: Path, console: Console) -> None:
     to_class = Path("..") if into.resolve().parent == found.out.resolve() else found.out.resolve()
     if into == found.out / REGRADE:
-        files.clear(into)  # a link leads somewhere else
+        files.clear(into)  # it may be a link to another folder
     files.make_folder(into)
     files.put(into / CHANGES_CSV, shown.table(found).encode("utf-8"))
     files.put(into / CHANGES_PAGE, shown.page(found, to_class.as_posix()).encode("utf-8"))
@@ -72,7 +72,7 @@ def _write(found: Regrade, into: Path, console: Console) -> None:
 
 @contextmanager
 def _progress(console: Console, total: int, what: str) -> Iterator[Callable[[Entry], None]]:
-    """A bar in a terminal, a line in a log."""
+    """Show a bar in a terminal, a line in a log; yield the function to call with each entry."""
     if not console.is_terminal:
         console.print(
             tr_many("{what} {n:,} recording ...", "{what} {n:,} recordings ...", total, what=what)

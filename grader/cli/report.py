@@ -90,7 +90,7 @@ def _formats() -> str:
 
 
 def _checks(args: argparse.Namespace) -> tuple[str, ...]:
-    """The names of the exercise's checks that whoever looks may know of."""
+    """Return the names of the exercise's checks that the reader may see."""
     exercise = load_exercise(args.exercise)
     return tuple(
         name
@@ -100,7 +100,7 @@ def _checks(args: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _read(args: argparse.Namespace) -> Iterator[Path]:
-    """What a report is made from: the results, and what lies beside them."""
+    """Yield the files that a report is made of: the results, and the files beside them."""
     for path in options.inputs(args):
         yield path
         yield from (path.parent / name for name in ARTIFACTS.values())
@@ -112,7 +112,7 @@ def _print(content: str) -> None:
     try:
         sys.stdout.buffer.write(content.encode("utf-8"))
         sys.stdout.buffer.flush()
-    except BrokenPipeError:  # the reader has seen enough: `grader report ... | head`
+    except BrokenPipeError:  # the reader has closed it: `grader report ... | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -11,7 +11,7 @@ from grader.exercise import DEFAULT
 from grader.message import msg
 from grader.translations import tr
 
-#: `grader.run.processes.levels.LEVELS`; the same.
+#: Those of `grader.run.processes.levels.LEVELS`, which takes long to import.
 LEVELS = ("namespaces", "landlock", "limits")
 #: The keys of `grader.grading.RUNNERS`, which takes long to import.
 CLOCKS = ("real", "virtual")
@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_of_runs(parser: argparse.ArgumentParser, clock: str, isolation: str) -> None:
-    """Declare what says how submissions are run; the texts are about --time and --isolation."""
+    """Declare how submissions are run; the texts are the help on --time and --isolation."""
     parser.add_argument(
         "--exercise",
         default=DEFAULT,
@@ -73,7 +73,7 @@ def add_of_runs(parser: argparse.ArgumentParser, clock: str, isolation: str) -> 
 
 
 def points(text: str) -> float:
-    """A number of points from the command line."""
+    """Parse a number of points of the command line."""
     value = float(text)
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(tr("expected a number of points, found {text}", text=text))
@@ -87,15 +87,15 @@ def main(args: argparse.Namespace) -> int:
         from grader.run.processes import levels
 
         levels.require(args.isolation)
-    # What can begin before a run belongs here: from here on imports take their time.
+    # what can begin early belongs before this line: the imports below take long
     if args.time == "virtual":
         from grader.run import fork_servers
 
-        fork_servers.warm()  # they import while we do
+        fork_servers.warm()  # they import meanwhile
     from grader.cli import grade_one
     from grader.requirements import require
 
-    require("rosbags", load=False)  # missing it is told now, not when a run is to be saved
+    require("rosbags", load=False)  # if it is missing, refuse now, not when a run is saved
     grade = grade_one.grade
     if args.watch:
         require("watchdog")
@@ -114,7 +114,7 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _check_speed(args: argparse.Namespace) -> None:
-    """Refuse a speed that a run could not have."""
+    """Refuse a speed that does not fit the other options."""
     if args.speed is None:
         return
     if not args.live:

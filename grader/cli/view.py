@@ -21,7 +21,7 @@ from grader.text import for_terminal
 from grader.translations import tr
 from turtlesim_py import browser
 
-#: What the page is called that lies beside a result.
+#: The name of the page beside a result.
 NAME = "view.html"
 
 
@@ -80,7 +80,7 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _check_is_no_part(out: Path, args: argparse.Namespace) -> None:
-    """Refuse to write over what the page is made from."""
+    """Refuse to overwrite a file that the page is made of."""
     for given in options.inputs(args):
         place = find(given)
         beside = (place.folder / name for name in (RESULT, PAGE, *ARTIFACTS.values()))

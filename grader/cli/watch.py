@@ -1,4 +1,4 @@
-"""Grade a submission whenever it is saved; imported by `grader run --watch` only."""
+"""Grade a submission whenever it is saved, for `grader run --watch`."""
 
 from __future__ import annotations
 
@@ -30,22 +30,21 @@ from grader.translations import tr, translate
 if TYPE_CHECKING:
     from grader.cli.live import Live
 
-#: Files whose change can change a verdict. What the grader writes has other names.
+#: Suffixes of files that can change a verdict. The grader's files have other ones.
 SUFFIXES = (".py", ".cfg", ".toml", ".xml", ".zip")
 #: Folders in which other programs write such files.
-FOREIGN = frozenset({".git", ".venv", "venv", "__pycache__", "build", "install"})
-#: An editor's save is several events; it is over when this long none came.
+IGNORED_FOLDERS = frozenset({".git", ".venv", "venv", "__pycache__", "build", "install"})
+#: An editor's save is several events; it is over after this time without any [s].
 QUIET_S = 0.1
 
 
 def each_save(submission: Path, out: Path | None = None) -> Iterator[None]:
     """Yield at once, and then whenever the submission has been saved; ends at Ctrl-C.
 
-    A save that comes while the caller is busy is not lost. One is told once, also where more than
-    one event tells of it.
+    A save while the caller is busy is not lost. Several events of one save yield once.
 
     Args:
-        out: a folder whose files are not the submission's, though it may lie inside.
+        out: a folder whose files are ignored, though it may be inside of the submission.
 
     Raises:
         UsageError: the folder to watch does not exist.
@@ -62,13 +61,13 @@ def each_save(submission: Path, out: Path | None = None) -> Iterator[None]:
     saves = Saves(folder, None if is_folder else submission.name, out and out.absolute())
     observer = _watching(saves, folder, is_folder)
     try:
-        told = saves.state()
+        reported = saves.state()
         yield
         while True:
             saves.wait()
             found = saves.state()
-            if found != told:
-                told = found
+            if found != reported:
+                reported = found
                 yield
     finally:
         observer.stop()
@@ -76,12 +75,12 @@ def each_save(submission: Path, out: Path | None = None) -> Iterator[None]:
 
 
 class Saves(FileSystemEventHandler):
-    """Remembers saves until somebody waits for them.
+    """Queues saves until the caller waits for them.
 
     Args:
         folder: what is watched.
-        only: the name of the one file in it that counts; None for all.
-        out: a folder in it of which nothing counts.
+        only: the name of the only file in it that counts; None for all.
+        out: a folder in it whose files are ignored.
     """
 
     def __init__(self, folder: Path, only: str | None, out: Path | None = None) -> None:
@@ -91,7 +90,7 @@ class Saves(FileSystemEventHandler):
         self._seen: SimpleQueue[FileSystemEvent] = SimpleQueue()
 
     def on_any_event(self, event: FileSystemEvent) -> None:
-        """Called by watchdog, in a thread of its own."""
+        """Queue a save; watchdog calls this in its thread."""
         # not "opened" and "closed": grading reads the files
         if event.event_type not in ("created", "modified", "moved", "deleted"):
             return
@@ -109,10 +108,10 @@ class Saves(FileSystemEventHandler):
             return
 
     def state(self) -> dict[str, tuple[int, int, int]]:
-        """What tells one save from another: of each file that counts inode, size and time."""
+        """Return inode, size and time of each file that counts: they differ after a save."""
         found = {}
         for at, folders, names in os.walk(self._folder):
-            kept = (each for each in folders if each not in FOREIGN)
+            kept = (each for each in folders if each not in IGNORED_FOLDERS)
             folders[:] = [] if self._only is not None else sorted(kept)
             for path in (Path(at, name) for name in names):
                 with suppress(OSError):  # it has just gone
@@ -126,19 +125,19 @@ class Saves(FileSystemEventHandler):
         if self._only is not None:
             return path == self._folder / self._only
         if self._out is not None and path.is_relative_to(self._out):
-            return False  # its name may be that of a file: graded/node.py
+            return False  # the folder may be named like a file: graded/node.py
         inside = path.relative_to(self._folder) if path.is_relative_to(self._folder) else path
-        return path.suffix in SUFFIXES and FOREIGN.isdisjoint(inside.parts)
+        return path.suffix in SUFFIXES and IGNORED_FOLDERS.isdisjoint(inside.parts)
 
 
 def _watching(saves: Saves, folder: Path, recursive: bool) -> BaseObserver:
-    """Something that reports to `saves` from now on."""
-    # WSL hears nothing of Windows' own files, so there they are looked at again and again
+    """Start an observer that reports to `saves`."""
+    # WSL gets no events of files on Windows, so there they are polled
     if "microsoft" not in platform.release().lower():
         try:
             return _start(Observer(), saves, folder, recursive)
         except OSError:
-            pass  # e.g. the system watches as many files already as it may
+            pass  # e.g. the system's limit of watched files is reached
     return _start(PollingObserver(), saves, folder, recursive)
 
 
@@ -159,9 +158,9 @@ def grade_each_save(args: argparse.Namespace, live: Live | None) -> int:
 def grade_again(
     args: argparse.Namespace, live: Live | None, last: Result | None, *, clears: bool
 ) -> Result | None:
-    """Grade once more, and return what is compared with the next time.
+    """Grade once more, and return the result to compare the next one with.
 
-    What cannot be used now may be usable after the next save.
+    A submission that cannot be used now may be usable after the next save.
     """
     console, messages = Console(highlight=False), Console(stderr=True, highlight=False)
     if clears and console.is_terminal:
@@ -169,8 +168,8 @@ def grade_again(
     options.prepare(args)
     try:
         seen = student_view(grade_one.graded(args, live))
-        said = f"{time.strftime('%H:%M:%S')}  {change(last, seen)}"
-        console.print(Text(said, "bold"), soft_wrap=True)
+        line = f"{time.strftime('%H:%M:%S')}  {change(last, seen)}"
+        console.print(Text(line, "bold"), soft_wrap=True)
         last = seen
     except GraderError as error:
         messages.print(Text(for_terminal(translate(error.message))), soft_wrap=True)
@@ -180,7 +179,7 @@ def grade_again(
 
 
 def change(last: Result | None, result: Result) -> str:
-    """What a score is compared with the last one: '62 -> 80 (+18)'."""
+    """Return a score compared with the last one: '62 -> 80 (+18)'."""
     score = shown(result.score)
     if last is None:
         return tr("{score} of {max_score}", score=score, max_score=shown(result.max_score))

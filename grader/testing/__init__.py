@@ -23,13 +23,13 @@ def drive(
 
     Made without ROS, in milliseconds: the world is the real one.
 
-    It ends when turtle1 has rested for three seconds, or after so many ticks.
+    The run ends when turtle1 has rested for three seconds, or after `ticks`.
 
     Args:
         controller: called before each tick with its number, the latest pose (None before the
-            first) and the arena, in which it may do whatever a submission's callbacks could.
+            first) and the arena, in which it may do anything that a submission's callbacks could.
         start: where turtle1 begins; None for the centre of the window.
-        output: what the submission is said to have printed.
+        output: the recorded output of the submission.
     """
     trace, reason = driving.drive(controller, ticks, start)
     rest_s = driving.REST_TICKS * TICK_S

@@ -1,4 +1,4 @@
-"""Tries an exercise on its right solutions and mutants, as `grader check-exercise` does."""
+"""Try an exercise on its right solutions and mutants, as `grader check-exercise` does."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from grader.scratch import make_folder
 from grader.testing.examination import Examination, Fault, Problem, Trial
 from grader.testing.solutions import FILE_NAME, Left, Solution, read_solutions
 
-#: Told how many runs are through, how many there are, and whose run that was.
+#: Called after each run with the number of finished runs, that of all, and the solution's name.
 Progress = Callable[[int, int, str], None]
 AGAIN = "again"
 
@@ -38,13 +38,14 @@ def check_exercise(
 ) -> Examination:
     """Try an exercise: its right solutions must get every point, each mutant must lose some.
 
-    Every solution is run in virtual time, the first right one twice; every check is asked twice
-    about each recording, and about runs in which a node does odd things.
+    Every solution is run in virtual time, the first right one twice; every check judges each
+    recording twice, and recordings of odd runs.
 
     Args:
-        exercise: its name, its path, or itself.
+        exercise: its name, its path, or the loaded one.
         mutants: the file that lists the solutions; None for mutants.yaml in its folder.
         jobs: how many solutions are run at once; None for as many as there are cores.
+        progress: called after each run.
 
     Raises:
         ExerciseError: the exercise or its list of solutions cannot be used.
@@ -60,7 +61,7 @@ def check_exercise(
         recordings = recorded[solution.name]
         verdicts, wrong = examine(asked, recordings)
         trial = Trial(solution, tuple(verdicts), _remarks(recordings))
-        wrong += [*_unexpected(trial), *_unsaid(trial, recordings)]
+        wrong += [*_unexpected(trial), *_wrong_first_line(trial, recordings)]
         if solution is solutions[0]:
             wrong += _twice(asked, trial, recordings, recorded[AGAIN])
         trials.append(trial)
@@ -76,7 +77,7 @@ def check_exercise(
 
 
 def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
-    """Recordings of what its scene calls odd, from every start."""
+    """Return recordings of the odd runs of the exercise's scene, from every start."""
 
     def recorded(trace: Trace, start: Start | None) -> Recording:
         run = Run(
@@ -98,7 +99,7 @@ def odd_recordings(exercise: Exercise) -> Mapping[str, Recordings]:
 def _run(
     exercise: Exercise, solutions: Sequence[Solution], jobs: int, progress: Progress | None
 ) -> Mapping[str, Recordings]:
-    """Run all of them, and the first once more."""
+    """Run all solutions, and the first once more."""
     with make_folder() as folder, ThreadPoolExecutor(jobs) as pool:
 
         def run(solution: Solution) -> Recordings:
@@ -122,7 +123,7 @@ def _run(
 
 
 def _unexpected(trial: Trial) -> Iterator[Fault]:
-    """Where a solution is not judged as it should be."""
+    """Yield where a solution is not judged as it should be."""
     solution = trial.solution
     if solution.is_right:
         for verdict in trial.verdicts:
@@ -144,28 +145,28 @@ def _unexpected(trial: Trial) -> Iterator[Fault]:
                 score=verdict.score,
                 max_score=verdict.max_score,
                 file=FILE_NAME,
-                said=_said(expected),
+                said="some" if expected == "some" else msg("{share:g} of them", share=expected),
             )
             yield Fault(verdict.check, text)
 
 
-def _unsaid(trial: Trial, recordings: Recordings) -> Iterator[Fault]:
-    """Where the first line of a mutant's report does not say what it should."""
-    says = trial.solution.says
-    if not says:
+def _wrong_first_line(trial: Trial, recordings: Recordings) -> Iterator[Fault]:
+    """Yield a fault if the first line of a mutant's report lacks the expected words."""
+    expected = trial.solution.first_line
+    if not expected:
         return
     found = diagnose(recordings, trial.verdicts)
-    told = "" if found is None else str(found.cause)
+    line = "" if found is None else str(found.cause)
     if found is not None and found.place is not None:
-        told += f" ({found.place.file}, line {found.place.line})"
-    if says not in told:
+        line += f" ({found.place.file}, line {found.place.line})"
+    if expected not in line:
         yield Fault(
             "",
             msg(
                 "its first line is {told!r}; {file} says {says!r}",
-                told=told,
+                told=line,
                 file=FILE_NAME,
-                says=says,
+                says=expected,
             ),
         )
 
@@ -176,14 +177,10 @@ def _fits(score: float, max_score: float, expected: Left) -> bool:
     return score == round(max_score * expected, 2)
 
 
-def _said(expected: Left) -> str | Message:
-    return "some" if expected == "some" else msg("{share:g} of them", share=expected)
-
-
 def _twice(
     exercise: Exercise, trial: Trial, first: Recordings, second: Recordings
 ) -> Iterator[Fault]:
-    """What differs between two runs of the same solution."""
+    """Yield what differs between two runs of the same solution."""
     hashes = [[run.run.trace_sha256 for run in recordings] for recordings in (first, second)]
     if hashes[0] != hashes[1]:
         yield Fault("", msg("two runs of a right solution are not the same run"))
@@ -208,7 +205,7 @@ def _remarks(recordings: Recordings) -> tuple[Message, ...]:
 
 
 def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], list[Fault]]:
-    """The verdicts on recordings, and what is wrong with the checks that made them."""
+    """Return the verdicts on recordings, and the faults of the checks that made them."""
     faults: list[Fault] = []
     is_whole = True
 
@@ -234,14 +231,14 @@ def examine(exercise: Exercise, recordings: Recordings) -> tuple[list[Verdict], 
 
         return judge_by(watched, exercise.checks, exercise.points)
 
-    def told(_: object, error: BaseException) -> str:
+    def described(_: object, error: BaseException) -> str:
         return str(describe(error, exercise.folder))
 
-    # both times in the same process, which may remember what it should not
+    # both times in the same process, which may keep state that it should not
     judging = (exercise.checks, exercise.points, exercise.tolerances)
-    first, second = map(judged, answers(recordings, *judging, told, rounds=2))
+    first, second = map(judged, answers(recordings, *judging, described, rounds=2))
     for once, again in zip(first, second, strict=True):
-        if is_whole and repr(once) != repr(again):  # not a number is none but looks like itself
+        if is_whole and repr(once) != repr(again):  # repr: NaN is not equal to itself
             text = msg("finds something else when it is asked again about the same recordings")
             faults.append(Fault(once.check, text))
     return first, list(dict.fromkeys(faults))

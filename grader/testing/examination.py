@@ -1,4 +1,4 @@
-"""What came out when an exercise was tried: which mutants each check catches, and what to mend."""
+"""The result of trying an exercise: which mutants each check catches, and what to fix."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SCHEMA = "turtlesim-grader/examination/v1"
 
 
 class Fault(NamedTuple):
-    """Something to mend; `check` is "" where it is none of one check."""
+    """Something to fix; `check` is "" where it concerns no single check."""
 
     check: str
     text: Message
@@ -22,10 +22,10 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True)
 class Trial:
-    """A solution, and what the exercise says of it.
+    """A solution with its verdicts.
 
     Attributes:
-        remarks: on the run, for the author.
+        remarks: on the run, for the author of the exercise.
     """
 
     solution: Solution
@@ -34,20 +34,20 @@ class Trial:
 
     @property
     def caught_by(self) -> tuple[str, ...]:
-        """The checks that failed; those that only waited for them are none."""
+        """The checks that failed; those that were not judged because of them do not count."""
         return tuple(v.check for v in self.verdicts if v.status == "failed")
 
 
 @dataclass(frozen=True)
 class Problem:
-    """Something to mend: of a check or of the whole exercise (""), and on which solutions."""
+    """Something to fix, and the solutions that show it."""
 
     fault: Fault
     on: tuple[str, ...] = ()
 
     @property
     def text(self) -> Message:
-        """It in words: 'CHECK: what is wrong (on SOLUTIONS)'."""
+        """The problem in words: 'CHECK: what is wrong (on SOLUTIONS)'."""
         parts: list[str | Message] = [
             f"{self.fault.check}: " if self.fault.check else "",
             self.fault.text,
@@ -70,7 +70,7 @@ class Examination:
         exercise: its name.
         checks: those that are worth points, in the exercise's order.
         trials: the right solutions, then the mutants.
-        problems: what is to be mended; empty where all is fine.
+        problems: what to fix; empty where all is fine.
     """
 
     exercise: str
@@ -80,7 +80,7 @@ class Examination:
 
     @property
     def is_fine(self) -> bool:
-        """Whether there is nothing to mend."""
+        """Whether there is nothing to fix."""
         return not self.problems
 
     @property
@@ -102,7 +102,7 @@ class Examination:
         return tuple(t.solution.name for t in self.mutants if not t.caught_by)
 
     def to_json(self) -> dict[str, Any]:
-        """All of it as data."""
+        """Return everything as data for JSON."""
         return {
             "schema": SCHEMA,
             "exercise": self.exercise,
@@ -128,7 +128,7 @@ class Examination:
         }
 
     def to_markdown(self) -> str:
-        """A table for documents: a row a solution, a column a check; the same in any language."""
+        """Return a table with a row a solution and a column a check; the same in any language."""
         head = ["", *(f"`{check}`" for check in self.checks), "caught by"]
         rows = [head, ["---", *("---" for _ in self.checks), "---:"]]
         for trial in self.trials:
@@ -142,7 +142,7 @@ class Examination:
 
 
 def _cell(verdict: Verdict) -> str:
-    """What is left of a check's points; nothing where all is."""
+    """Return the share of a check's points that is left; '' where it is all of them."""
     if verdict.status == "passed":
         return ""
     if verdict.status == "not_judged":

@@ -11,16 +11,16 @@
         file: stands_still.py
         leaves: nothing
 
-A path is one beside the file, or PACKAGE/FILE of an installed package. `replace` names passages of
-the first right solution, each standing there exactly once when its turn comes. `leaves` says what
-is left of some checks' points, a share below 1 or `some`, and that all others stay whole; without
-it, it is enough that some check fails. `says` are words of its report's first line, which names the
-cause, or of the place behind it, as "(stands.py, line 7)".
+A path is relative to the file, or PACKAGE/FILE of an installed package. `replace` lists passages of
+the first right solution, each of which must occur exactly once when its turn comes. `leaves` is
+what is left of some checks' points, a share below 1 or `some`; all other checks must give all
+points. Without it, it is enough that some check fails. `says` are words of the first line of its
+report, which names the cause, or of the place behind it, as "(stands.py, line 7)".
 
-Where the first right solution is a folder, as a package is, `program` says in which of its files
-passages are replaced, and `in` says so of one passage. `files` holds whole files, or null for one
-that goes; what is `put` into the folder lies beside this file. Another right solution may be made
-in the same way:
+If the first right solution is a folder, as a package is, `program` is the file in which passages
+are replaced, and `in` the file of one passage. `files` holds whole files, or null for one to
+remove; the sources of `put` are relative to this file. Another right solution may be made in the
+same way:
 
     program: walker/state_publisher.py
     right:
@@ -50,12 +50,12 @@ MADE = frozenset(("replace", "files", "put"))
 
 @dataclass(frozen=True)
 class Change:
-    """One of them.
+    """A change of a solution.
 
     Attributes:
-        old, new: a passage that stands there exactly once, and what stands there instead. Without
-            `old`, `new` is all of the file, and None takes it away.
-        file: in which file of a folder; '' where the solution is a file.
+        old, new: a passage that occurs exactly once, and its replacement. Without `old`, `new` is
+            the whole file, and None removes it.
+        file: the file in a folder; '' where the solution is a file.
     """
 
     old: str | None
@@ -64,15 +64,15 @@ class Change:
 
 
 def read(words: Mapping[str, Any], program: str, folder: Path) -> tuple[Change, ...]:
-    """The changes that `put`, `files` and `replace` name, in this order.
+    """Parse the changes of `put`, `files` and `replace`, in this order.
 
     Args:
-        program: the file of a folder in which passages stand where `in` names none.
-        folder: beside what is `put` somewhere.
+        program: the file in a folder whose passages are replaced without `in`.
+        folder: the paths of `put` are relative to it.
 
     Raises:
-        TypeError, KeyError, AttributeError: they are no such.
-        OSError: what is put somewhere cannot be read.
+        TypeError, KeyError, AttributeError: they do not have the expected form.
+        OSError: a file of `put` cannot be read.
     """
     put = {
         file: places.locate(folder, str(where)).read_text(encoding="utf-8")
@@ -89,10 +89,10 @@ def read(words: Mapping[str, Any], program: str, folder: Path) -> tuple[Change, 
 
 
 def changed(name: str, path: Path, changes: Sequence[Change]) -> Mapping[str, str | None]:
-    """File -> its text with the changes, None where it is taken away; '' is the solution itself.
+    """Apply changes: file -> its new text, None if it is removed; '' is the solution itself.
 
     Raises:
-        ExerciseError: a passage does not stand there exactly once, or there is no such file.
+        ExerciseError: a passage does not occur exactly once, or there is no such file.
     """
     texts: dict[str, str | None] = {}
     for change in changes:
@@ -122,7 +122,7 @@ def changed(name: str, path: Path, changes: Sequence[Change]) -> Mapping[str, st
 
 
 def lay_out(name: str, path: Path, changes: Sequence[Change], folder: Path) -> Path:
-    """A changed copy in a new folder."""
+    """Write a changed copy into a new folder, and return its path."""
     copy = folder / name / path.name
     texts = changed(name, path, changes)
     if path.is_dir():
@@ -147,15 +147,15 @@ Left = float | Literal["some"]
 
 @dataclass(frozen=True)
 class Solution:
-    """Something that an exercise is tried on.
+    """A solution that an exercise is tried on.
 
     Attributes:
-        name: its own.
-        path: what is handed in, or what is changed before.
+        name: its name.
+        path: the submission, or what is changed to make it.
         is_right: whether it must get every point; else it is a mutant.
-        changes: what makes it of `path`.
-        leaves: check -> what is left of its points, where that is less than all; None: not said.
-        says: words of the first line of its report.
+        changes: those that make it of `path`.
+        leaves: check -> what is left of its points, where that is less than all; None: any.
+        first_line: words of the first line of its report.
     """
 
     name: str
@@ -163,30 +163,30 @@ class Solution:
     is_right: bool
     changes: tuple[Change, ...] = ()
     leaves: Mapping[str, Left] | None = None
-    says: str = ""
+    first_line: str = ""
 
     def text(self) -> str:
-        """The source of one that is a file, with its changes.
+        """Return the source of a solution that is a file, with its changes.
 
         Raises:
-            ExerciseError: a passage does not stand there exactly once.
+            ExerciseError: a passage does not occur exactly once.
         """
         text = changed(self.name, self.path, self.changes).get("")
         return self.path.read_text(encoding="utf-8") if text is None else text
 
     def lay_out(self, folder: Path) -> Path:
-        """What is handed in: the file or folder itself, or a changed copy in a new folder."""
+        """Return the path of the submission: the original, or a changed copy in a new folder."""
         return lay_out(self.name, self.path, self.changes, folder) if self.changes else self.path
 
 
 def read_solutions(exercise: Exercise, path: Path | None = None) -> list[Solution]:
-    """The solutions of an exercise, the right ones first.
+    """Read the solutions of an exercise, the right ones first.
 
     Args:
         path: of a mutants.yaml; None for the one in the exercise's folder.
 
     Raises:
-        ExerciseError: there is none, or it says something that cannot be.
+        ExerciseError: there is none, or it is not valid.
     """
     path = path or exercise.folder / FILE_NAME
     try:
@@ -240,7 +240,7 @@ def _solutions(data: object, folder: Path, exercise: Exercise) -> list[Solution]
 
 @dataclass(frozen=True)
 class _Made:
-    """What solutions are made of: the first one, its program, and the folder of mutants.yaml."""
+    """The origin of made solutions: the first one, its program, and the folder of mutants.yaml."""
 
     of: Path
     program: str
@@ -281,9 +281,9 @@ def _mutant(name: str, words: Any, made: _Made, exercise: Exercise) -> Solution:
         )
     if "file" in words:
         path = places.locate(made.folder, str(words["file"]))
-        return Solution(name, path, is_right=False, leaves=leaves, says=says)
+        return Solution(name, path, is_right=False, leaves=leaves, first_line=says)
     changes = made.changes(words, keys)
-    return Solution(name, made.of, is_right=False, changes=changes, leaves=leaves, says=says)
+    return Solution(name, made.of, is_right=False, changes=changes, leaves=leaves, first_line=says)
 
 
 def _leaves(name: str, words: object, exercise: Exercise) -> Mapping[str, Left] | None:

@@ -1,1 +1,1 @@
-"""What of a class was handed in, and by whom, as course systems export it."""
+"""Find the submissions of a class, and whose they are, in what course systems export."""

@@ -1,4 +1,4 @@
-"""What reading an export comes to, whatever its layout: attempts, each somebody's at a time."""
+"""What every layout of an export is read into: attempts of persons, with their times."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from grader.submission.folder import is_junk, listed
 from grader.text import clip, one_line, plain
 
 _MAX_NAME = 200  # characters of a person's name or id
-_MAX_NAME_BYTES: Final = 200  # of a file's name; file systems take 255
-#: ISO 8601, and what is made of it for names of files: 2026-11-01_12-30-05, 20261101T123005Z;
+_MAX_NAME_BYTES: Final = 200  # of a file's name; file systems allow 255
+#: ISO 8601, and its variants in names of files: 2026-11-01_12-30-05, 20261101T123005Z;
 #: Ruby's YAML has nanoseconds and a space before the zone.
 _TIME: Final = re.compile(
     r"(?P<year>\d{4})-?(?P<month>\d\d)-?(?P<day>\d\d)"
@@ -27,18 +27,18 @@ _TIME: Final = re.compile(
     r"(?:[:.-]?(?P<second>\d\d)(?:[.,](?P<fraction>\d{1,9}))?)?)?"
     r" ?(?:(?P<utc>Z|UTC)|(?P<sign>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d))?"
 )
-#: As Moodle writes it in English, but for the day of the week before it.
+#: Moodle's format in English, without the day of the week before it.
 _MOODLE: Final = ("%d %B %Y, %I:%M %p", "%d %B %Y, %H:%M")
 _EPOCH: Final = re.compile(r"\d{10}|\d{13}")  # seconds, milliseconds since 1970
 
 
 @dataclass(frozen=True)
 class Item:
-    """What lies directly in the folder of a class.
+    """A file or folder directly in the folder of a class.
 
     Attributes:
-        is_folder: itself, and no link to one.
-        name: as it stands there, composed (NFC): macOS takes letters and their accents apart.
+        is_folder: whether it is a folder; False for a link to one.
+        name: its name, composed (NFC): macOS decomposes letters and their accents.
     """
 
     path: Path
@@ -48,10 +48,10 @@ class Item:
 
 @dataclass(frozen=True)
 class Piece:
-    """A file or a folder that was handed in.
+    """A submitted file or folder.
 
     Attributes:
-        name: what it was called before the export gave it another name; '' if nobody knows.
+        name: its original name, before the export renamed it; '' if it is unknown.
     """
 
     path: Path
@@ -60,17 +60,17 @@ class Piece:
 
 @dataclass(frozen=True)
 class Attempt:
-    """What somebody handed in at once.
+    """One attempt of a student or a group.
 
     Attributes:
-        whose: the same in all attempts of a student, or of a group.
-        people: of it; as far as the export tells.
+        whose: a key, the same in all attempts of a student or of a group.
+        people: the student, or the members as far as the export contains them.
         pieces: one file or folder, or several files that are one submission.
-        number: counts from 1; 0 if the export does not tell.
-        at: when, with its time zone.
+        number: counts from 1; 0 if the export does not contain it.
+        at: when it was handed in, with its time zone.
         problem: why there is nothing to grade.
-        aliases: what else their id may be; which of these, is the same for all of a class.
-        alone: the file in a folder that holds nothing else is what was handed in.
+        aliases: other possible ids; the same place in all attempts of a class holds the real one.
+        alone: whether a single file in a folder is the submission, and not the folder.
     """
 
     whose: str
@@ -85,10 +85,10 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Export:
-    """What a layout makes of a folder.
+    """What a layout reads from a folder.
 
     Attributes:
-        layout: what it was taken for, as what follows 'Read as '.
+        layout: the name of the layout, as it follows 'Read as '.
         notes: sentences for the teacher.
     """
 
@@ -98,17 +98,17 @@ class Export:
 
 
 class Layout(Protocol):
-    """A module that knows one layout."""
+    """A module that reads one layout."""
 
-    def looks_like(self, items: Sequence[Item], /) -> bool:
-        """Whether what lies in a folder is laid out so."""
+    def matches(self, items: Sequence[Item], /) -> bool:
+        """Whether the items of a folder have this layout."""
 
     def read(self, items: Sequence[Item], /) -> Export:
-        """What it comes to."""
+        """Read the attempts in such a folder."""
 
 
 def items_of(folder: Path) -> list[Item]:
-    """What lies in a folder, sorted by name, without what a system or a browser has left there.
+    """Return the items of a folder, sorted by name, without the junk of a system or a browser.
 
     Raises:
         OSError: it cannot be read.
@@ -123,18 +123,18 @@ def items_of(folder: Path) -> list[Item]:
 
 
 def composed(name: str) -> str:
-    """A name with each letter and its accents as one character."""
+    """Return a name with each letter and its accents as one character."""
     return unicodedata.normalize("NFC", name)
 
 
-def tell(notes: list[Message], what: Message, names: Iterable[Text]) -> None:
-    """Add a note on some `{names}`; nothing where there are none."""
+def add_note(notes: list[Message], what: Message, names: Iterable[Text]) -> None:
+    """Add a note about some `{names}`, if there are any."""
     if every := list(names):
         notes.append(what.given(names=listed(every)))
 
 
 def short(part: str) -> str:
-    """A name that is not too long for a file system; the end, which says the kind, stays."""
+    """Shorten a name for the file system; its end, with the suffix, stays."""
     if len(os.fsencode(part)) <= _MAX_NAME_BYTES:
         return part
     end = part[-30:]
@@ -143,26 +143,26 @@ def short(part: str) -> str:
 
 
 def mostly(items: Iterable[Item], fits: Callable[[Item], object]) -> bool:
-    """Whether at least half of what lies in a folder fits; and there is something."""
+    """Whether there are items, and at least half of them fit."""
     found = [bool(fits(item)) for item in items]
     return bool(found) and 2 * sum(found) >= len(found)
 
 
 def person(id: str, name: str = "", columns: Mapping[str, str] | None = None) -> Person:
-    """Somebody, by what strangers have written: in one line, without control characters."""
+    """Make a `Person` of untrusted texts: each in one line, without control characters."""
     named = {_clean(title): _clean(value) for title, value in (columns or {}).items()}
     return Person(_clean(id), _clean(name), named)
 
 
 def _clean(text: str) -> str:
-    # one line first: `plain` looks for what stands at the start of a line
+    # one line first: `plain` changes what is at the start of a line
     return clip(composed(plain(one_line(text))).strip(), _MAX_NAME)
 
 
 def read_time(text: str) -> datetime | None:
-    """The moment that a text means; None if it means none.
+    """Parse a time; None if the text is none.
 
-    Without a zone it is this machine's local time, and without an hour the day's first moment.
+    Without a zone it is this machine's local time, and without an hour the start of the day.
     """
     text = text.strip()
     if _EPOCH.fullmatch(text):
@@ -184,12 +184,12 @@ def read_time(text: str) -> datetime | None:
 
 
 def moment(at: datetime | None) -> float:
-    """A time for comparison [s]; before all others, where it is not known."""
+    """Return a time for comparison [s]; minus infinity where it is unknown."""
     return at.timestamp() if at else float("-inf")
 
 
 def _of_moodle(text: str) -> datetime | None:
-    """Such as: Tuesday, 1 December 2026, 6:00 PM."""
+    """Parse Moodle's format, as in: Tuesday, 1 December 2026, 6:00 PM."""
     text = re.sub("^[A-Za-z]+, ", "", text)
     for form in _MOODLE:
         with suppress(ValueError, OverflowError, OSError):
@@ -198,10 +198,10 @@ def _of_moodle(text: str) -> datetime | None:
 
 
 def zone(sign: str, hours: str, minutes: str) -> timezone:
-    """A time zone from its numbers.
+    """Return the time zone of an offset.
 
     Raises:
-        ValueError: no zone is so far away.
+        ValueError: no zone has this offset.
     """
     ahead = timedelta(hours=int(hours), minutes=int(minutes))
     if ahead > timedelta(hours=14):

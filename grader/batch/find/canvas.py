@@ -1,10 +1,10 @@
-"""Canvas's "Download Submissions": files in one folder, whose names say whose they are.
+"""Read Canvas's "Download Submissions": files in one folder, with the students in their names.
 
 `NAME[_LATE]_USER_FILE_FILENAME`, where the name is the sortable one in small letters and without
 what is no letter, USER is the student's id in Canvas, and FILE that of the file. Anonymous ones are
-`[LATE_]anon_CODE_FILE_FILENAME`; what was typed in online ends in `_USER_text.html`, a link in
-`_USER_link.html` (`lib/content_zipper.rb`). To a file that a student hands in again Canvas gives a
-new name, with `-1`, `-2` before its ending. Nothing says when.
+`[LATE_]anon_CODE_FILE_FILENAME`; a text entered online ends in `_USER_text.html`, a link in
+`_USER_link.html` (`lib/content_zipper.rb`). A file that a student hands in again gets `-1`, `-2`
+before its suffix. The export contains no times.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import Final, NamedTuple
 
 from grader.batch.entry import Person
-from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, tell
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, add_note, mostly, person
 from grader.message import NOTHING, msg
 from grader.submission.folder import is_junk
 from grader.submission.unpacking import is_archive
@@ -34,12 +34,13 @@ _ONLY_TEXT: Final = msg("Only a text or a link was handed in, and no file.")
 
 
 class _File(NamedTuple):
-    """A file of a student's.
+    """A submitted file.
 
     Attributes:
-        id: grows with time.
-        filename: without what Canvas has added to it.
-        again: how often another of its name had been handed in before.
+        id: Canvas's number of it, which grows with time.
+        original: its name, with what Canvas may have added.
+        filename: its name without that.
+        again: how often a file of this name had been handed in before.
     """
 
     item: Item
@@ -49,13 +50,13 @@ class _File(NamedTuple):
     again: int
 
 
-def looks_like(items: Sequence[Item]) -> bool:
-    """Whether a folder is one."""
+def matches(items: Sequence[Item]) -> bool:
+    """Whether a folder has this layout."""
     return mostly(items, _parsed)
 
 
 def read(items: Sequence[Item]) -> Export:
-    """The hand-ins in one."""
+    """Read the attempts in a folder."""
     files: dict[tuple[str, str], list[_File]] = defaultdict(list)
     people: dict[tuple[str, str], Person] = {}
     others: list[str] = []
@@ -68,23 +69,23 @@ def read(items: Sequence[Item]) -> Export:
         name, user = match["name"] or "", match["user"] or ""
         whose = (user or match["code"], name)
         columns = {"ID": user} if user else {}
-        if match["typed"] and user:  # by which Canvas's id is known where there is no file
+        if match["typed"] and user:  # where there is no file, Canvas's id is read from this
             columns["Exported as"] = item.name
         people[whose] = person(whose[0], name, columns | ({"Late": "yes"} if is_late else {}))
-        own = files[whose]
+        submitted = files[whose]
         if match["file"] and not is_junk(match["filename"]):
-            own.append(_file(item, match))
+            submitted.append(_file(item, match))
     attempts, outdated, notes = [], list[str](), []
-    for whose, own in files.items():
-        kept, older = _newest(own)
+    for whose, submitted in files.items():
+        kept, older = _newest(submitted)
         outdated += [file.item.name for file in older]
         attempts.append(_attempt("_".join(whose), people[whose], kept))
-    if len({id for id, _ in files}) < len(files):  # names can be chosen so: ann_12
+    if len({id for id, _ in files}) < len(files):  # a student may be named like that: ann_12
         notes.append(
             msg("Some ids stand there with several names; look at these hand-ins yourself.")
         )
-    tell(notes, msg("Left out, since there is a newer one of this name: {names}."), outdated)
-    tell(notes, msg("Left out, since Canvas does not name them so: {names}."), others)
+    add_note(notes, msg("Left out, since there is a newer one of this name: {names}."), outdated)
+    add_note(notes, msg("Left out, since Canvas does not name them so: {names}."), others)
     return Export(LAYOUT, attempts, notes)
 
 
@@ -102,10 +103,10 @@ def _file(item: Item, match: re.Match[str]) -> _File:
 
 
 def _newest(files: list[_File]) -> tuple[list[_File], list[_File]]:
-    """What is graded of a student's files, and what is older.
+    """Split a student's files into those that are graded, and older ones.
 
     An export holds one attempt, but two may have been unpacked into one folder. `part-1.py` and
-    `part-2.py` are one attempt, though: of files of one name the newest is taken only where one of
+    `part-2.py` are one attempt, though: of files of one name only the newest is graded where one of
     them has that very name, or where they are archives, of which there can be but one.
     """
     alike: dict[str, list[_File]] = defaultdict(list)
@@ -125,7 +126,7 @@ def _newest(files: list[_File]) -> tuple[list[_File], list[_File]]:
 
 def _attempt(whose: str, student: Person, files: list[_File]) -> Attempt:
     pieces = tuple(Piece(file.item.path, file.filename) for file in files)
-    if files:  # by which Canvas knows a feedback file as that student's
+    if files:  # Canvas assigns a feedback file to the student by this
         columns = {**student.columns, "Exported as": files[0].item.name}
         student = replace(student, columns=columns)
     number = 1 + max((file.again for file in files), default=0)

@@ -1,9 +1,9 @@
-"""The archive of a whole class, unpacked as strangers' archives are, and within larger limits.
+"""Unpack the archive of a whole class, as untrusted as a student's, within larger limits.
 
-It was made by a course's server, but of what students have named and filled. It is read in a copy
-of this process that has limits (`grader.limited`); nothing is written outside of its folder, and no
-link. What is wrong with one member keeps out that one and is told: one student must not keep the
-others from being graded. What is inside of the students' own archives is not looked at here.
+A course's server made it, but with names and contents from students. A copy of this process with
+limits reads it (`grader.limited`); nothing is written outside of its folder, and no link. A member
+that cannot be unpacked is left out and reported: one student must not keep the others from being
+graded. The students' archives inside of it are not unpacked here.
 """
 
 from __future__ import annotations
@@ -33,13 +33,14 @@ MAX_LIST_BYTES: Final = 100_000_000  # of the list of a zip's members
 MAX_FILE_BYTES: Final = MAX_BYTES + 1
 LIMITS: Final = limited.WorkLimits(cpu_s=3600, wall_s=4 * 3600, memory_bytes=3 * 2**30)
 _CHUNK_BYTES: Final = 1 << 16
-#: What of a repository says when it was committed to (`clones.py`); no configuration, no hooks.
+#: The parts of a repository with the time of its last commit (`clones.py`); no configuration, no
+#: hooks.
 _OF_GIT: Final = ("HEAD", "objects", "packed-refs", "refs")
 _UNWRITABLE: Final = (
     *(errno.EINVAL, errno.EILSEQ, errno.ENAMETOOLONG),
     *(errno.ENOTDIR, errno.EISDIR, errno.EEXIST),
 )
-#: What may be odd about some of the members.
+#: Notes on members.
 _CANNOT_BE_WRITTEN: Final = msg("cannot be written here")
 _NO_FILE: Final = msg("is encrypted, a link or no ordinary file, and left out")
 _OUTSIDE: Final = msg("would be written outside of its folder, and is left out")
@@ -51,10 +52,10 @@ _INSTEAD: Final = msg("Unpack it yourself, and give the folder.")
 
 
 def unpack(archive: Path, into: Path) -> list[Message]:
-    """Write what is in the archive of a class below `into`, a folder to be made.
+    """Unpack the archive of a class into `into`, a folder to be made.
 
     Returns:
-        What to say about it.
+        Notes for the teacher.
 
     Raises:
         UsageError: it is damaged, or too large.
@@ -70,15 +71,15 @@ def unpack(archive: Path, into: Path) -> list[Message]:
             hit=hit.why,
             instead=_INSTEAD,
         ) from None
-    told = strict_json.of_line(_Answer, answer)
-    if told.refused:
-        raise UsageError(told.refused)
-    return list(told.notes)
+    unpacked = strict_json.of_line(_Answer, answer)
+    if unpacked.refused:
+        raise UsageError(unpacked.refused)
+    return list(unpacked.notes)
 
 
 @dataclass(frozen=True)
 class _Answer:
-    """What the process that unpacks has to say: notes, or why there is nothing."""
+    """The answer of the process that unpacks: notes, or why it refused the archive."""
 
     notes: tuple[Message, ...] = ()
     refused: Message = NOTHING
@@ -114,7 +115,7 @@ def _answer(archive: Path, into: Path) -> bytes:
 
 
 class _Room(Budget):
-    """What may come out of the archive of a class."""
+    """The budget of bytes and files for the archive of a class."""
 
     def __init__(self) -> None:
         super().__init__(MAX_ALL_BYTES, MAX_FILES)
@@ -144,7 +145,7 @@ class _Unpacking:
     """An unpacking in progress.
 
     Attributes:
-        odd: names of members, by what is odd about them.
+        odd: note -> names of the members that it is about.
     """
 
     def __init__(self, name: str, into: Path) -> None:
@@ -186,7 +187,7 @@ class _Unpacking:
                 yield path, member
 
     def _inside(self, member: Member) -> PurePosixPath | None:
-        """Where a member belongs, with names that can be written; None: nowhere in here."""
+        """Return the path of a member, with writable names; None: outside of the folder."""
         text = member.name.replace("\\", "/")
         path = PurePosixPath(text)
         if path.is_absolute() or ".." in path.parts or re.match("[A-Za-z]:/", text):
@@ -206,7 +207,7 @@ class _Unpacking:
             try:
                 with member.open() as source:
                     self._copy(member, source, file)
-            except (*DAMAGED, NotImplementedError):  # what came out stays: it was handed in
+            except (*DAMAGED, NotImplementedError):  # what came out is kept and graded
                 self.odd[_DAMAGED].append(member.name)
 
     def _copy(self, member: Member, source: IO[bytes], file: IO[bytes]) -> None:
@@ -230,7 +231,7 @@ def _members(archive: Path, plain: Path) -> Iterator[Sequence[Member]]:
 
 
 def _belongs(path: PurePosixPath) -> bool:
-    """Whether no part of a path is hidden or junk, but for what says when it was committed."""
+    """Whether no part of a path is hidden or junk, except what holds a commit's time."""
     for at, part in enumerate(path.parts):
         if part == ".git" and at and path.parts[at + 1 : at + 2]:
             return path.parts[at + 1] in _OF_GIT

@@ -1,16 +1,15 @@
-"""A folder of git repositories, as `gh teacher download` and `gh classroom clone` make it.
+"""Read a folder of git repositories, as `gh teacher download` and `gh classroom clone` make it.
 
-Classroom 50 calls them `CLASSROOM-ASSIGNMENT-USER`, GitHub Classroom `ASSIGNMENT-USER`. What all
-begin with, up to a hyphen, is left out; a roster settles where that ends, the same for all. Beside
-them `gh teacher download` lays `scores.csv`, which says who was to hand in something, and when
-(`roster.py`).
+Classroom 50 calls them `CLASSROOM-ASSIGNMENT-USER`, GitHub Classroom `ASSIGNMENT-USER`. The common
+prefix, up to a hyphen, is left out; a roster decides where it ends, the same for all. `gh teacher
+download` also writes `scores.csv`: who had to hand in something, and when they did (`roster.py`).
 
-When the last commit was made is found without trusting the repository. `git log` would do what the
-repository's own configuration says: `log.showSignature` with `gpg.program`, `core.fsmonitor`, hooks
-and more are commands. `.git/logs/HEAD` would be safe to parse, but in a clone it says when that was
-made. So the name of the commit is read from HEAD, and `git cat-file` shows it from a git folder of
-our own, which only borrows the objects: no line of the repository's configuration is read, nothing
-is fetched, and no working tree is looked at.
+The time of the last commit is found without trusting the repository. `git log` would follow the
+repository's configuration: `log.showSignature` with `gpg.program`, `core.fsmonitor`, hooks and more
+are commands. `.git/logs/HEAD` would be safe to parse, but in a clone it has the time of the
+cloning. So the name of the commit is read from HEAD, and `git cat-file` prints it from a separate
+git folder, which only borrows the objects: no line of the repository's configuration is read,
+nothing is fetched, and no working tree is inspected.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Final
 
-from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, tell, zone
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, add_note, mostly, person, zone
 from grader.message import msg
 from grader.scratch import make_folder
 from grader.submission.folder import shown
@@ -44,13 +43,13 @@ _COMMITTER: Final = re.compile(
 )
 
 
-def looks_like(items: Sequence[Item]) -> bool:
-    """Whether a folder is one."""
+def matches(items: Sequence[Item]) -> bool:
+    """Whether a folder has this layout."""
     return mostly(items, _is_repository)
 
 
 def read(items: Sequence[Item]) -> Export:
-    """The hand-ins in one."""
+    """Read the attempts in a folder."""
     repositories = [item for item in items if _is_repository(item)]
     others = [item.name for item in items if not _is_repository(item)]
     prefix = _prefix([item.name for item in repositories])
@@ -70,8 +69,8 @@ def read(items: Sequence[Item]) -> Export:
         notes.append(msg("There is no git on this machine to say when the last commits were made."))
     else:
         unknown = [item.name for item, each in pairs if each.at is None]
-        tell(notes, msg("Nothing says when these were last committed to: {names}."), unknown)
-    tell(notes, msg("Left out, since they are no repositories: {names}."), others)
+        add_note(notes, msg("Nothing says when these were last committed to: {names}."), unknown)
+    add_note(notes, msg("Left out, since they are no repositories: {names}."), others)
     return Export(LAYOUT, attempts, notes)
 
 
@@ -80,7 +79,7 @@ def _is_repository(item: Item) -> bool:
 
 
 def _prefix(names: Sequence[str]) -> str:
-    """What all names begin with, up to a hyphen, if something is left of each."""
+    """Return the common prefix of all names, up to a hyphen, if something is left of each."""
     if len(names) < 2:
         return ""
     first, last = min(names), max(names)
@@ -90,7 +89,7 @@ def _prefix(names: Sequence[str]) -> str:
 
 def _attempt(item: Item, prefix: str, commits: LastCommits) -> Attempt:
     user = item.name.removeprefix(prefix) or item.name
-    # of one repository alone nobody knows where the user's name begins, but a roster may
+    # with one repository alone only a roster can show where the user's name begins
     shared = prefix or item.name[: item.name.rfind("-") + 1]
     starts = [0, *(at + 1 for at, sign in enumerate(shared) if sign == "-")]
     return Attempt(
@@ -103,10 +102,10 @@ def _attempt(item: Item, prefix: str, commits: LastCommits) -> Attempt:
 
 
 class LastCommits:
-    """Asks for the last commit of one repository after another.
+    """Finds the last commit of one repository after another.
 
     Args:
-        scratch: an empty folder of ours.
+        scratch: an empty folder for its git folder.
     """
 
     def __init__(self, scratch: Path) -> None:
@@ -123,12 +122,12 @@ class LastCommits:
         return self._git is not None
 
     def of(self, clone: Path) -> datetime | None:
-        """When the commit that a clone stands at was made, by its author's clock; None: unknown."""
+        """Return the time of a clone's checked-out commit, by its author's clock; None: unknown."""
         theirs = clone / ".git"
         objects = theirs / "objects"
         try:
             if not (_is_folder(theirs) and _is_folder(objects) and _are_plain(objects)):
-                return None  # a link, or a file that says where else it lies
+                return None  # a link, or a file with the path of another folder
             name = _commit(theirs)
         except OSError:
             return None
@@ -171,7 +170,7 @@ class LastCommits:
 
 
 def _commit(theirs: Path) -> str | None:
-    """The name of the commit that HEAD leads to."""
+    """Return the name of the commit that HEAD points to."""
     head = _read(theirs / "HEAD").strip()
     match = _REF.fullmatch(head)
     if match is None:
@@ -201,7 +200,7 @@ def _time(commit: bytes) -> datetime | None:
 
 
 def _read(path: Path) -> str:
-    """A small file itself, and not what a link leads to; '' where there is none."""
+    """Read a small file, but follow no link; '' where there is none."""
     try:
         mode = path.lstat()
     except FileNotFoundError:
@@ -216,11 +215,11 @@ def _is_folder(path: Path) -> bool:
 
 
 def _are_plain(objects: Path) -> bool:
-    """Whether git finds nothing that it would wait for, or that leads it elsewhere."""
-    looked_at = 0
+    """Whether git would neither block on a file nor be led to other folders."""
+    seen = 0
     for at, folders, files in os.walk(objects):
-        looked_at += len(folders) + len(files)
-        if looked_at > _MOST_OBJECTS or {"alternates", "http-alternates"} & {*files, *folders}:
+        seen += len(folders) + len(files)
+        if seen > _MOST_OBJECTS or {"alternates", "http-alternates"} & {*files, *folders}:
             return False
         if not all(stat.S_ISREG(Path(at, name).lstat().st_mode) for name in files):
             return False

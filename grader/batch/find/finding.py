@@ -1,4 +1,4 @@
-"""Finds what a class has handed in: where it lies, which layout it is, and whose is what."""
+"""Find the submissions of a class: in which folder, in which layout, and whose they are."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from grader.scratch import make_folder
 from grader.submission.folder import shown
 from grader.submission.unpacking import is_archive
 
-#: Who is in the class, if it lies among the hand-ins; the second is Classroom 50's.
+#: The members of the class, if beside the submissions; the second is Classroom 50's.
 ROSTER: Final = "roster.csv"
 SCORES: Final = "scores.csv"
-#: The first one that a folder looks like is taken; a plain folder looks like nothing.
+#: The first layout that a folder matches is used; a plain folder matches none.
 LAYOUTS: Final[tuple[Layout, ...]] = (gradescope, moodle, canvas, clones)
 _MAX_WRAPPERS: Final = 3  # folders in a folder that an archive was packed from
 
 
 @dataclass(frozen=True)
 class Found:
-    """What a class has handed in.
+    """The hand-ins of a class.
 
     Attributes:
-        hand_ins: of each student or group one, sorted by id.
+        hand_ins: one of each student or group, sorted by id.
         notes: sentences for the teacher: how it was read, what was left out, who is unknown.
     """
 
@@ -47,15 +47,15 @@ class Found:
 def find(
     submissions: Path, pattern: str | None = None, roster: Path | None = None
 ) -> Iterator[Found]:
-    """Find the hand-ins; what had to be unpacked or renamed is there until the context ends.
+    """Find the hand-ins; unpacked and renamed files last until the context ends.
 
     Args:
         submissions: the export of a course system, a folder or an archive, or any folder.
-        pattern: how names are made, where that is not recognised: see `plain.py`.
-        roster: who is in the class, a CSV file; else `roster.csv` in the folder, if there is one.
+        pattern: of the names, where they are not recognised: see `plain.py`.
+        roster: the class as a CSV file; else `roster.csv` in the folder, if there is one.
 
     Raises:
-        UsageError: there is nothing to be found there, or pattern or roster make no sense.
+        UsageError: there are no hand-ins, or pattern or roster cannot be used.
         GraderFailure: there is no place for files.
     """
     names = None if pattern is None else Pattern(pattern)
@@ -92,7 +92,7 @@ def _found(submissions: Path, names: Pattern | None, roster: Path | None, scratc
 
 
 def _first_note(layout: Message, hand_ins: Sequence[HandIn]) -> Message:
-    """What the folder was taken for, and how many are there."""
+    """Return which layout was read, and how many hand-ins there are."""
     missing = sum(hand_in.problem in (NOT_HANDED_IN, UNCLEAR) for hand_in in hand_ins)
     there = len(hand_ins) - missing
     if missing:
@@ -116,11 +116,11 @@ def _first_note(layout: Message, hand_ins: Sequence[HandIn]) -> Message:
     return message.joined([note, advice], " ")
 
 
-# Where to look -----------------------------------------------------------------------------------
+# Which folder ------------------------------------------------------------------------------------
 
 
 def _folder(submissions: Path, scratch: Path) -> tuple[Path, list[Message]]:
-    """The folder that was named, or what was in the archive."""
+    """Return the folder that was named, or the unpacked archive, and notes on unpacking."""
     if submissions.is_dir():
         return submissions, []
     if not submissions.exists():
@@ -141,10 +141,10 @@ def _folder(submissions: Path, scratch: Path) -> tuple[Path, list[Message]]:
 def _top(
     submissions: Path, folder: Path, names: Pattern | None
 ) -> tuple[Path, list[Item], dict[str, Item]]:
-    """The folder in which hand-ins lie, what they are, and the rosters beside them.
+    """Return the folder of the hand-ins, its items, and the rosters beside them.
 
-    A folder is often packed as such, and so lies alone in what comes out of the archive; that of an
-    export does so also where a browser has unpacked it.
+    A folder is often packed as such, and so is the only item of its archive; the folder of an
+    export is also nested where a browser has unpacked it.
     """
     lying: dict[str, Item] = {}
     for _ in range(_MAX_WRAPPERS + 1):
@@ -168,16 +168,16 @@ def _top(
 
 
 def _is_ours(item: Item) -> bool:
-    """Whether it is what `grader batch` has left there."""
+    """Whether it is a folder that `grader batch` has written."""
     return item.is_folder and all((item.path / name).exists() for name in ("class.json", "store"))
 
 
 def _layout(items: Sequence[Item]) -> Layout | None:
-    return next((layout for layout in LAYOUTS if layout.looks_like(items)), None)
+    return next((layout for layout in LAYOUTS if layout.matches(items)), None)
 
 
 def _read(submissions: Path, items: Sequence[Item], names: Pattern | None) -> Export:
-    """What is there, by the first layout that it looks like."""
+    """Read the attempts by the pattern, else by the first layout that matches."""
     if names is not None:
         return names.read(items)
     if layout := _layout(items):

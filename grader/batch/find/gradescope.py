@@ -1,8 +1,8 @@
-"""Gradescope's export of submissions: `submission_NUMBER/` folders, and a file that says whose.
+"""Read Gradescope's export: `submission_NUMBER/` folders, and a file with their students.
 
-`submission_metadata.yml` was written by a Ruby program: its keys begin with colons, and a time may
-be an object of Ruby's. It also holds all that autograders have printed of students' programs. So it
-is read event by event, nothing but texts are made of it, and all else is passed over.
+A Ruby program writes `submission_metadata.yml`: its keys begin with colons, and a time may be a
+Ruby object. It also holds all output of autograders. So it is parsed event by event into texts
+alone, and everything that is not needed is skipped.
 """
 
 from __future__ import annotations
@@ -15,7 +15,16 @@ from typing import Any, Final
 import yaml
 
 from grader.batch.entry import Person
-from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, read_time, tell
+from grader.batch.find.attempt import (
+    Attempt,
+    Export,
+    Item,
+    Piece,
+    add_note,
+    mostly,
+    person,
+    read_time,
+)
 from grader.message import NOTHING, Message, msg, reason
 from grader.submission.folder import shown
 from grader.text import in_one_line
@@ -25,73 +34,73 @@ METADATA: Final = "submission_metadata.yml"
 MAX_METADATA_BYTES: Final = 200_000_000
 _FOLDER: Final = re.compile(r"submission_(?P<number>\d+)")
 _NO_FILES: Final = msg("Gradescope's export holds no file of this submission.")
-#: Of a submission; nothing else is looked at.
+#: The keys of a submission that are read.
 _WANTED: Final = ("submitters", "created_at")
-_MAX_DEPTH: Final = 4  # of submissions, submitters, and what is said of one
+_MAX_DEPTH: Final = 4  # of submissions, submitters, and the fields of one
 _MAX_TEXT: Final = 1_000  # characters; what is longer is no name
 
 
-def looks_like(items: Sequence[Item]) -> bool:
-    """Whether a folder is one."""
+def matches(items: Sequence[Item]) -> bool:
+    """Whether a folder has this layout."""
     if any(item.name == METADATA and item.path.is_file() for item in items):
         return True
     return mostly(items, lambda item: item.is_folder and _FOLDER.fullmatch(item.name))
 
 
 def read(items: Sequence[Item]) -> Export:
-    """The hand-ins in one."""
+    """Read the attempts in a folder."""
     notes: list[Message] = []
     lying = {item.name: item for item in items}
-    told = _metadata(lying.pop(METADATA, None), notes)
-    attempts = [_attempt(name, lying.pop(name, None), said) for name, said in told.items()]
+    metadata = _metadata(lying.pop(METADATA, None), notes)
+    attempts = [_attempt(name, lying.pop(name, None), data) for name, data in metadata.items()]
     others = []
     for name, item in lying.items():
         if item.is_folder and _FOLDER.fullmatch(name):
             attempts.append(_attempt(name, item, {}))
         else:
             others.append(name)
-    tell(notes, msg("Left out, since Gradescope does not name them so: {names}."), others)
+    add_note(notes, msg("Left out, since Gradescope does not name them so: {names}."), others)
     return Export(LAYOUT, attempts, notes)
 
 
-def _attempt(name: str, item: Item | None, said: dict[str, Any]) -> Attempt:
+def _attempt(name: str, item: Item | None, data: dict[str, Any]) -> Attempt:
     match = _FOLDER.fullmatch(name)
     number = match["number"] if match else name
-    people = tuple(_people(said.get("submitters"))) or (person(number),)
+    people = tuple(_people(data.get("submitters"))) or (person(number),)
     return Attempt(
         "+".join(sorted(each.id for each in people)),
         people,
         () if item is None else (Piece(item.path, "" if item.is_folder else item.name),),
-        at=_time(said.get("created_at")),
+        at=_time(data.get("created_at")),
         problem=_NO_FILES if item is None else NOTHING,
         alone=True,
     )
 
 
-def _people(said: object) -> Iterator[Person]:
-    for each in said if isinstance(said, list) else ():
+def _people(value: object) -> Iterator[Person]:
+    for each in value if isinstance(value, list) else ():
         if isinstance(each, dict):
             name, sid, email = (_text(each.get(key)) for key in ("name", "sid", "email"))
             if id := sid or email or name:
                 yield person(id, name, {"SID": sid, "Email": email})
 
 
-def _time(said: object) -> Any:
-    """A time, or Ruby's object of one, which says it in UTC."""
-    return read_time(_text(said.get("utc") if isinstance(said, dict) else said))
+def _time(value: object) -> Any:
+    """Parse a time, or a Ruby object with the time in UTC."""
+    return read_time(_text(value.get("utc") if isinstance(value, dict) else value))
 
 
-def _text(said: object) -> str:
-    return said if isinstance(said, str) and said not in ("~", "null") else ""
+def _text(value: object) -> str:
+    return value if isinstance(value, str) and value not in ("~", "null") else ""
 
 
 def _metadata(item: Item | None, notes: list[Message]) -> dict[str, dict[str, Any]]:
-    """What is said of each submission, by the name of its folder."""
+    """Return the metadata of each submission, by the name of its folder."""
     why = msg("there is no {file}", file=METADATA)
     if item is not None and item.path.is_file():
         try:
             found = _Texts(item.path).read()
-            return {name: said for name, said in found.items() if isinstance(said, dict)}
+            return {name: data for name, data in found.items() if isinstance(data, dict)}
         except yaml.MarkedYAMLError as error:
             line = error.problem_mark.line + 1 if error.problem_mark else 1
             why = msg(
@@ -109,9 +118,9 @@ def _metadata(item: Item | None, notes: list[Message]) -> dict[str, dict[str, An
 
 
 class _Texts:
-    """The texts in a YAML file, as many as are asked for, in dicts and lists.
+    """Parses the wanted texts of a YAML file into dicts and lists.
 
-    No tag is followed and no value made of a text: `sid: 007` stays what it is.
+    No tag is followed and no text converted: `sid: 007` stays '007'.
     """
 
     def __init__(self, path: Path) -> None:
@@ -119,11 +128,11 @@ class _Texts:
         self._anchors: dict[str, str] = {}
 
     def read(self) -> dict[str, Any]:
-        """All of it.
+        """Parse the file.
 
         Raises:
             yaml.YAMLError: it is no YAML.
-            ValueError: it is too large, or something else than a mapping.
+            ValueError: it is too large, or no mapping.
         """
         if self._path.stat().st_size > MAX_METADATA_BYTES:
             raise ValueError(msg("it has more than {size:g} MB", size=MAX_METADATA_BYTES / 1e6))
@@ -146,7 +155,7 @@ class _Texts:
             return dict(self._mapping(depth))
         if depth <= _MAX_DEPTH and isinstance(event, yaml.SequenceStartEvent):
             return list(self._sequence(depth))
-        self._pass_over(event)
+        self._skip(event)
         return None
 
     def _mapping(self, depth: int) -> Iterator[tuple[str, Any]]:
@@ -154,10 +163,10 @@ class _Texts:
             if isinstance(key, yaml.MappingEndEvent):
                 return
             name = str(key.value).lstrip(":") if isinstance(key, yaml.ScalarEvent) else ""
-            self._pass_over(key)
+            self._skip(key)
             value = next(self._events)
             if not name or (depth == 1 and name not in _WANTED):
-                self._pass_over(value)
+                self._skip(value)
             else:
                 yield name[:_MAX_TEXT], self._value(value, depth + 1)
 
@@ -167,8 +176,8 @@ class _Texts:
                 return
             yield self._value(event, depth + 1)
 
-    def _pass_over(self, event: Any) -> None:
-        """Go on behind a value, whatever is in it; what an alias may mean later is kept."""
+    def _skip(self, event: Any) -> None:
+        """Skip a value with all that is in it; anchors are kept for later aliases."""
         depth = 0
         while True:
             if isinstance(event, yaml.CollectionStartEvent):

@@ -1,4 +1,4 @@
-"""Whose is what: attempts and a roster, brought together."""
+"""Match attempts with the members of a roster."""
 
 from __future__ import annotations
 
@@ -15,23 +15,20 @@ from grader.message import Message, Text, msg
 from grader.submission.folder import listed, shown
 
 NOT_HANDED_IN = msg("Nothing was handed in.")
-#: Of somebody who may be one of those whose hand-ins are nobody's: to be without a grade.
+#: The problem of a member to whom an unmatched hand-in may belong: there is no grade.
 UNCLEAR = msg("It is not clear which hand-in, if any, is this person's.")
 
 
 def joined(
     attempts: Sequence[Attempt], roster: Roster, is_one_each: bool = False
 ) -> tuple[list[Attempt], list[Message]]:
-    """The attempts with what the roster says of whose they are, and an empty one of all others.
+    """Return the attempts with their members, an empty one of each other member, and notes.
 
-    A group is known by its name; somebody by an id, an email address, a user name, the number of a
-    Moodle participant, the end of a repository's name; else by a name, if nobody else has it.
+    A group is matched by its name; a person by an id, an email address, a user name, the number of
+    a Moodle participant, the end of a repository's name; else by a name, if nobody else has it.
 
     Args:
-        is_one_each: whether nothing tells which of two is newer, so that both are nobody's.
-
-    Returns:
-        Them, and what to say.
+        is_one_each: whether two attempts of a person cannot be ordered, so that none is matched.
     """
     index = _Index(roster.members)
     matched = _matched(attempts, index)
@@ -70,7 +67,7 @@ def joined(
 def _without_several(
     matched: Sequence[Sequence[RosterMember | None]],
 ) -> list[Sequence[RosterMember | None]]:
-    """The same without those of the class to whom several are matched."""
+    """Remove the matches of members who match several attempts."""
     times = Counter(member.person.id for members in matched for member in members if member)
     return [
         [each if each and times[each.person.id] == 1 else None for each in members]
@@ -78,13 +75,13 @@ def _without_several(
     ]
 
 
-#: Before whose an attempt is, if the roster says so: an id of the roster's and the name of a file
-#: that nobody knows may be the same text, and do not mean the same person.
+#: Prefix of `Attempt.whose` for members of the roster: an id in the roster and the name of an
+#: unknown file may be the same text, but are not the same person.
 _OF_ROSTER = "roster\0"
 
 
 def is_of_roster(attempt: Attempt) -> bool:
-    """Whether the roster says whose an attempt is."""
+    """Whether an attempt belongs to a member of the roster."""
     return attempt.whose.startswith(_OF_ROSTER)
 
 
@@ -96,21 +93,21 @@ def _missing(member: RosterMember, is_unclear: bool) -> Attempt:
 def _unclear(
     unknown: Sequence[Person], missing: Sequence[RosterMember], index: _Index, notes: list[Message]
 ) -> set[str]:
-    """The ids of those missing who may be one of the unknown; it is told whom they may be."""
-    found, told = set[str](), list[Message]()
+    """Return the ids of the missing who may be one of the unknown, and add a note on them."""
+    found, pairs = set[str](), list[Message]()
     for person in unknown:
         might = index.candidates(person)
         if may_be := [member.person for member in missing if member.person.id in might]:
             found.update(each.id for each in may_be)
             names = message.joined([_called(each) for each in may_be[:3]], msg(" or "))
             who = shown(person.name or person.id)
-            told.append(msg("{who} may be {names}", who=who, names=names))
-    if told:
+            pairs.append(msg("{who} may be {names}", who=who, names=names))
+    if pairs:
         notes.append(
             msg(
                 "Ambiguous, and so nobody's: {pairs}. They have no grade in any import; "
                 "make clear in the roster, or in the names of the files, who is who.",
-                pairs=listed(told),
+                pairs=listed(pairs),
             )
         )
     return found
@@ -121,15 +118,15 @@ def _called(person: Person) -> Text:
     return msg("{name} ({id})", name=shown(person.name), id=id) if person.name else id
 
 
-#: Columns of an export that say who somebody is.
+#: Columns of an export that identify a person.
 _KEYS = ("ID", "SID", "Email", "email", "Identifier")
 
 
 def _matched(attempts: Sequence[Attempt], index: _Index) -> list[Sequence[RosterMember | None]]:
-    """Who of the class each attempt is of.
+    """Return the members whom each attempt belongs to; None for an unknown person.
 
-    A name is one's own to choose in most systems: it counts only if no other has it, and for
-    whoever is not known by something better already.
+    Students choose their names in most systems: a name counts only if no other has it, and only for
+    members who are not matched by something better.
     """
     alias = _best_alias(attempts, index)
     sure: list[Sequence[RosterMember | None]] = []
@@ -143,12 +140,12 @@ def _matched(attempts: Sequence[Attempt], index: _Index) -> list[Sequence[Roster
         [None] if any(members) else [index.by_name(person) for person in attempt.people]
         for attempt, members in zip(attempts, sure, strict=True)
     ]
-    taken = {member.person.id for members in sure for member in members if member}
+    matched = {member.person.id for members in sure for member in members if member}
     claims: dict[str, set[str]] = defaultdict(set)
     for attempt, members in zip(attempts, names, strict=True):
         for member in filter(None, members):
             claims[member.person.id].add(attempt.whose)
-    free = {id for id, whose in claims.items() if len(whose) == 1} - taken
+    free = {id for id, whose in claims.items() if len(whose) == 1} - matched
     for number, members in enumerate(names):
         if any(members):
             sure[number] = [each if each and each.person.id in free else None for each in members]
@@ -156,14 +153,14 @@ def _matched(attempts: Sequence[Attempt], index: _Index) -> list[Sequence[Roster
 
 
 def _best_alias(attempts: Sequence[Attempt], index: _Index) -> int:
-    """Which of their aliases most are known by; the last if none is."""
+    """Return which alias the most attempts are known by; the last if there is none."""
     most = min((len(attempt.aliases) for attempt in attempts), default=0)
     known = [sum(bool(index.keyed([each.aliases[at]])) for each in attempts) for at in range(most)]
     return max(range(most), key=lambda at: (known[at], at), default=0)
 
 
 class _Index:
-    """Members by what they may be known by; what two of them have is no key."""
+    """Members by their keys, names and groups; what two members share is no key."""
 
     def __init__(self, members: Sequence[RosterMember]) -> None:
         self._keys: dict[str, list[RosterMember]] = defaultdict(list)
@@ -178,22 +175,22 @@ class _Index:
                 self._groups[letters(group)].append(member)
 
     def keyed(self, keys: Iterable[str]) -> RosterMember | None:
-        """Who has the first of these keys that somebody alone has."""
+        """Return the member with the first of these keys that only one member has."""
         return next(filter(None, (_only(self._keys.get(folded(key))) for key in keys)), None)
 
     def by_key(self, person: Person) -> RosterMember | None:
-        """Who somebody is, by his id or what else an export says of him but the name."""
+        """Return the member whom a person's id or other columns identify, except the name."""
         columns = (person.columns[title] for title in _KEYS if title in person.columns)
         member = self.keyed((person.id, *columns))
         return None if member and _contradicts(person, member) else member
 
     def by_name(self, person: Person) -> RosterMember | None:
-        """Who somebody is, by his name; a folder's name may be one, too."""
+        """Return the member with a person's name; the name of a folder may be one, too."""
         names = (letters(person.name), letters(person.id))
         return next(filter(None, (_only(self._names.get(name)) for name in names)), None)
 
     def candidates(self, person: Person) -> set[str]:
-        """The ids of all who have anything in common with somebody that could be a key."""
+        """Return the ids of all members who share a possible key with a person."""
         columns = (person.columns[title] for title in _KEYS if title in person.columns)
         keys = [] if "Identifier" in person.columns else [person.id, *columns]
         texts = {*map(folded, keys), letters(person.name), letters(person.id)} - {""}
@@ -201,7 +198,7 @@ class _Index:
         return {member.person.id for members in found for member in members}
 
     def group(self, attempt: Attempt) -> Sequence[RosterMember]:
-        """Who is in the group that an attempt is of, if it is one's."""
+        """Return the members of the group that handed in an attempt; empty if it is no group's."""
         if len(attempt.people) > 1:
             return ()
         (whose,) = attempt.people
@@ -209,7 +206,7 @@ class _Index:
 
 
 def _contradicts(found: Person, member: RosterMember) -> bool:
-    """Whether a number of Moodle's is another one: groups have such numbers, too."""
+    """Whether names show that a Moodle number is not this member's, but perhaps a group's."""
     if "Identifier" not in found.columns or not (found.name and member.person.name):
         return False
     return set(_words(found.name)).isdisjoint(_words(member.person.name))
@@ -220,11 +217,11 @@ def _words(name: str) -> list[str]:
 
 
 def _person(found: Person, member: RosterMember | None) -> Person:
-    """Somebody as roster and export tell it; where they differ, as the roster does."""
+    """Merge a person of the export with a member; where they differ, the roster counts."""
     if member is None:
         return found
-    own = member.person
-    return Person(own.id, own.name or found.name, {**found.columns, **own.columns})
+    known = member.person
+    return Person(known.id, known.name or found.name, {**found.columns, **known.columns})
 
 
 def _only(members: Sequence[RosterMember] | None) -> RosterMember | None:
@@ -232,7 +229,7 @@ def _only(members: Sequence[RosterMember] | None) -> RosterMember | None:
 
 
 def _orders(name: str) -> Iterator[str]:
-    """A name as it is, and with its first part last, or the other way round."""
+    """Yield a name, and its parts in the other possible orders."""
     yield letters(name)
     last, comma, first = name.partition(",")
     if comma:

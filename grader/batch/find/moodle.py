@@ -1,10 +1,10 @@
-"""Moodle's "Download all submissions", in folders or not.
+"""Read Moodle's "Download all submissions", in folders or not.
 
 Each student's files have the prefix `NAME_NUMBER_assignsubmission_file`, where the number is the
-participant's in this assignment, a group's in one for groups, and none stands for those who are in
-no group (`mod/assign/classes/downloader.php`; underscores in names become spaces there). Older
-releases end it with an underscore. The zip says nothing of when something was handed in: its dates
-are those of the download.
+participant's in this assignment, a group's in one for groups, and is missing for those in no group
+(`mod/assign/classes/downloader.php`; underscores in names become spaces there). Older releases end
+it with an underscore. The zip does not contain the times of submission: its dates are
+those of the download.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from grader.batch.find.attempt import Attempt, Export, Item, Piece, mostly, person, tell
+from grader.batch.find.attempt import Attempt, Export, Item, Piece, add_note, mostly, person
 from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk
 
@@ -25,13 +25,13 @@ _PREFIX: Final = re.compile(
 _ONLY_TEXT: Final = msg("Only a text was handed in online, and no file.")
 
 
-def looks_like(items: Sequence[Item]) -> bool:
-    """Whether a folder is one."""
+def matches(items: Sequence[Item]) -> bool:
+    """Whether a folder has this layout."""
     return mostly(items, lambda item: _PREFIX.fullmatch(item.name))
 
 
 def read(items: Sequence[Item]) -> Export:
-    """The hand-ins in one."""
+    """Read the attempts in a folder."""
     pieces: dict[tuple[str, str], list[Piece]] = {}
     others = []
     for item in items:
@@ -40,21 +40,21 @@ def read(items: Sequence[Item]) -> Export:
             others.append(item.name)
             continue
         filename = match["filename"] or ""
-        own = pieces.setdefault((match["name"], match["number"] or ""), [])
+        submitted = pieces.setdefault((match["name"], match["number"] or ""), [])
         if match["kind"] == "file" and not is_junk(filename or "a"):
-            own.append(Piece(item.path, "" if item.is_folder else filename))
-    of_groups = any(not number for _, number in pieces)  # nobody else has none
+            submitted.append(Piece(item.path, "" if item.is_folder else filename))
+    of_groups = any(not number for _, number in pieces)  # only then are numbers missing
     attempts = [
         _attempt(name, number, found, "" if of_groups else f"Participant {number}")
         for (name, number), found in pieces.items()
     ]
     notes = list[Message]()
-    tell(notes, msg("Left out, since Moodle does not name them so: {names}."), others)
+    add_note(notes, msg("Left out, since Moodle does not name them so: {names}."), others)
     return Export(LAYOUT, attempts, notes)
 
 
 def _attempt(name: str, number: str, pieces: list[Piece], identifier: str) -> Attempt:
-    """One student's, or one group's; a grading worksheet calls a student by the identifier."""
+    """Make the attempt of a student or a group; grading worksheets have the identifier."""
     known = "" if name == "Participant" else name
     return Attempt(
         f"{name}_{number}",

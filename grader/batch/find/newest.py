@@ -1,7 +1,7 @@
-"""Which attempt of each counts, what it is called, and the one file or folder of it that is graded.
+"""Choose the newest attempt of each student, its id, and the one file or folder that is graded.
 
-What an export renamed has its own name again. Ids are such that every file system takes them as
-names of folders, and holds them apart.
+What an export renamed gets its original name again. Ids are distinct and valid names of folders on
+every file system.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Final
 
 from grader.batch import store
 from grader.batch.entry import HandIn, Person
-from grader.batch.find.attempt import Attempt, Piece, moment, short, tell
+from grader.batch.find.attempt import Attempt, Piece, add_note, moment, short
 from grader.batch.find.joining import is_of_roster
 from grader.message import NOTHING, Message, msg
 from grader.submission.folder import is_junk, shown
@@ -32,34 +32,34 @@ _NO_FILE: Final = msg(
     "What was handed in is neither a file nor a folder, but a pipe, a socket or a device. "
     "It was not opened."
 )
-MAX_ID: Final = 80  # characters; what lies in the folder has room for its own names
+MAX_ID: Final = 80  # characters; leaves room for the paths below the folder
 _OTHERS: Final = re.compile(r"[^A-Za-z0-9._@+-]+")
-#: Names that Windows keeps for devices, also with an ending.
+#: Names that Windows reserves for devices, also with a suffix.
 _DEVICES: Final = re.compile(r"(?:con|prn|aux|nul|com\d|lpt\d)(?:\..*)?", re.IGNORECASE)
-#: What stays of these when their accents are taken away is not what people write for them.
+#: Letters that people spell otherwise than by leaving out the accent.
 _SPELLED: Final = str.maketrans({"ß": "ss", "æ": "ae", "ø": "o", "ł": "l", "đ": "d", "œ": "oe"})
 
 
 def hand_ins(attempts: Iterable[Attempt], place: Path) -> tuple[list[HandIn], list[Message]]:
-    """The newest attempt of each, and which others there are."""
+    """Return the newest attempt of each as hand-ins sorted by id, and notes on the others."""
     by_whom: dict[str, list[Attempt]] = defaultdict(list)
     for attempt in attempts:
         by_whom[attempt.whose].append(attempt)
-    newest = [_newest(own) for own in by_whom.values()]
-    several = [own[0].people[0] for own in by_whom.values() if len(own) > 1]
+    newest = [_newest(each) for each in by_whom.values()]
+    several = [each[0].people[0] for each in by_whom.values() if len(each) > 1]
     newest, moved = _one_each(newest)
     ids = safe_ids([_id(attempt) for attempt in newest])
     made = [_hand_in(attempt, id, place / id) for attempt, id in zip(newest, ids, strict=True)]
     notes: list[Message] = []
     again = msg("Handed in again, alone or in another group; for them the newest counts: {names}.")
-    tell(notes, again, (person.name or person.id for person in moved))
+    add_note(notes, again, (person.name or person.id for person in moved))
     more = msg("Several attempts, of which the newest counts: {names}.")
-    tell(notes, more, (person.name or person.id for person in several))
+    add_note(notes, more, (person.name or person.id for person in several))
     return sorted(made, key=lambda hand_in: hand_in.id), notes
 
 
 def _newest(attempts: list[Attempt]) -> Attempt:
-    """By time if all have one, else by number, else as they were found; it is given its number."""
+    """Return the newest: by time if all have one, else by number, else the last; number it."""
     timed = all(attempt.at for attempt in attempts)
     ordered = sorted(attempts, key=lambda each: (moment(each.at) if timed else 0.0, each.number))
     chosen = ordered[-1]
@@ -67,17 +67,17 @@ def _newest(attempts: list[Attempt]) -> Attempt:
 
 
 def _one_each(attempts: Sequence[Attempt]) -> tuple[list[Attempt], list[Person]]:
-    """Each member of a group in his newest attempt alone, and who has more than one.
+    """Keep each member of a group in the newest attempt alone; also return who had more than one.
 
-    Whoever the roster knows and whoever it does not are never the same, whatever their ids.
+    A member of the roster and an unknown person are never the same, whatever their ids.
     """
-    own: dict[tuple[bool, str], list[int]] = defaultdict(list)
+    by_person: dict[tuple[bool, str], list[int]] = defaultdict(list)
     for number, attempt in enumerate(attempts):
         for person in attempt.people:
-            own[is_of_roster(attempt), person.id].append(number)
+            by_person[is_of_roster(attempt), person.id].append(number)
     stays = list(map(list[Person], (attempt.people for attempt in attempts)))
     moved = []
-    for (_, id), numbers in own.items():
+    for (_, id), numbers in by_person.items():
         if len(numbers) == 1 or all(len(attempts[number].people) == 1 for number in numbers):
             continue
         last = max(numbers, key=lambda number: moment(attempts[number].at))
@@ -101,7 +101,7 @@ def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
     for each in attempt.pieces:
         problem = problem or _no_submission(each.path)
     if not problem:
-        piece = staged(attempt, place)
+        piece = assembled(attempt, place)
         problem = _EMPTY if piece is None else NOTHING
     return HandIn(
         id,
@@ -115,10 +115,10 @@ def _hand_in(attempt: Attempt, id: str, place: Path) -> HandIn:
 
 
 def _no_submission(path: Path) -> Message:
-    """Why nothing at a path may be opened; '' if it is a file or a folder.
+    """Return why a path may not be opened; '' if it is a file or a folder.
 
-    What lies behind a link to a folder is not the student's. Whoever grades a link to a file
-    refuses it, unless it leads to a file of the same submission.
+    The target of a link to a folder is not the student's. A link to a file is refused later, when
+    it is graded, unless it leads to a file of the same submission.
     """
     try:
         mode = path.stat().st_mode
@@ -129,11 +129,11 @@ def _no_submission(path: Path) -> Message:
     return NOTHING if stat.S_ISREG(mode) else _NO_FILE
 
 
-def staged(attempt: Attempt, place: Path) -> Piece | None:
-    """The one file or folder that an attempt is; None where it is empty.
+def assembled(attempt: Attempt, place: Path) -> Piece | None:
+    """Return an attempt as one file or folder; None where it is empty.
 
     Args:
-        place: a folder to be made, if it takes one; its files are links or copies.
+        place: a folder to be made, if one is needed; its files are links or copies.
 
     Raises:
         OSError: something cannot be read or copied.
@@ -154,7 +154,7 @@ def staged(attempt: Attempt, place: Path) -> Piece | None:
 
 
 def _lay(piece: Piece, place: Path) -> Path | None:
-    """Put a file or a folder in its place; links are not followed."""
+    """Link or copy a file or a folder into a place; links are not followed."""
     target = _free(place, piece.name or piece.path.name)
     mode = piece.path.lstat().st_mode
     if stat.S_ISDIR(mode):
@@ -162,7 +162,7 @@ def _lay(piece: Piece, place: Path) -> Path | None:
     elif stat.S_ISREG(mode):
         try:
             os.link(piece.path, target)
-        except OSError:  # another file system, or not ours to link
+        except OSError:  # another file system, or no permission to link
             shutil.copyfile(piece.path, target)
     else:
         return None
@@ -170,7 +170,7 @@ def _lay(piece: Piece, place: Path) -> Path | None:
 
 
 def _free(place: Path, name: str) -> Path:
-    """A path in a folder for a name that a stranger has given."""
+    """Return a free path in a folder for an untrusted name."""
     if name in (".", "..") or "/" in name or os.sep in name or "\0" in name:
         name = "submission"
     name = short(name)
@@ -182,7 +182,7 @@ def _free(place: Path, name: str) -> Path:
 
 
 def _only_file(folder: Path) -> Path | None:
-    """The file that a folder holds, if it holds nothing else."""
+    """Return the file in a folder, if the folder holds nothing else."""
     try:
         entries = [path for path in folder.iterdir() if not is_junk(path.name)]
     except OSError:
@@ -192,39 +192,39 @@ def _only_file(folder: Path) -> Path | None:
 
 
 def _is_empty(path: Path) -> bool:
-    """Whether there is no file in a folder, but what a system has left there."""
+    """Whether a folder holds no files but junk."""
     if not path.is_dir() or not os.access(path, os.R_OK):
-        return False  # whoever grades it will tell why it cannot be read
+        return False  # grading will report why it cannot be read
     below = store.below(path, lambda each: is_junk(each.name))
     return all(each.is_dir() and not each.is_symlink() for _, each in below)
 
 
 def safe_ids(wanted: Sequence[str]) -> list[str]:
-    """An id for each of these different texts, in their order.
+    """Return an id for each of these different texts, in their order.
 
-    It is the text itself where that is possible. What had to be changed and then is like another
-    gets some signs of its hash, so that it does not depend on how many others there are.
+    It is the text itself where that is valid. An id that had to be changed and then equals another
+    gets a part of its text's hash, so that it does not depend on how many others there are.
     """
     made = [safe_id(text) for text in wanted]
     times = Counter(id.casefold() for id in made)
-    keeps: dict[str, int] = {}  # of those that are alike, whose id is as wanted
+    keeps: dict[str, int] = {}  # of equal ids, the one that was not changed
     for number, (text, id) in enumerate(zip(wanted, made, strict=True)):
         if text == id:
             keeps.setdefault(id.casefold(), number)
-    taken: set[str] = set()
+    used: set[str] = set()
     for number, (text, id) in enumerate(zip(wanted, made, strict=True)):
         fold = id.casefold()
         if times[fold] > 1 and keeps.get(fold) != number:
             made[number] = _marked(id, text)
-        while made[number].casefold() in taken:
+        while made[number].casefold() in used:
             made[number] = _marked(id, f"{text}\0{number}")
             text += "\0"
-        taken.add(made[number].casefold())
+        used.add(made[number].casefold())
     return made
 
 
 def safe_id(text: str) -> str:
-    """An id made of letters, digits and `._@+-` alone, and not one that a system keeps."""
+    """Return an id of letters, digits and `._@+-` alone, and none that a system reserves."""
     plain = unicodedata.normalize("NFKD", text.translate(_SPELLED))
     letters = "".join(sign for sign in plain if not unicodedata.combining(sign))
     id = _OTHERS.sub("-", letters).lstrip(".-").rstrip(".-")

@@ -1,11 +1,11 @@
-"""A folder whose names say whose a hand-in is: `alice.py`, `bob/`; or names as a pattern says.
+"""Read a plain folder, with the ids in its names: `alice.py`, `bob/`; or names by a pattern.
 
-A pattern is what a caller says of how names are made: `{id}_{name}_{attempt}`, `{id}/{at}`. A field
-in braces takes at least one character, and as few as it can; the last takes the rest. All else
-stands for itself. A slash is one between folders. `{id}`, `{name}` and `{email}` say whose it is,
-one of them at least; `{attempt}` is a number, `{at}` a time (`attempt.read_time`), `{filename}`
-what it was called when it was handed in, and `{}` whatever. Any other name makes a column of its
-own. The ending of a file need not be said: `{id}` fits alice.py and alice.tar.gz, and means alice.
+A pattern describes the names: `{id}_{name}_{attempt}`, `{id}/{at}`. A field in braces matches at
+least one character, and as few as possible; the last matches the rest. Everything else is literal.
+A slash separates folders. `{id}`, `{name}` and `{email}` identify the student, one of them at
+least; `{attempt}` is a number, `{at}` a time (`attempt.read_time`), `{filename}` the original name,
+and `{}` anything. Any other name becomes a column. The suffix of a file may be left out: `{id}`
+matches alice.py and alice.tar.gz, both as alice.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from grader.batch.find.attempt import (
     Export,
     Item,
     Piece,
+    add_note,
     items_of,
     person,
     read_time,
-    tell,
 )
 from grader.errors import UsageError
 from grader.message import Message, msg
@@ -32,7 +32,7 @@ from grader.submission.folder import is_junk, listed, shown
 from grader.submission.unpacking import is_archive
 
 LAYOUT: Final = msg("a plain folder, with one file or folder a student")
-#: What lies beside hand-ins and is none.
+#: Suffixes of files beside hand-ins that are none.
 _OTHERS: Final = (".csv", ".json", ".md", ".ods", ".txt", ".xls", ".xlsx", ".yaml", ".yml", ".html")
 #: With any of these at its top a folder is a package.
 _PACKAGE: Final = ("setup.py", "setup.cfg", "pyproject.toml", "package.xml", "CMakeLists.txt")
@@ -47,7 +47,7 @@ _ADVICE: Final = msg("Write it like {{id}}_{{name}}_{{attempt}}: see docs/batch.
 
 
 def one_submission(items: Sequence[Item]) -> str:
-    """What says that a folder is itself one submission; '' if nothing does."""
+    """Return the name that shows that a folder is itself one submission; '' if none does."""
     names = {item.name for item in items}
     if found := [name for name in _PACKAGE if name in names]:
         return found[0]
@@ -56,13 +56,13 @@ def one_submission(items: Sequence[Item]) -> str:
 
 
 def read(items: Sequence[Item]) -> Export:
-    """The hand-ins in one."""
-    own = [item for item in items if _may_be_one(item)]
+    """Read the attempts in a folder."""
+    possible = [item for item in items if _may_be_one(item)]
     others = [item.name for item in items if not _may_be_one(item)]
-    # of alice.py and alice.zip the first of this order is taken, and the other told
-    own.sort(key=lambda item: (not item.is_folder, not is_archive(item.path)))
+    # of alice.py and alice.zip the first in this order is graded, and the other reported
+    possible.sort(key=lambda item: (not item.is_folder, not is_archive(item.path)))
     notes, whose = [], dict[str, Item]()
-    for item in own:
+    for item in possible:
         name = stem(item)
         if name in whose:
             notes.append(
@@ -78,12 +78,12 @@ def read(items: Sequence[Item]) -> Export:
         Attempt(name, (person(name),), (Piece(item.path, "" if item.is_folder else item.name),))
         for name, item in sorted(whose.items())
     ]
-    tell(notes, msg("Left out, since they are no submissions: {names}."), others)
+    add_note(notes, msg("Left out, since they are no submissions: {names}."), others)
     return Export(LAYOUT, attempts, notes)
 
 
 def stem(item: Item) -> str:
-    """A name without the ending that says what kind of file it is."""
+    """Return a name without its suffix."""
     if item.is_folder:
         return item.name
     name = re.sub(r"\.tar\.gz$", ".tgz", item.name, flags=re.IGNORECASE)
@@ -95,14 +95,14 @@ def _may_be_one(item: Item) -> bool:
 
 
 class _Field(str):
-    """A field's name, among the parts of a pattern; the others stand for themselves."""
+    """The name of a field, among the literal parts of a pattern."""
 
 
 class Pattern:
-    """A pattern, understood.
+    """A parsed pattern.
 
     Raises:
-        UsageError: it makes no sense; the text says why.
+        UsageError: the pattern is not valid.
     """
 
     def __init__(self, text: str) -> None:
@@ -128,20 +128,20 @@ class Pattern:
         return {str(part) for part in self._parts if isinstance(part, _Field)}
 
     def fields_of(self, path: Sequence[Item]) -> dict[str, str] | None:
-        """What a name says, with the folders above it; None if it does not fit."""
+        """Return the fields of a name with the folders above it; None if it does not match."""
         folders = [item.name for item in path[:-1]]
         names = [path[-1].name] if "filename" in self._fields else [stem(path[-1]), path[-1].name]
         for name in names:
-            said = self._fitted("/".join((*folders, name)))
-            if said is not None:
-                return {field: text for field, text in said if field}
+            found = self._match("/".join((*folders, name)))
+            if found is not None:
+                return {field: text for field, text in found if field}
         return None
 
-    def _fitted(self, text: str) -> list[tuple[str, str]] | None:
-        """The fields in a text.
+    def _match(self, text: str) -> list[tuple[str, str]] | None:
+        """Return the fields in a text; None if it does not match.
 
-        A regular expression would do, but for names that are made to keep it busy: here each part
-        is tried at each place once.
+        A regular expression could be kept busy by names made for that: here each part is tried at
+        each place once.
         """
 
         @cache
@@ -156,25 +156,25 @@ class Pattern:
                 last = text[end - 1]
                 if last == "/" or (part == "attempt" and last not in "0123456789"):
                     break
-                if (said := rest(number + 1, end)) is not None:
-                    return [(str(part), text[at:end]), *said]
+                if (found := rest(number + 1, end)) is not None:
+                    return [(str(part), text[at:end]), *found]
             return None
 
         return rest(0, 0)
 
     def read(self, items: Sequence[Item]) -> Export:
-        """The hand-ins in a folder.
+        """Read the attempts in a folder.
 
         Raises:
-            UsageError: nothing fits.
+            UsageError: no name matches.
         """
         attempts, others, notes = list[Attempt](), list[str](), list[Message]()
         for path in self._paths(items, ()):
-            said = self.fields_of(path)
-            if said is None or is_junk(said.get("filename") or "a"):
+            fields = self.fields_of(path)
+            if fields is None or is_junk(fields.get("filename") or "a"):
                 others.append("/".join(item.name for item in path))
             else:
-                attempts.append(_attempt(path[-1], said, notes))
+                attempts.append(_attempt(path[-1], fields, notes))
         if not attempts:
             raise UsageError(
                 "--pattern {pattern} fits none of what was found: {found}. {advice}",
@@ -184,7 +184,7 @@ class Pattern:
             )
         if "filename" in self._fields:
             attempts = _together(attempts)
-        tell(notes, msg("Left out, since the pattern does not fit: {names}."), others)
+        add_note(notes, msg("Left out, since the pattern does not fit: {names}."), others)
         layout = msg("the pattern {pattern} says", pattern=shown(self.text))
         return Export(layout, attempts, notes)
 
@@ -226,7 +226,7 @@ def _braced(name: str) -> str:
 
 
 def _together(attempts: Sequence[Attempt]) -> list[Attempt]:
-    """The same, with all files that were handed in at once as one attempt."""
+    """Merge the files of one attempt."""
     found: dict[object, Attempt] = {}
     for each in attempts:
         same = (each.whose, each.number, each.at)
@@ -235,12 +235,12 @@ def _together(attempts: Sequence[Attempt]) -> list[Attempt]:
     return list(found.values())
 
 
-def _attempt(item: Item, said: dict[str, str], notes: list[Message]) -> Attempt:
-    id, name, email = (said.pop(field, "").strip() for field in _WHOSE)
-    filename = said.pop("filename", "")
-    number = int(said.pop("attempt", "0")[-_MAX_DIGITS:])
+def _attempt(item: Item, fields: dict[str, str], notes: list[Message]) -> Attempt:
+    id, name, email = (fields.pop(field, "").strip() for field in _WHOSE)
+    filename = fields.pop("filename", "")
+    number = int(fields.pop("attempt", "0")[-_MAX_DIGITS:])
     at = None
-    if text := said.pop("at", ""):
+    if text := fields.pop("at", ""):
         at = read_time(text)
         if at is None:
             notes.append(
@@ -250,7 +250,7 @@ def _attempt(item: Item, said: dict[str, str], notes: list[Message]) -> Attempt:
                     text=shown(text),
                 )
             )
-    columns = {title: text.strip() for title, text in said.items()}
+    columns = {title: text.strip() for title, text in fields.items()}
     if email:
         columns["email"] = email
     whose = person(id or email or name, name, columns)

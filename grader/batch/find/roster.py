@@ -1,7 +1,7 @@
-"""Who is in a class: `roster.csv`, or what a course system exports of its participants, as CSV.
+"""Read the members of a class from a CSV table: `roster.csv`, or a course system's export.
 
-Columns are known by their titles, whatever their order, case, spaces and hyphens: those of Moodle's
-grading worksheet and list of participants (English, German, French), Canvas's gradebook,
+Columns are recognised by their titles, whatever their order, case, spaces and hyphens: those of
+Moodle's grading worksheet and list of participants (English, German, French), Canvas's gradebook,
 Gradescope's roster, GitHub Classroom's `classroom_roster.csv`, Classroom 50's roster and its
 `scores.csv`. All columns are kept: an import may ask for them.
 """
@@ -25,8 +25,8 @@ from grader.errors import UsageError
 from grader.message import Message, msg
 from grader.submission.folder import listed, shown
 
-#: Columns that say who it is, the best first. A person's id is of the first of them in which every
-#: row has another value.
+#: Columns that identify a person, the best first. The id is that of the first one in which all rows
+#: differ.
 _IDS: Final = (
     *("id", "studentid", "studentnumber", "sid", "idnumber", "matriculationnumber"),
     *("matrikelnummer", "idnummer", "numérodidentification", "sisuserid", "sisloginid"),
@@ -52,7 +52,7 @@ _TIMES: Final = (
 _PARTICIPANT: Final = re.compile(r"[^\d@]{5,} (\d+)")
 #: `submit/2026-06-01T14-32-05Z`, as Classroom 50 calls a hand-in.
 _TAG: Final = re.compile(r"submit/(.+)")
-#: Rows of Canvas's gradebook that are nobody.
+#: Rows of Canvas's gradebook that are no person.
 _NOBODY: Final = ("points possible", "student, test", "test student")
 MAX_BYTES: Final = 50_000_000
 _DELIMITERS: Final = ",;\t|"
@@ -64,9 +64,9 @@ class RosterMember:
     """One row.
 
     Attributes:
-        keys: all that may stand for this person in an export; compared by `folded`.
-        groups: he is in.
-        at: when this person handed in, if the roster says so.
+        keys: everything that may identify this person in an export; compared by `folded`.
+        groups: those of this person.
+        at: when this person handed in, if the roster contains it.
     """
 
     person: Person
@@ -77,11 +77,11 @@ class RosterMember:
 
 @dataclass(frozen=True)
 class Roster:
-    """All who are in a class.
+    """The members of a class.
 
     Attributes:
         name: of its file.
-        notes: what is odd about it.
+        notes: sentences about rows that could not be used as they are.
     """
 
     name: str
@@ -90,12 +90,12 @@ class Roster:
 
 
 def folded(text: str) -> str:
-    """A text for comparison: without case, and without white space around it."""
+    """Return a text for comparison: without case, and without white space around it."""
     return text.strip().casefold()
 
 
 def is_of_classroom50(path: Path) -> bool:
-    """Whether a table is Classroom 50's `scores.csv`, and nobody else's of this name."""
+    """Whether a table is Classroom 50's `scores.csv`, and not another file of this name."""
     try:
         titles, _ = read_table(path)
     except UsageError:
@@ -107,7 +107,7 @@ def read_roster(path: Path) -> Roster:
     """Read a roster.
 
     Raises:
-        UsageError: it cannot be read, or no column of it says who somebody is.
+        UsageError: it cannot be read, or no column identifies a person.
     """
     titles, lines = read_table(path)
     there = set(map(letters, titles))
@@ -131,8 +131,8 @@ def read_roster(path: Path) -> Roster:
                 name=shown(path.name),
             )
         )
-    # first of all the column that tells everybody apart, else whatever a row has
-    ids.sort(key=lambda title: not _tells_apart(row.cells[title] for row in keyed))
+    # first the columns whose values all differ, then the others
+    ids.sort(key=lambda title: not _all_differ(row.cells[title] for row in keyed))
     members: dict[str, RosterMember] = {}
     twice: list[str] = []
     for row in keyed:
@@ -140,7 +140,7 @@ def read_roster(path: Path) -> Roster:
         same = folded(member.person.id)
         if same not in members:
             members[same] = member
-        elif _TAGS in there:  # one row each time that somebody handed in
+        elif _TAGS in there:  # one row for each attempt
             members[same] = max(members[same], member, key=lambda each: moment(each.at))
         else:
             twice.append(member.person.id)
@@ -162,7 +162,7 @@ class _Line:
 
     Attributes:
         columns: its cells by the titles of their columns.
-        cells: the same by titles in small letters and without spaces, where two have one the first.
+        cells: its cells by the titles as `letters`; of equal titles the first counts.
     """
 
     def __init__(self, titles: Sequence[str], line: Sequence[str]) -> None:
@@ -171,12 +171,12 @@ class _Line:
         self.cells = {letters(title): cell for title, cell in reversed(pairs)}
 
     def filled(self, titles: Iterable[str]) -> list[str]:
-        """What stands in those of these columns that are not empty."""
+        """Return the cells of these columns that are not empty."""
         return [cell for title in titles if (cell := self.cells.get(title))]
 
     @property
     def name(self) -> str:
-        """Whose it is; '' where it does not say so."""
+        """The name of the person; '' where there is none."""
         whole = self._first(_NAMES)
         return whole or " ".join(filter(None, (self._first(_FIRST), self._first(_LAST))))
 
@@ -185,12 +185,12 @@ class _Line:
 
     @property
     def time(self) -> str:
-        """When it was handed in, as it says; '' for nothing, which Moodle writes as a dash."""
+        """The text of the time of submission; '' for none, which Moodle writes as a dash."""
         return next((cell for cell in self.filled(_TIMES) if cell != "-"), "")
 
     @property
     def at(self) -> datetime | None:
-        """The same as a time, if it can be read."""
+        """The time of submission, if `time` can be parsed."""
         tag = _TAG.fullmatch(self.time)
         return read_time(tag[1] if tag else self.time)
 
@@ -217,23 +217,22 @@ def _unread(path: Path, times: Iterable[tuple[str, str]]) -> Message:
     )
 
 
-def _tells_apart(values: Iterable[str]) -> bool:
+def _all_differ(values: Iterable[str]) -> bool:
     found = [folded(value) for value in values]
     return all(found) and len(set(found)) == len(found)
 
 
 def letters(text: str) -> str:
-    """Letters and digits alone, without case: as Canvas writes names, and titles are compared."""
+    """Return letters and digits alone, without case: Canvas's form of names, and that of titles."""
     return re.sub(r"[\W_]+", "", text.casefold())
 
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
-    """The titles of the columns, and the rows; each as long as the titles are many.
+    """Read the titles of the columns, and the rows, each with as many cells as there are titles.
 
-    UTF-8, with or without a mark at its start; UTF-16 with one, as Excel's "Unicode text" has it;
-    else Windows' letters of Western Europe. What separates the cells is that of comma, semicolon,
-    tab and bar which stands most often in the first line, outside of quotes; `sep=;`, as Excel
-    understands it, goes before.
+    The encoding is UTF-8, with or without a byte order mark; UTF-16 with one, as in Excel's
+    "Unicode text"; else Windows-1252. The delimiter is the most frequent of comma, semicolon, tab
+    and bar in the first line, outside of quotes, unless the file begins with Excel's `sep=;`.
 
     Raises:
         UsageError: there is no such file, or it is no table.

@@ -1,1 +1,1 @@
-"""Into the gradebook: tables, what Moodle and Canvas import, feedback for each student."""
+"""The gradebook: tables, imports for Moodle and Canvas, feedback for each student."""

@@ -1,4 +1,4 @@
-"""What Canvas imports: its gradebook as CSV, and a zip of feedback for "Upload Submissions".
+"""Make the imports for Canvas: its gradebook as CSV, and a zip for "Upload Submissions".
 
 The rules are those of Canvas's own code: lib/gradebook_importer.rb, and in
 app/models/abstract_assignment.rb `infer_comment_context_from_filename`.
@@ -23,10 +23,10 @@ FEEDBACK = "feedback.html"
 
 
 def gradebook(grades: Sequence[Grade], assignment: str) -> str:
-    """The table; '' where it would be empty.
+    """Return the table; '' where it would be empty.
 
-    Canvas finds people by ID, then by the SIS ids. Who has none of them, or no grade, is left out:
-    a name may be that of two, and an empty cell takes away the grade that is there.
+    Canvas finds people by ID, then by the SIS ids. People without any of them, or without a grade,
+    are left out: two may have one name, and an empty cell deletes the grade that is there.
 
     Args:
         assignment: the heading of the column; see `assignment_of`.
@@ -40,12 +40,12 @@ def gradebook(grades: Sequence[Grade], assignment: str) -> str:
 
 
 def is_known(grade: Grade) -> bool:
-    """Whether Canvas can find a person by anything but the name."""
+    """Whether Canvas can find a person by an id."""
     return any(_ids(grade))
 
 
 def assignment_of(grades: Sequence[Grade], wanted: str) -> str:
-    """What Canvas calls an assignment, with its number, where its exported gradebook is the roster.
+    """Return Canvas's name of an assignment, with its number, if the roster is its gradebook.
 
     Args:
         wanted: its title, its number, both as in "Spiral (4711)", or the title of the exercise.
@@ -62,20 +62,20 @@ def assignment_of(grades: Sequence[Grade], wanted: str) -> str:
 
 
 def has_number(assignment: str) -> bool:
-    """Whether Canvas knows from its heading which assignment is meant."""
+    """Whether a heading contains the number by which Canvas finds the assignment."""
     return _ASSIGNMENT.fullmatch(assignment) is not None
 
 
 def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
-    """The names in the zip of feedback: those of the downloaded files, one for a whole group."""
+    """Return the names in the zip: those of the downloaded files, one for a whole group."""
     named = ((known.canvas_file(grade.entry.hand_in), grade) for grade in grades)
     return {name: grade for name, grade in named if name and has_feedback(grade.entry)}
 
 
 def feedback_file(name: str, grade: Grade, feedback: Feedback) -> bytes:
-    """What is in such a file. Canvas shows it by the name of what was handed in, so it is one.
+    """Return the content of a feedback file, in the format of the submission's name.
 
-    A zip has the page in it, a page is one, all else is text.
+    Canvas shows it under that name: a zip contains the page, HTML is the page, all else is text.
     """
     suffix = PurePath(name).suffix.lower()
     if suffix == ".zip":
@@ -90,7 +90,7 @@ def _row(grade: Grade) -> list[str]:
     if not any(ids):
         return []
     name = cell(known.column(grade.person, ("Student",)) or grade.person.name)
-    if _POINTS_POSSIBLE in name:  # that row Canvas knows by these words
+    if _POINTS_POSSIBLE in name:  # Canvas would treat the row as that of the possible points
         name = cell(grade.person.id)
     section = cell(known.column(grade.person, ("Section",)))
     return [name, *ids, section, decimal(grade.final)]

@@ -1,8 +1,8 @@
-"""What one student reads of his result: as a page, as Markdown, in a sentence.
+"""Make the feedback for one student: as a page, as Markdown, in a sentence.
 
-It is made from result.json, the picture and what the node printed. The recording is left out: it
-has what an exercise may hide, and with it a page is five times as long. So are the times and places
-of the run: the same result gives the same bytes.
+It is made from result.json, the picture and the node's output. The recording is left out: it
+contains what an exercise may hide, and makes a page five times as long. Times and paths of the run
+are left out too, so that equal results give equal bytes.
 """
 
 from __future__ import annotations
@@ -24,46 +24,46 @@ from grader.result.result import RunSummary
 from grader.result.visible import View
 from grader.translations import LANGUAGES, tr, translate
 
-#: How ROS's log writes the time of a line; and an address in memory, as Python writes it.
+#: The time of a line in ROS's log; and an address in memory, in Python's format.
 _LOGGED_AT, _ADDRESS = re.compile(r"\[\d{9,11}\.\d{9}\]"), re.compile(r"\b0x[0-9a-f]{8,16}\b")
-#: What a comment begins with, so that it is known as ours when it comes back.
+#: The begin of each comment: it shows that the grader wrote a comment that comes back.
 MARK = msg("Graded automatically:")
 
 
 @dataclass(frozen=True)
 class Feedback:
-    """Makes them all.
+    """Makes the feedback in all formats.
 
     Attributes:
-        view: who reads it: a student before, or after the exercise is over.
+        view: who reads it: a student before, or after the exercise is due.
     """
 
     view: View = "student"
 
     def page(self, entry: Entry) -> bytes:
-        """A self-contained HTML page."""
+        """Return a self-contained HTML page."""
         return render("html", [self._report(entry)]).encode("utf-8")
 
     def markdown(self, entry: Entry) -> bytes:
-        """The same as text, without the picture."""
+        """Return the report as text, without the picture."""
         return render("markdown", [self._report(entry)]).encode("utf-8")
 
     def sentence(self, grade: Grade) -> str:
-        """Points, and what to mend first; plain text in one line."""
+        """Return the points, and what to fix first, as plain text in one line."""
         entry, late = grade.entry, grade.late_deduction
         if grade.final is None:
             return ""
-        said = {"mark": translate(MARK), "points": out_of(grade.final, entry.max_score)}
-        said["first"] = self._first(entry)
+        values = {"mark": translate(MARK), "points": out_of(grade.final, entry.max_score)}
+        values["first"] = self._first(entry)
         if late:
             sentence = tr(
                 "{mark} {points} points ({score} less {late} for being late). {first}",
                 score=points(grade.score or 0),
                 late=points(late),
-                **said,
+                **values,
             )
         else:
-            sentence = tr("{mark} {points} points. {first}", **said)
+            sentence = tr("{mark} {points} points. {first}", **values)
         return text.clip(text.one_line(text.plain(sentence)), LONGEST)
 
     def _first(self, entry: Entry) -> str:
@@ -87,29 +87,29 @@ class Feedback:
 
 
 class _WithoutRecordings(Beside):
-    """Picture and output alone; what ran beside the submission is still told by the recording."""
+    """Picture and output alone, without recordings."""
 
     @property
     def recordings(self) -> Mapping[int, Recording | Message]:
-        """None."""
+        """No recordings."""
         return {}
 
     @property
     def output(self) -> str:
-        """Without what is another one each time: when a line was logged, where an object lay."""
+        """The output without what differs in each run: times of log lines, addresses of objects."""
         return _ADDRESS.sub("0x...", _LOGGED_AT.sub("[...]", super().output))
 
 
 def is_ours(comment: str) -> bool:
-    """Whether a comment is one of these, in any language."""
+    """Whether the grader wrote a comment, in any language."""
     return any(translate(MARK, language) in comment for language in LANGUAGES)
 
 
 def has_feedback(entry: Entry) -> bool:
-    """Whether there is anything to tell: something was handed in, and the grader has not failed."""
+    """Whether there is feedback: something was handed in, and the grader has not failed."""
     return entry.state in ("judged", "unusable")
 
 
 def _without_circumstances(run: RunSummary) -> RunSummary:
-    """A run without what another one of the same submission would not have."""
+    """Return a run without what differs between equal runs."""
     return replace(run, wall_s=0.0, isolation="")

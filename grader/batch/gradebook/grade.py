@@ -1,4 +1,4 @@
-"""What a gradebook says of one person: a member of a group has a grade of his own."""
+"""The grade of one person: each member of a group has one."""
 
 from __future__ import annotations
 
@@ -18,15 +18,13 @@ LONGEST = 300
 
 @dataclass(frozen=True)
 class Grade:
-    """One person's.
+    """The grade of one person.
 
     Attributes:
-        person: whose.
-        entry: what he, or his group, has handed in.
-        final: what a course system gets [points]; None where it must not get anything: the grader
-            failed, nothing was handed in and that is not to count as 0, or somebody's hand-in may
-            be his.
-        is_double: another hand-in of the same person counts, or it is not known which does.
+        entry: the graded hand-in of the person, or of the group.
+        final: the points for a course system; None where it must not get any: the grader failed, or
+            an unmatched hand-in may belong to this person.
+        is_double: another hand-in of the same person counts, or it is unknown which one does.
     """
 
     person: Person
@@ -36,43 +34,38 @@ class Grade:
 
     @property
     def score(self) -> float | None:
-        """Before anything is deducted for being late [points]."""
+        """The points before the deduction for being late."""
         result = self.entry.result
         return self.final if result is None or self.final is None else result.score
 
     @property
     def late_deduction(self) -> float:
-        """What being late has cost [points]."""
+        """The deduction for being late [points]."""
         if self.score is None or self.final is None:
             return 0.0
         return round(self.score - self.final, 2)
 
     @property
     def group(self) -> tuple[str, ...]:
-        """The ids of all who share it; nobody where one has worked alone."""
+        """The ids of the members of the group; empty for somebody who worked alone."""
         people = self.entry.hand_in.people
         return tuple(person.id for person in people) if len(people) > 1 else ()
 
 
-def grades(entries: Iterable[Entry], nothing_is_zero: bool = True) -> list[Grade]:
-    """Everybody's, by hand-in.
-
-    Args:
-        nothing_is_zero: whether who has handed in nothing has 0 points, or no grade at all.
-    """
+def grades(entries: Iterable[Entry]) -> list[Grade]:
+    """Return the grades of all people, in the order of the entries."""
     found = []
     for entry in entries:
-        has_none = entry.state == "nothing" and not nothing_is_zero
-        final = None if has_none or entry.hand_in.problem == UNCLEAR else entry.score
+        final = None if entry.hand_in.problem == UNCLEAR else entry.score
         found += [Grade(person, entry, final) for person in entry.hand_in.people]
     return _one_each(found)
 
 
 def _one_each(grades: list[Grade]) -> list[Grade]:
-    """The same, where of one whom a course system knows once no second has points.
+    """Return the grades, with points in at most one of those of one person for a course system.
 
-    What was handed in goes before what was not, then the newer before the older. Where that is not
-    known none counts.
+    A hand-in counts before none, then the newer before the older. Where the order is unknown, none
+    counts.
     """
     by_key: dict[tuple[str, str], list[int]] = defaultdict(list)
     for number, grade in enumerate(grades):
@@ -89,7 +82,7 @@ def _one_each(grades: list[Grade]) -> list[Grade]:
 
 
 def _counting(grades: Sequence[Grade], numbers: Sequence[int]) -> int | None:
-    """Which of one person's counts; None where nothing tells."""
+    """Return which of one person's grades counts; None where that is unknown."""
     there = [number for number in numbers if grades[number].entry.state != "nothing"]
     if len(there) < 2:
         return next(iter(there or numbers))
@@ -101,10 +94,10 @@ def _counting(grades: Sequence[Grade], numbers: Sequence[int]) -> int | None:
 
 
 def decimal(value: float | None) -> str:
-    """Points with two decimals and a point, which every course system reads; '' for None."""
+    """Format points with two decimals and a point, for any course system; '' for None."""
     return "" if value is None else f"{value + 0.0:.2f}"
 
 
 def out_of(value: float, of: float) -> str:
-    """Points for people: '12.5 of 30'."""
+    """Format points for people: '12.5 of 30'."""
     return tr("{score} of {max_score}", score=points(value), max_score=points(of))

@@ -1,4 +1,4 @@
-"""What Moodle imports: an assignment's grading worksheet, a table of grades, a zip of feedback.
+"""Make the imports for Moodle: a grading worksheet, a table of grades, a zip of feedback.
 
 The rules are those of Moodle's own code: mod/assign/feedback/offline, grade/import/csv and
 mod/assign/feedback/file/importziplib.php.
@@ -16,36 +16,36 @@ from grader.batch.gradebook.feedback import Feedback, has_feedback, is_ours
 from grader.batch.gradebook.grade import Grade, decimal
 from grader.reports.csv import cell, table
 
-#: Those that Moodle 3 and 4 write in English. It looks for Identifier, Grade, Last modified (grade)
-#: and Feedback comments, by these very names.
+#: The columns of Moodle 3 and 4 in English. Moodle searches for Identifier, Grade, Last modified
+#: (grade) and Feedback comments, by exactly these names.
 WORKSHEET = (
     *("Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade"),
     *("Grade can be changed", "Last modified (submission)", "Last modified (grade)"),
     "Feedback comments",
 )
-#: What a folder or file of the feedback has after name and number, so that Moodle knows it.
+#: Moodle recognises a folder or file of feedback by this, after name and number.
 _PLUGIN = "assignsubmission_file"
 FEEDBACK = "feedback.html"
-#: Of a name, so much is in a file name [characters]; it is for people alone.
+#: The longest name of a person in a file name [characters]; Moodle does not read it.
 _LONGEST_NAME = 60
 _NOT_IN_FILE_NAMES = re.compile(r'[\x00-\x1f\x7f_/\\<>:"|?*\ufffd]+')
 
 
 def worksheet(grades: Sequence[Grade], feedback: Feedback) -> str:
-    """The offline grading worksheet, as Moodle gives and takes it; '' where it would be empty.
+    """Return the offline grading worksheet, in Moodle's format; '' where it would be empty.
 
-    Moodle finds people by the participant number in `Identifier`. Who has no grade is left out, and
-    a comment that somebody else has written stays.
+    Moodle finds people by the participant number in `Identifier`. People without a grade are left
+    out, and a comment that somebody else has written stays.
     """
     rows = [_worksheet_row(g, feedback) for g in numbered(grades) if g.final is not None]
     return table([WORKSHEET, *rows]) if rows else ""
 
 
 def grade_import(grades: Sequence[Grade], title: str, feedback: Feedback) -> str:
-    """A table for the import of the course's gradebook; '' where it would be empty.
+    """Return a table for the import into the course's gradebook; '' where it would be empty.
 
-    It has one column to find people by. Who has nothing in it is left out: Moodle would take the
-    row for one of the student before.
+    One column identifies people. Those without a value in it are left out: Moodle would read the
+    row as one of the previous student.
     """
     key = grade_import_key(grades)
     rows = [
@@ -58,17 +58,17 @@ def grade_import(grades: Sequence[Grade], title: str, feedback: Feedback) -> str
 
 
 def grade_import_key(grades: Sequence[Grade]) -> tuple[str, ...]:
-    """The names of the column by which most can be found; none if nobody can."""
+    """Return the names of the column that identifies the most people; empty if it is none."""
 
-    def so_many(key: tuple[str, ...]) -> int:
+    def count(key: tuple[str, ...]) -> int:
         return sum(bool(known.safe_column(grade.person, key)) for grade in grades)
 
-    key = max(known.MOODLE_KEYS, key=so_many)
-    return key if so_many(key) else ()
+    key = max(known.MOODLE_KEYS, key=count)
+    return key if count(key) else ()
 
 
 def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
-    """The names in the zip of feedback: Moodle takes the number, and shows what is behind it."""
+    """Return the names in the zip of feedback: Moodle reads the number, and shows the end."""
     return {
         f"{_name(grade)}_{known.participant(grade.person)}_{_PLUGIN}_{FEEDBACK}": grade
         for grade in numbered(grades)
@@ -77,27 +77,27 @@ def feedback_files(grades: Sequence[Grade]) -> dict[str, Grade]:
 
 
 def numbered(grades: Sequence[Grade]) -> list[Grade]:
-    """Those whose participant number is known.
+    """Return the grades of those whose participant number is known.
 
-    Where there is a worksheet, its numbers alone count: one that stands in the name of an export
-    only may be that of a group, and in the worksheet that of some other student.
+    If there is a worksheet, only its numbers count: a number in the name of an exported file may be
+    that of a group, and in the worksheet that of another student.
     """
     listed = [grade for grade in grades if known.is_of_worksheet(grade.person)]
     return [grade for grade in listed or grades if known.participant(grade.person)]
 
 
 def _worksheet_row(grade: Grade, feedback: Feedback) -> list[str]:
-    def said(column: str, otherwise: str = "") -> str:
-        return cell(known.column(grade.person, (column,)) or otherwise)
+    def known_cell(column: str, default: str = "") -> str:
+        return cell(known.column(grade.person, (column,)) or default)
 
     return [
         known.identifier(grade.person),
-        cell(grade.person.name) or said("Full name"),
+        cell(grade.person.name) or known_cell("Full name"),
         cell(known.column(grade.person, known.MOODLE_KEYS[0])),
-        said("Status"),
+        known_cell("Status"),
         decimal(grade.final),
-        said("Maximum Grade", decimal(grade.entry.max_score)),
-        said("Grade can be changed", "Yes"),
+        known_cell("Maximum Grade", decimal(grade.entry.max_score)),
+        known_cell("Grade can be changed", "Yes"),
         known.safe_column(grade.person, ("Last modified (submission)",)) or "-",
         known.safe_column(grade.person, ("Last modified (grade)",)) or "-",
         _comment(grade, feedback),
@@ -105,7 +105,7 @@ def _worksheet_row(grade: Grade, feedback: Feedback) -> list[str]:
 
 
 def _comment(grade: Grade, feedback: Feedback) -> str:
-    """Moodle takes a comment for HTML; one that is not ours stays as it is."""
+    """Return the comment as HTML, which Moodle expects; one of somebody else stays as it is."""
     there = known.column(grade.person, ("Feedback comments",))
     if there and not is_ours(there):
         return cell(text.one_line(there))
@@ -113,7 +113,7 @@ def _comment(grade: Grade, feedback: Feedback) -> str:
 
 
 def _name(grade: Grade) -> str:
-    """A name as it may stand in a file name: without low lines, for Moodle counts by them."""
+    """Return a name for a file name: without underscores, at which Moodle splits it."""
     name = _NOT_IN_FILE_NAMES.sub(" ", text.plain(grade.person.name or grade.person.id))
     name = text.one_line(name).lstrip(".~ ")[:_LONGEST_NAME].rstrip(". ")
     return name or "Participant"

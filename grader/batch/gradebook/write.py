@@ -1,12 +1,12 @@
-"""All files of the gradebook, written into the folder of a class.
+"""Write all files of the gradebook into the folder of a class.
 
     gradebook.csv  gradebook.jsonl
     export/moodle-grading-worksheet.csv  export/moodle-grade-import.csv  export/moodle-feedback.zip
     export/canvas-gradebook.csv  export/canvas-feedback.zip
-    export/feedback.zip     where neither of them can have its own
+    export/feedback.zip     if there is none for Moodle or Canvas
     export/notes.txt        what an import lacks
 
-Which of them there are follows from what is known of the people. The same entries give the same
+Which of them there are depends on what is known of the people. The same entries give the same
 bytes, in each language.
 """
 
@@ -34,7 +34,7 @@ MOODLE_WORKSHEET, MOODLE_GRADES = "moodle-grading-worksheet.csv", "moodle-grade-
 CANVAS_GRADES, NOTES = "canvas-gradebook.csv", "notes.txt"
 MOODLE_FEEDBACK, CANVAS_FEEDBACK = "moodle-feedback.zip", "canvas-feedback.zip"
 FEEDBACK = "feedback.zip"
-#: Without it Excel takes UTF-8 for the letters of Windows.
+#: Without it Excel reads UTF-8 as Windows-1252.
 BYTE_ORDER_MARK = "\ufeff"
 _BEFORE = (
     *("id", "name", "hand_in", "group", "attempt", "handed_in", "state"),
@@ -49,29 +49,27 @@ def write(
     title: Message,
     view: View = "student",
     assignment: str = "",
-    nothing_is_zero: bool = True,
 ) -> list[Message]:
-    """Write them; an export that there is no more goes.
+    """Write all files, and remove exports that are not possible any more.
 
     Args:
-        title: what the exercise is called.
-        view: who reads the feedback: a student before, or after the exercise is over.
-        assignment: what Canvas calls it: title, number, or both as in "Spiral (4711)"; '' for the
+        title: of the exercise.
+        view: who reads the feedback: a student before, or after the exercise is due.
+        assignment: Canvas's title or number of it, or both as in "Spiral (4711)"; '' for the
             exercise's title.
-        nothing_is_zero: see `grader.batch.gradebook.grade.grades`.
 
     Returns:
-        what an import lacks and who is left out, as sentences.
+        Sentences on what an import lacks and who is left out.
 
     Raises:
         UsageError: one of them cannot be written.
     """
-    everybody = grades(entries, nothing_is_zero)
+    everybody = grades(entries)
     name = translate(title)
     feedback = Feedback(view)
     heading = canvas.assignment_of(everybody, assignment or name)
     lacking = notes(everybody, heading)
-    files.clear(out / EXPORT)  # a link leads somewhere else
+    files.clear(out / EXPORT)  # it may be a link to another folder
     files.put(out / CSV, as_csv(everybody).encode("utf-8"))
     files.put(out / JSON_LINES, as_lines(everybody).encode("utf-8"))
     texts = {
@@ -90,12 +88,12 @@ def write(
 
 
 def _feedback(everybody: Sequence[Grade], feedback: Feedback) -> dict[str, bytes]:
-    """The zips with what each student reads; nothing in the place of one that would be empty."""
+    """Return the zips of feedback; empty bytes for one that would be empty."""
 
     def page(name: str, grade: Grade) -> bytes:
         return feedback.page(grade.entry)
 
-    def as_handed_in(name: str, grade: Grade) -> bytes:
+    def as_submitted(name: str, grade: Grade) -> bytes:
         return canvas.feedback_file(name, grade, feedback)
 
     def made(members: Mapping[str, Grade], content: Callable[[str, Grade], bytes]) -> bytes:
@@ -106,25 +104,25 @@ def _feedback(everybody: Sequence[Grade], feedback: Feedback) -> dict[str, bytes
     others = {f"{g.entry.id}.html": g for g in everybody if has_feedback(g.entry)}
     return {
         MOODLE_FEEDBACK: made(for_moodle, page),
-        CANVAS_FEEDBACK: made(for_canvas, as_handed_in),
+        CANVAS_FEEDBACK: made(for_canvas, as_submitted),
         FEEDBACK: b"" if for_moodle or for_canvas else made(others, page),
     }
 
 
 def as_csv(grades: Sequence[Grade]) -> str:
-    """A header and one row a person.
+    """Return a table with a header and one row a person.
 
-    Each check has a column of its own; what was not judged, or has no result, is empty there.
+    Each check has a column; its cell is empty where there is no verdict.
     """
     checks = check_names(grades)
-    taken = {*_BEFORE, *_AFTER}
-    titles = [f"{check} (check)" if check in taken else check for check in checks]
+    reserved = {*_BEFORE, *_AFTER}
+    titles = [f"{check} (check)" if check in reserved else check for check in checks]
     header = [cell(title) for title in (*_BEFORE, *titles, *_AFTER)]
     return BYTE_ORDER_MARK + table([header, *(_row(grade, checks) for grade in grades)])
 
 
 def check_names(grades: Sequence[Grade]) -> list[str]:
-    """The names of all checks, in the order of the rubric."""
+    """Return the names of all checks, in the order of the rubric."""
     return list(dict.fromkeys(check for grade in grades for check in grade.entry.verdicts))
 
 
@@ -141,7 +139,7 @@ def _row(grade: Grade, checks: Sequence[str]) -> list[str]:
 
 
 def as_lines(grades: Sequence[Grade]) -> str:
-    """The same as gradebook.csv; nothing is put before what a spreadsheet would compute."""
+    """Return the gradebook as lines of JSON; texts are not escaped as for a spreadsheet."""
     return "".join(f"{json.dumps(_line(g), ensure_ascii=False, allow_nan=False)}\n" for g in grades)
 
 
@@ -174,7 +172,7 @@ _NEITHER = msg(
 
 
 def notes(grades: Sequence[Grade], assignment: str) -> list[Message]:
-    """All that is to be said, in the order of the files.
+    """Return notes on all imports, in the order of the files.
 
     Args:
         assignment: the heading of Canvas's column.
@@ -228,8 +226,8 @@ def _of_moodle(grades: Sequence[Grade]) -> Iterator[Message]:
             "then give --roster with Moodle's grading worksheet, or do not import them."
         )
     most = max(grade.entry.max_score for grade in grades)
-    said = (known.column(grade.person, ("Maximum Grade",)) for grade in grades)
-    others = dict.fromkeys(s for s in said if s and _number(s) not in (None, most))
+    maxima = (known.column(grade.person, ("Maximum Grade",)) for grade in grades)
+    others = dict.fromkeys(s for s in maxima if s and _number(s) not in (None, most))
     if others:
         yield msg(
             "Moodle's assignment has a maximum of {theirs}, the exercise of {ours:.10g}: Moodle "
@@ -263,7 +261,7 @@ def _of_canvas(grades: Sequence[Grade], assignment: str) -> Iterator[Message]:
 
 
 def _people(grades: Sequence[Grade]) -> Message:
-    """How many, and the first of them."""
+    """Return the first names, and how many more there are."""
     first = (text.clip(text.one_line(g.person.name or g.person.id), 40) for g in grades[:3])
     names, more = joined(first, ", "), len(grades) - 3
     return msg("{names} and {more:,} more", names=names, more=more) if more > 0 else names

@@ -1,4 +1,4 @@
-"""Who failed alike: the same check, or the same first cause, said in the same kind of words."""
+"""Cluster students who failed alike: by check or first cause, and by the kind of sentence."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from grader.message import NOTHING, Message, Value, joined, msg
 from grader.reports.wording import title_of
 from grader.translations import translate
 
-#: More kinds than this, of first causes and of a check, are told together.
+#: More kinds than this, of first causes and of a check, are merged into one cluster.
 MOST_CAUSES, MOST_KINDS = 24, 8
 #: More students than this are only counted.
 MOST_LINKS = 400
 _TEXT_LIMIT = 400
 RARER = msg("rarer kinds")
-#: What diagnoses are called, by their keys.
+#: Diagnoses in words, by their keys.
 _CALLED: Final = {
     str(each).replace(" ", "_"): each
     for each in (
@@ -52,18 +52,18 @@ _CALLED: Final = {
     )
 }
 GAP = "…"
-#: What an exception is called says what kind of mistake it is.
+#: The name of an exception is the kind of a mistake.
 _ERROR = re.compile(r"\w*(?:Error|Exception|Warning|Interrupt)\b")
 _WORD = re.compile(r"\w+")
-#: Fewer words are a name for something: a colour, a side.
+#: Fewer words are a name: a colour, a side.
 _CLAUSE = 3
-#: What a student's program says is searched no farther [characters].
+#: How much of a student's text is searched [characters].
 _LIMIT = 600
 
 
 @dataclass(frozen=True)
 class Remark:
-    """What is said of one student: under which heading, and the sentence."""
+    """A sentence about one student, with its heading."""
 
     student: Student
     heading: str
@@ -73,15 +73,15 @@ class Remark:
 
 @dataclass(frozen=True)
 class Cluster:
-    """Students of whom the same kind of thing is said.
+    """Students with the same kind of sentence.
 
     Attributes:
-        heading: the title of a check, or the key of a diagnosis.
-        example: the sentence that is said most often; '' of the rarer kinds together.
-        nameless: the same without what could tell whose it is.
-        students: by number, the first of them only, where there are very many.
-        count: how many there are.
-        causes: the keys of their diagnoses where these say more than the check, with their counts.
+        heading: the title of a check, or a diagnosis in words.
+        example: the most frequent sentence; '' for the rarer kinds together.
+        nameless: the kind of sentence without anything that identifies a student.
+        students: sorted by number; at most `MOST_LINKS`.
+        count: the number of all of them.
+        causes: their diagnoses where these are more specific than the check, with their counts.
     """
 
     heading: str
@@ -93,23 +93,23 @@ class Cluster:
 
 
 def to_mend_first(students: Iterable[Student]) -> list[Cluster]:
-    """What each should mend first, or why there is no result; nobody is in two of them."""
-    said = [each for student in students if (each := _first_of(student)) is not None]
-    return _clusters(said, MOST_CAUSES)
+    """Cluster what each should fix first, or why there is no result; nobody is in two clusters."""
+    remarks = [each for student in students if (each := _first_of(student)) is not None]
+    return _clusters(remarks, MOST_CAUSES)
 
 
 def of_check(students: Iterable[Student], check: str) -> list[Cluster]:
-    """Why points of a check were lost."""
-    said = [
+    """Cluster why points of a check were lost."""
+    remarks = [
         Remark(student, title_of(verdict), verdict.rationale, _diagnosed(student))
         for student in students
         if (verdict := student.entry.verdicts.get(check)) is not None and not verdict.passed
     ]
-    return _clusters(said, MOST_KINDS)
+    return _clusters(remarks, MOST_KINDS)
 
 
 def _called(key: str) -> str:
-    """A diagnosis in a word or two."""
+    """Return a diagnosis in a word or two."""
     return translate(_CALLED.get(key) or key.replace("_", " "))
 
 
@@ -135,10 +135,10 @@ def _diagnosed(student: Student) -> str:
     return "" if found is None or found.check else _called(found.key)
 
 
-def _clusters(said: Sequence[Remark], most: int) -> list[Cluster]:
-    """So many, the largest first, and the others together."""
+def _clusters(remarks: Sequence[Remark], most: int) -> list[Cluster]:
+    """Return at most so many clusters, the largest first, and one of all others."""
     groups: defaultdict[tuple[str, Message], list[Remark]] = defaultdict(list)
-    for each in said:
+    for each in remarks:
         groups[each.heading, kind_of(each.sentence)].append(each)
     ordered = sorted(groups.items(), key=_order)
     shown = [_cluster(heading, kind, alike) for (heading, kind), alike in ordered[:most]]
@@ -168,7 +168,7 @@ def _cluster(heading: str, kind: Message, alike: Sequence[Remark]) -> Cluster:
 
 
 def _example(alike: Sequence[Remark]) -> str:
-    """What is said most often; of equals the shortest, then the first in the alphabet."""
+    """Return the most frequent sentence; of equals the shortest, then the first in the alphabet."""
     counted = Counter(_shown(translate(each.sentence)) for each in alike)
     return min(counted, key=lambda sentence: (-counted[sentence], len(sentence), sentence))
 
@@ -178,8 +178,8 @@ def _shown(sentence: str) -> str:
 
 
 def kind_of(message: Message) -> Message:
-    """The message without what differs from student to student."""
-    if message.is_row:  # how many there are makes no other kind
+    """Return a message without what differs between students."""
+    if message.is_row:  # the number of its parts makes no other kind
         parts = (part for part in message.values.values() if _WORD.search(str(part)))
         return joined(dict.fromkeys(map(_kind, parts)), " ")
     values = {name: _kind(value) for name, value in message.values.items()}

@@ -1,4 +1,4 @@
-"""What the scores of a class say: how they are spread, and how each check did as a test item.
+"""Statistics of a class: the distribution of scores, and each check as a test item.
 
 Classical test theory. Of a check, over all whose submission ran:
 
@@ -21,7 +21,7 @@ from grader.result.result import Result
 from grader.translations import tr
 
 BINS = 10
-#: Below so many, a correlation says nothing.
+#: With fewer results a correlation means nothing.
 LEAST = 10
 _WORDS = (
     (0.4, msg("separates strong from weak very well")),
@@ -35,7 +35,7 @@ _EASY, _HARD = 0.85, 0.3
 
 @dataclass(frozen=True)
 class Bar:
-    """So many scores from `low` on and below `high`, or in the last bar up to it [points]."""
+    """The number of scores from `low` to below `high`; the last bar includes `high` [points]."""
 
     low: float
     high: float
@@ -44,11 +44,11 @@ class Bar:
 
 @dataclass(frozen=True)
 class Distribution:
-    """How scores are spread [points].
+    """The distribution of scores [points].
 
     Attributes:
         spread: the standard deviation of a sample (n - 1); 0 of a single score.
-        quartiles: a quarter is not above the first, a quarter not below the second.
+        quartiles: the first and the third.
         full: how many have all points.
     """
 
@@ -70,11 +70,11 @@ class Distribution:
 
 @dataclass(frozen=True)
 class CheckFigures:
-    """How a check did.
+    """The statistics of a check.
 
     Attributes:
-        check, title, max_score: its own.
-        count: how many it was asked about.
+        check, title, max_score: those of the check.
+        count: how many it has judged, or tried to.
         passed, partial, failed, not_judged: of them; `partial` failed and earned points.
         difficulty: the mean share of its points, 0 to 1.
         discrimination: -1 to 1; None where it is not defined, and then `why_not` says why.
@@ -94,7 +94,7 @@ class CheckFigures:
 
     @property
     def parts(self) -> tuple[tuple[str, str, int], ...]:
-        """The four counts with a class of the style sheet and a word."""
+        """The four counts, each with its CSS class and a word."""
         return (
             ("passed", tr("passed"), self.passed),
             ("partial", tr("partly"), self.partial),
@@ -104,7 +104,7 @@ class CheckFigures:
 
     @property
     def words(self) -> str:
-        """What the figures mean."""
+        """The figures in words."""
         ease = tr("Easy") if self.difficulty >= _EASY else tr("Medium")
         ease = tr("Hard") if self.difficulty < _HARD else ease
         separates = self.why_not
@@ -115,7 +115,7 @@ class CheckFigures:
 
 
 def distribution(scores: Sequence[float], max_score: float) -> Distribution | None:
-    """How the scores are spread; None where there are none."""
+    """Return the distribution of scores; None where there are none."""
     if not scores:
         return None
     single = len(scores) == 1
@@ -140,7 +140,7 @@ def _bars(scores: Sequence[float], max_score: float) -> tuple[Bar, ...]:
 
 
 def items(results: Sequence[Result], points: Mapping[str, float]) -> list[CheckFigures]:
-    """How each check did: those of the exercise in its order, then what else was judged."""
+    """Return the statistics of each check: in the exercise's order, then any others."""
     of_each = [{verdict.check: verdict for verdict in result.verdicts} for result in results]
     names = dict.fromkeys([*points, *(name for verdicts in of_each for name in verdicts)])
     return [
@@ -173,7 +173,7 @@ def _item(asked: Sequence[tuple[Verdict, Mapping[str, Verdict]]]) -> CheckFigure
 
 
 def _discrimination(scores: list[float], rest: list[float]) -> tuple[float | None, Message]:
-    """The correlation; or None and why there is none."""
+    """Return the correlation; or None and why there is none."""
     if len(scores) < LEAST:
         return None, msg("fewer than {least} are too few to tell whom it separates", least=LEAST)
     if len(set(scores)) == 1:

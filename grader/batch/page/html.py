@@ -1,7 +1,7 @@
-"""The class page: one file, to be opened from anywhere; made of entries and nothing else.
+"""Render the class page: one self-contained file, made of entries and nothing else.
 
-Equal entries make equal bytes: neither the time nor the machine comes into it. Whatever the size of
-a class, the page has a bounded number of pictures, paths and rows.
+Equal entries give equal bytes: it contains neither the time nor the machine. Whatever the size of a
+class, the page has a bounded number of pictures, paths and rows.
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ from grader.reports.page import templating
 from grader.translations import tr, translate
 
 _TEMPLATES = Path(__file__).parent / "templates"
-#: So many students have a picture and a path, and so many a row of the table.
+#: How many students have a picture and a path, and how many a row of the table.
 MOST_PICTURES, MOST_ROWS = 500, 4000
 
 
 def render(
     entries: Sequence[Entry], exercise: Exercise, links: Mapping[str, str] | None = None
 ) -> str:
-    """The page.
+    """Return the page.
 
     Args:
         entries: of the whole class, in any order.
-        links: what lies beside the page: words -> relative address.
+        links: files beside the page: words -> relative address.
     """
     everybody = students(entries)
     judged = [student for student in everybody if student.entry.result is not None]
-    handed_in = [e.score for e in entries if e.state != "nothing" and e.score is not None]
+    scores = [e.score for e in entries if e.state != "nothing" and e.score is not None]
     items = figures.items([s.entry.result for s in judged if s.entry.result], exercise.points)
     rows = everybody[:MOST_ROWS]
     template = _environment().get_template("class.html")
@@ -50,7 +50,7 @@ def render(
         links=links or {},
         total=len(everybody),
         rows=rows,
-        spread=figures.distribution(handed_in, exercise.max_score),
+        spread=figures.distribution(scores, exercise.max_score),
         states=_states(everybody),
         judged=len(judged),
         items=items,
@@ -63,7 +63,7 @@ def render(
 
 
 def _states(everybody: Sequence[Student]) -> list[tuple[str, int, bool]]:
-    """How many have no result, why, and whether that is the grader's doing."""
+    """Return the states without a result, how often, and whether it is the grader's failure."""
     counted = Counter(student.entry.state for student in everybody)
     return [
         (translate(words), counted[state], state == "failed")
@@ -73,7 +73,7 @@ def _states(everybody: Sequence[Student]) -> list[tuple[str, int, bool]]:
 
 
 def _script_words() -> dict[str, str]:
-    """What the page's script writes; `#` stands for what comes there."""
+    """Return the sentences of the page's script; `#` is replaced by a value."""
     return {
         "found": tr("{done} of {total}", done="#", total="#"),
         "ascending": tr("Sorted by {column}, ascending", column="#"),
@@ -84,7 +84,7 @@ def _script_words() -> dict[str, str]:
 
 
 def _drawn(rows: Sequence[Student]) -> list[Student]:
-    """Those who have a picture, and it."""
+    """Return the students with a picture, and load it."""
     judged = [student for student in rows if student.entry.result is not None]
     chosen = evenly(judged, MOST_PICTURES)
     read = (replace(student, thumb=Thumb.read(student.entry.folder)) for student in chosen)

@@ -1,4 +1,4 @@
-"""The hand-ins of a class as its page shows them: safe names, and what became of each in words."""
+"""The hand-ins of a class for its page: safe names, and the outcome of each in words."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from grader.result.result import PAGE, HandedIn
 from grader.translations import tr, translate
 
 _NAME_LIMIT, _WORD_LIMIT = 80, 40
-#: What is told of those without a result.
+#: The states without a result, in words.
 STATES: Final[Mapping[State, Message]] = {
     "unusable": msg("cannot be started"),
     "nothing": msg("nothing handed in"),
@@ -32,8 +32,8 @@ class Student:
     """One hand-in.
 
     Attributes:
-        number: stands for it where names are hidden; tells nothing of them.
-        entry: what is known of it.
+        number: replaces the name where names are hidden, and reveals nothing of it.
+        entry: the graded hand-in.
         id, name: safe to show.
         thumb: its picture and path; None where there is none.
     """
@@ -46,7 +46,7 @@ class Student:
 
     @property
     def report(self) -> str:
-        """The address of its report, as the class page sees it; '' where there is none."""
+        """The address of its report, relative to the class page; '' where there is none."""
         if self.entry.result is None:
             return ""
         return f"{SUBMISSIONS}/{quote(self.entry.id, safe='@+')}/{PAGE}"
@@ -62,18 +62,18 @@ class Student:
 
     @property
     def at_text(self) -> str:
-        """When it was handed in, as people read it, with its zone; '' where nobody knows."""
+        """The time of submission for people, with its zone; '' where it is unknown."""
         at = self.entry.hand_in.at
         return "" if at is None else at.isoformat(" ", "minutes")
 
     @property
     def late_s(self) -> float:
-        """How late that was [s]."""
+        """How late it was handed in [s]."""
         return 0.0 if self._handed_in is None else self._handed_in.late_s
 
     @property
     def late(self) -> str:
-        """The same in words, and what it cost; '' where it was in time."""
+        """The lateness in words, and its deduction; '' where it was in time."""
         found = self._handed_in
         if found is None or found.late_s <= 0:
             return ""
@@ -90,7 +90,7 @@ class Student:
         return None if self.entry.result is None else self.entry.result.handed_in
 
     def without_names(self, sentence: str) -> str:
-        """A sentence in which neither the name nor an id of this student stands."""
+        """Return a sentence without the name and the ids of this student."""
         people = self.entry.hand_in.people
         names = [self.entry.id, self.name, *(person.id for person in people)]
         words = {word for name in names for word in re.split(r"[\W_]+", name) if len(word) > 2}
@@ -100,7 +100,7 @@ class Student:
 
 
 def students(entries: Iterable[Entry]) -> list[Student]:
-    """All of them by name; each has a number that no order of names or ids tells."""
+    """Return all of them sorted by name; their numbers do not reveal that order."""
     listed = list(entries)
     order = sorted(listed, key=lambda entry: hashlib.sha256(entry.id.encode()).digest())
     numbers = {entry.id: number for number, entry in enumerate(order, 1)}
@@ -112,7 +112,7 @@ def students(entries: Iterable[Entry]) -> list[Student]:
 
 
 def evenly(chosen: Sequence[Student], most: int) -> list[Student]:
-    """So many at most, spread over all scores; the best first."""
+    """Return at most so many students, spread over all scores; the best first."""
     ordered = sorted(chosen, key=lambda student: (-(student.entry.score or 0.0), student.number))
     if len(ordered) <= most:
         return ordered

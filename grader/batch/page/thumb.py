@@ -1,9 +1,9 @@
-"""A run as a class page shows it: the picture at the end and the way that led there, both small.
+"""A run on the class page: a small picture of its end, and the driven path.
 
     thumb.json      {"picture": "data:image/png;base64,...", "path": [[x, y, ...]], "schema": ...}
 
-Reading a recording takes a second's part, and a class has hundreds: so it is made once, when a
-student's folder is. The same recording always makes the same bytes.
+Reading a recording takes a fraction of a second, and a class has hundreds: so it is made once,
+together with a student's folder. The same recording always gives the same bytes.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from grader.result import json_file
 
 THUMB = "thumb.json"
 SCHEMA: Final = "turtlesim-grader/thumb/v1"
-#: The edge of the picture [px], and what it may weigh [bytes].
+#: The edge of the picture [px], and its largest size [bytes].
 EDGE_PX, PICTURE_BYTES = 112, 4200
 _COLOURS = (32, 16, 8, 4, 2)
 #: The unit of a path: the picture's edge has so many.
 UNITS = 1000
-#: How far a path may be off [units], the first that leaves few enough points.
+#: Tolerances of a path [units]; the first that leaves few enough points is used.
 _TOLERANCES = (1.0, 1.5, 2.0, 3.0, 6.0, 12.0, 25.0, 50.0)
 _MOST_POINTS, _MOST_PIECES = 300, 20
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _PREFIX = "data:image/png;base64,"
-#: No file of ours is longer [bytes].
+#: The largest valid file [bytes].
 _LIMIT_BYTES = 40_000
 
 Piece = tuple[int, ...]
-#: A line with more points is thinned out evenly first: simplifying can take time with their square.
+#: A line with more points is thinned out evenly first: simplifying may be quadratic.
 _MOST_TO_SIMPLIFY = 2000
 
 
@@ -61,11 +61,11 @@ def _is_piece(numbers: Piece) -> Piece:
 
 @dataclass(frozen=True)
 class Thumb:
-    """What is read back.
+    """The content of thumb.json.
 
     Attributes:
         picture: as data URI.
-        path: where what is driven went, in pieces: x0, y0, x1, y1, ... [`UNITS`, y down].
+        path: the driven path, in pieces: x0, y0, x1, y1, ... [`UNITS`, y down].
     """
 
     picture: Annotated[str, _is_png]
@@ -74,11 +74,11 @@ class Thumb:
 
     @classmethod
     def read(cls, folder: Path) -> Self | None:
-        """What lies in the folder of a hand-in; None where nothing does that can be shown."""
+        """Read that of a hand-in's folder; None where there is no valid one."""
         return json_file.kept(cls, folder / THUMB, _LIMIT_BYTES)
 
     def svg(self) -> str:
-        """The path as the `d` of an SVG path: from each point the step to the next."""
+        """Return the path as the `d` of an SVG path, with relative steps."""
         parts = []
         for piece in self.path:
             points = np.array(piece).reshape(-1, 2)
@@ -88,12 +88,12 @@ class Thumb:
 
 
 def thumb(recordings: Recordings) -> bytes:
-    """The file's content: of the nominal run."""
+    """Return the file's content, of the nominal run."""
     return strict_json.line(Thumb(_picture(recordings.nominal), _path(recordings.nominal)))
 
 
 def _picture(recording: Recording) -> str:
-    """The picture at the end with as many colours as there is room for; '' where there is none."""
+    """Return the last picture with as many colours as fit; '' where there is none."""
     made = recording.pictures
     pixels = made.others.get("plan", made.window)  # the path is drawn over it
     if pixels is None:
@@ -121,7 +121,7 @@ def _path(recording: Recording) -> tuple[Piece, ...]:
 
 
 def _few(whole: list[Floats]) -> list[Floats]:
-    """The pieces with no more points than there is room for."""
+    """Simplify the pieces until they have few enough points."""
     for tolerance in _TOLERANCES:
         shorter = [simplified(piece, tolerance) for piece in whole]
         if sum(map(len, shorter)) <= _MOST_POINTS:
@@ -135,7 +135,7 @@ def _whole_numbers(piece: Floats) -> Piece:
 
 
 def pieces(x: Floats, y: Floats) -> list[Floats]:
-    """A line cut where a point is not finite; each piece (n, 2), two points at least."""
+    """Cut a line where a point is not finite; each piece (n, 2) has two points at least."""
     points = np.column_stack([x, y])
     finite = np.isfinite(points).all(axis=1)
     cuts = np.flatnonzero(np.diff(finite.astype(np.int8))) + 1
@@ -143,9 +143,9 @@ def pieces(x: Floats, y: Floats) -> list[Floats]:
 
 
 def simplified(points: Floats, tolerance: float) -> Floats:
-    """Those of the points (n, 2) without which the line would be off by more than the tolerance.
+    """Return the points (n, 2) that keep the line within the tolerance.
 
-    The way of Ramer (1972) and of Douglas and Peucker (1973).
+    The algorithm of Ramer (1972) and of Douglas and Peucker (1973).
     """
     step = max(1, -(-len(points) // _MOST_TO_SIMPLIFY))
     points = np.concatenate([points[:-1:step], points[-1:]])
@@ -166,7 +166,7 @@ def simplified(points: Floats, tolerance: float) -> Floats:
 
 
 def _distances(points: Floats, start: Floats, end: Floats) -> Floats:
-    """How far the points are from the straight line between two others."""
+    """Return the distances of points from the line segment between two others."""
     along = end - start
     squared = float(along @ along)
     at = np.clip((points - start) @ along / squared, 0, 1) if squared else np.zeros(len(points))

@@ -1,1 +1,1 @@
-"""What a changed rubric changes in a class that is graded: told first, written when asked for."""
+"""Judge a graded class by a changed exercise: show the changes, and write them on request."""

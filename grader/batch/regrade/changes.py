@@ -1,4 +1,4 @@
-"""The difference between two judgements of a class: who changes, by how much, which check, why."""
+"""The difference between two judgements of a class: who changes, by how much, and why."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ NO_CHANGE = 0.005
 
 @dataclass(frozen=True)
 class Difference:
-    """A check of which two judgements say different things.
+    """A check with different verdicts in two judgements.
 
     Attributes:
-        check: its name; '' of what is deducted from the whole.
-        title: as students read it.
-        before, after: what was, and is, said of it; None where it was not, or is no longer, asked.
-        points: what that changes.
+        check: its name; '' for what is deducted from the whole.
+        title: its title for students.
+        before, after: the verdicts; None where the exercise did not have, or no longer has, it.
+        points: the change [points].
         why: a sentence.
     """
 
@@ -41,10 +41,10 @@ class Difference:
 
 @dataclass(frozen=True)
 class ChangedEntry:
-    """Somebody who gets other points, or another verdict.
+    """A hand-in that gets other points, or another verdict.
 
     Attributes:
-        before, after: what is kept of the hand-in, as it is and as it would be.
+        before, after: its entry as it is and as it would be.
         differences: the checks that have changed.
     """
 
@@ -54,7 +54,7 @@ class ChangedEntry:
 
     @property
     def points(self) -> float:
-        """More, or less, in the gradebook."""
+        """The change in the gradebook [points]."""
         return round((self.after.score or 0.0) - (self.before.score or 0.0), 2)
 
 
@@ -68,11 +68,11 @@ class Failure:
 
 @dataclass(frozen=True)
 class OfCheck:
-    """What a check adds to the change, over the class.
+    """The changes of a check over the class.
 
     Attributes:
-        gain, lose: so many get more points for it, or less; others get another verdict only.
-        points: in all.
+        gain, lose: how many get more points for it, or fewer; others get another verdict only.
+        points: the sum of all changes [points].
     """
 
     check: str
@@ -85,18 +85,18 @@ class OfCheck:
 
 @dataclass(frozen=True)
 class Regrade:
-    """What an exercise would change in a class.
+    """The changes that an exercise would make in a class.
 
     Attributes:
         out: the folder of the class.
         exercise: the one that it is judged by again.
         entries: all of the class, as they are.
-        changes: of the points or a verdict, the largest first.
-        reworded: those of whom other words are said for the same points.
-        failures: those who could not be judged again.
-        judged: so many were.
-        notes: what else is to be known.
-        made: the tasks whose folders hold what is to be, where the regrade is to be applied.
+        changes: changed points or verdicts, the largest first.
+        reworded: hand-ins with other rationales for the same points.
+        failures: hand-ins that could not be judged again.
+        judged: how many were judged again.
+        notes: other sentences for the teacher.
+        made: the tasks with the new files, if the regrade is to be applied.
     """
 
     out: Path
@@ -111,7 +111,7 @@ class Regrade:
 
     @property
     def headline(self) -> str:
-        """In a line: '7 of 312 change: 2 get more points, 5 get fewer points.'."""
+        """The result in a line: '7 of 312 change: 2 get more points, 5 get fewer points.'."""
         total = len(self.entries)
         if not self.changes:
             return tr("None of {total} changes.", total=total)
@@ -133,7 +133,7 @@ class Regrade:
 
     @property
     def more_notes(self) -> list[str]:
-        """Notes, with what the numbers say."""
+        """The notes, and those that follow from the numbers."""
         found = list(map(translate, self.notes))
         worth = sorted({entry.max_score for entry in self.entries} - {self.exercise.max_score})
         if worth:
@@ -163,7 +163,7 @@ class Regrade:
 
     @cached_property
     def of_checks(self) -> list[OfCheck]:
-        """Each check that changes anything; the one that moves most points first."""
+        """The checks that change anything; those that concern the most hand-ins first."""
         found: dict[str, list[Difference]] = {}
         for change in self.changes:
             for each in change.differences:
@@ -183,23 +183,23 @@ class Regrade:
 
 
 def compared(before: Entry, after: Entry) -> ChangedEntry | None:
-    """What of a judged hand-in has changed; None where nothing has."""
+    """Return the changes of a judged hand-in; None where there are none."""
     differences = tuple(_of_checks(before, after))
     # what is deducted from the score, e.g. for being late
-    taken = [_deducted(entry) for entry in (before, after)]
-    if abs(taken[1] - taken[0]) >= NO_CHANGE:
+    then, now = (_deducted(entry) for entry in (before, after))
+    if abs(now - then) >= NO_CHANGE:
         why = tr(
             "{now} points are deducted from the score, not {before}",
-            now=points(taken[1]),
-            before=points(taken[0]),
+            now=points(now),
+            before=points(then),
         )
-        late = Difference("", tr("Handed in late"), None, None, round(taken[0] - taken[1], 2), why)
+        late = Difference("", tr("Handed in late"), None, None, round(then - now, 2), why)
         differences = (*differences, late)
     return ChangedEntry(before, after, differences) if differences else None
 
 
 def is_of_words(change: ChangedEntry) -> bool:
-    """Whether points and verdicts are the same, and only what is said of them is not."""
+    """Whether only rationales differ, and no points or verdicts."""
     return all(
         each.before is not None
         and each.after is not None
@@ -213,7 +213,7 @@ def _of_checks(before: Entry, after: Entry) -> Iterable[Difference]:
     old, new = before.verdicts, after.verdicts
     for name in [*new, *(name for name in old if name not in new)]:
         was, is_ = old.get(name), new.get(name)
-        if was is None or is_ is None or _said(was) != _said(is_):
+        if was is None or is_ is None or _visible(was) != _visible(is_):
             some = is_ or was
             assert some is not None
             gained = (is_.score if is_ else 0.0) - (was.score if was else 0.0)
@@ -227,8 +227,8 @@ def _of_checks(before: Entry, after: Entry) -> Iterable[Difference]:
             )
 
 
-def _said(verdict: Verdict) -> tuple[object, ...]:
-    """What a student may care about; evidence comes with the words."""
+def _visible(verdict: Verdict) -> tuple[object, ...]:
+    """Return what of a verdict matters to a student; evidence follows the rationale."""
     return verdict.status, round(verdict.score, 2), verdict.rationale
 
 

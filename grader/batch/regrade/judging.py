@@ -1,13 +1,13 @@
-"""Judge the recordings of a class again, in parallel and without running anything; put it in force.
+"""Judge the recordings of a class again, in parallel and without running anything; apply it.
 
-    before/N/           N = 1, 2, ...: what the N-th regrade has replaced
+    before/N/           N = 1, 2, ...: the files that the N-th regrade has replaced
         changes.csv changes.html        what it changed, and why
         class.json gradebook.csv gradebook.jsonl
         submissions/ID/result.json entry.json      of each whose points, verdicts or words changed
 
-What was before is kept before anything is changed. Then each hand-in is replaced as a whole, and
-class.json, which says by what the class is judged, comes last: a call that is cut off leaves every
-hand-in as it was or as it will be, and the same call again does the rest.
+The old files are kept before anything is changed. Then each hand-in is replaced as a whole, and
+class.json, which names the exercise that the class is judged by, comes last: an interrupted call
+leaves every hand-in old or new, and the same call again does the rest.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from grader.result.visible import View
 
 #: Judging a recording again takes no longer, unless something hangs [s].
 MOST_S = 600.0
-#: Told of each hand-in that is over.
-Tell = Callable[[Entry], None]
+#: Called with each hand-in that is done.
+Notify = Callable[[Entry], None]
 CHANGES_CSV, CHANGES_PAGE = "changes.csv", "changes.html"
-#: What is made of all entries together and told to others.
+#: Files made of all entries together, for others to read.
 GRADEBOOKS = ("gradebook.csv", "gradebook.jsonl")
 
 
@@ -49,16 +49,15 @@ def regrade(
     out: Path,
     exercise_path: str,
     jobs: int,
-    tell: Tell = lambda _: None,
+    notify: Notify = lambda _: None,
     store: Store | None = None,
 ) -> Regrade:
-    """Judge the recordings of a class by another state of its exercise; nothing of it is changed.
+    """Judge the recordings of a class by a changed exercise; the class itself is not changed.
 
     Args:
         out: the folder of the class.
-        exercise_path: the edited exercise.yaml, or what else names an exercise.
-        store: that of the class, opened, where the regrade is to be applied; then everything that
-            takes the place of something is made there.
+        exercise_path: the edited exercise.yaml, or another name of an exercise.
+        store: the opened class, if the regrade is to be applied: then the new files are made there.
 
     Raises:
         UsageError: it is no folder of a class, or the exercise is not that of the class.
@@ -85,7 +84,7 @@ def regrade(
                     remove(task.into / STUDENTS / entry.id)
                 elif change := compared(entry, again):
                     changes.append(change)
-                tell(entry)
+                notify(entry)
             if store is None:
                 remove(task.into)
             elif answer.state == "done":
@@ -106,7 +105,7 @@ def regrade(
 
 
 def check(out: Path, exercise_path: str) -> int:
-    """Whether there is something to be judged again, before anything else is done: how many.
+    """Check that a class can be judged again; return how many hand-ins that concerns.
 
     Raises:
         UsageError, ExerciseError: as `regrade`.
@@ -130,7 +129,7 @@ def _of_class(out: Path, exercise_path: str) -> tuple[ClassFile, Exercise]:
 
 
 def _tasks(out: Path, found: Iterable[Entry], exercise_path: str) -> Iterator[Task]:
-    """A task for each run of a class; `into` is not set yet."""
+    """Yield a task for each run of a class; `into` is not set yet."""
     before, by_run = ClassFile.read(out), defaultdict(list)
     for entry in found:
         by_run[_run(out, entry)].append(entry)
@@ -149,7 +148,7 @@ def _tasks(out: Path, found: Iterable[Entry], exercise_path: str) -> Iterator[Ta
 
 
 def _run(out: Path, entry: Entry) -> Path:
-    """Where the recording of a hand-in lies: in the store, or else beside its result."""
+    """Return the folder of a hand-in's recording: in the store, else beside its result."""
     store = Store(out)
     return store.run(entry.key) if store.has(entry.key) else entry.folder
 
@@ -178,7 +177,7 @@ def _traces(entry: Entry) -> list[str]:
 def _notes(
     out: Path, before: ClassFile, exercise: Exercise, found: Sequence[Entry]
 ) -> Iterator[Message]:
-    """What of the exercise recordings cannot follow, and what else differs."""
+    """Yield notes: which changes of the exercise recordings cannot reflect, and others."""
     if len(found) < before.hand_ins:
         yield msg_many(
             "{part} is not finished: {graded} of {n:,} hand-in.",
@@ -191,12 +190,12 @@ def _notes(
         yield msg("The class was graded by just this exercise.")
     results = [entry.result for entry in found if entry.result is not None]
     origins = [result.provenance for result in results if result.provenance is not None]
-    told = Counter(
+    counts = Counter(
         sentence
         for origin in origins
         for sentence in not_followed(origin.recorded, exercise.conditions)
     )
-    for sentence, number in told.items():
+    for sentence, number in counts.items():
         yield msg(
             "{number} of {total}: {sentence}",
             number=number,
@@ -216,14 +215,14 @@ def _notes(
 def apply(
     found: Regrade,
     store: Store,
-    tell: Tell = lambda _: None,
+    notify: Notify = lambda _: None,
     view: View = "student",
     assignment: str = "",
 ) -> None:
-    """Write what a regrade has found; those who could not be judged stay as they are.
+    """Write a regrade into its class; hand-ins that could not be judged stay as they are.
 
     Args:
-        store: that in which it was made; nobody else has changed it.
+        store: the one that the regrade was made in, still locked.
         view, assignment: see `grader.batch.batch.write_outputs`.
 
     Raises:
@@ -235,18 +234,18 @@ def apply(
         _keep_run(task, store)
         store.put(task.key, task.into)
         for hand_in in task.hand_ins:
-            tell(by_id[hand_in.id])
+            notify(by_id[hand_in.id])
     for entry in found.entries:
         if entry.state != "judged":
             _put_unjudged(entry, found, store)
-            tell(entry)
+            notify(entry)
     now = replace(ClassFile.read(store.out), exercise_sha256=found.exercise.sha256)
     batch.write_outputs(store.out, entries(store.out), found.exercise, view, assignment)
     now.put(store.out)
 
 
 def keep(found: Regrade, store: Store) -> Path:
-    """Keep what is going to change: before/N, whole or not at all.
+    """Keep the files that are going to change in before/N, whole or not at all.
 
     Raises:
         UsageError: it cannot be written.
@@ -279,20 +278,20 @@ def _next(top: Path) -> Path:
 
 
 def _keep_run(task: Task, store: Store) -> None:
-    """Have the recording in the store, where it may have lain with the hand-in alone."""
+    """Copy a recording into the store if it is only in the folder of the hand-in."""
     if not store.has(task.key) and task.run is not None:
         kept = task.into / RUN / RECORDING
-        shutil.copytree(task.run / RECORDING, kept, symlinks=True, ignore=_strange)
+        shutil.copytree(task.run / RECORDING, kept, symlinks=True, ignore=_special)
 
 
-def _strange(folder: str, names: list[str]) -> list[str]:
-    """What no recording has: pipes, links, devices."""
+def _special(folder: str, names: list[str]) -> list[str]:
+    """Return the names that no recording has: pipes, links, devices."""
     paths = (Path(folder, name) for name in names)
     return [p.name for p in paths if p.is_symlink() or not (p.is_dir() or p.is_file())]
 
 
 def _put_unjudged(entry: Entry, found: Regrade, store: Store) -> None:
-    """Who has no result gets the new exercise's points to be had, and nothing else."""
+    """Update an entry without a result: only the exercise and its points are new."""
     place = store.new_place()
     folder = place / STUDENTS / entry.id
     files.make_folder(folder)

@@ -1,4 +1,4 @@
-"""A regrade, shown: in the terminal, as one self-contained HTML page, and as CSV.
+"""Show a regrade: in the terminal, as one self-contained HTML page, and as CSV.
 
 The table has a row for each check of each hand-in that changes, or is not judged again.
 """
@@ -27,7 +27,7 @@ from grader.result.result import PAGE
 from grader.text import clip, for_terminal, number, one_line, plain
 from grader.translations import tr, tr_many, translate
 
-#: More hand-ins are in the table and on the page only.
+#: Hand-ins in the terminal; the table and the page have all.
 MOST = 40
 _MOST_WHYS = 5
 _LONGEST = 160
@@ -43,7 +43,7 @@ _LONGEST_IN_TABLE = 1000
 
 
 def show(found: Regrade, console: Console) -> None:
-    """Print it."""
+    """Print a regrade."""
     console.print(_text(found.headline, "bold"), soft_wrap=True)
     for note in found.more_notes:
         console.print(_text(tr("Note: {flag}", flag=note)), soft_wrap=True)
@@ -64,15 +64,15 @@ def show(found: Regrade, console: Console) -> None:
 
 
 def signed(value: float) -> str:
-    """Points that somebody gets more, or less: '+5', '-2.5', '0'."""
+    """Return a change of points with its sign: '+5', '-2.5', '0'."""
     return f"+{points(value)}" if value > 0 else points(value) if value else "0"
 
 
 def verdicts(each: Difference) -> str:
-    """What was said of a check and what is: 'passed → failed'; '' where it is the same."""
-    said = [tr("new") if each.before is None else word(each.before)]
-    said.append(tr("gone") if each.after is None else word(each.after))
-    return "" if said[0] == said[1] else " → ".join(said)
+    """Return the verdicts before and after: 'passed → failed'; '' where they are the same."""
+    before = tr("new") if each.before is None else word(each.before)
+    after = tr("gone") if each.after is None else word(each.after)
+    return "" if before == after else f"{before} → {after}"
 
 
 def _checks(found: Regrade) -> Table:
@@ -91,9 +91,9 @@ def _people(found: Regrade) -> Table:
     table = _table(tr("hand-in"), tr("before"), tr("after"), tr("change"))
     table.add_column(tr("check and why"))
     for change in found.changes[:MOST]:
-        translate = [_told(each) for each in change.differences]
+        differences = [_described(each) for each in change.differences]
         points_now = (_score(change.before), _score(change.after), signed(change.points))
-        table.add_row(_who(change), *points_now, Text("\n").join(translate))
+        table.add_row(_who(change), *points_now, Text("\n").join(differences))
     return table
 
 
@@ -111,7 +111,7 @@ def _who(change: ChangedEntry) -> Text:
     return _text(entry.id if name == entry.id else f"{entry.id} {name}")
 
 
-def _told(each: Difference) -> Text:
+def _described(each: Difference) -> Text:
     head = " ".join(part for part in (each.check, verdicts(each), signed(each.points)) if part)
     return Text.assemble(_text(head, "bold"), _text(f": {clip(one_line(each.why), _LONGEST)}"))
 
@@ -124,8 +124,8 @@ def _failures(found: Regrade, console: Console) -> None:
     if not found.failures:
         return
     console.print()
-    said = Counter(failure.why for failure in found.failures)
-    for why, times in said.most_common(_MOST_WHYS):
+    counts = Counter(failure.why for failure in found.failures)
+    for why, times in counts.most_common(_MOST_WHYS):
         first = next(failure.entry.id for failure in found.failures if failure.why == why)
         if times > 1:
             first = tr("{first} and {more} others", first=first, more=times - 1)
@@ -135,8 +135,8 @@ def _failures(found: Regrade, console: Console) -> None:
             why=clip(one_line(translate(why)), 300),
         )
         console.print(_text(text, "red"), soft_wrap=True)
-    if len(said) > _MOST_WHYS:
-        more = tr("… for {more} other reasons: see the table.", more=len(said) - _MOST_WHYS)
+    if len(counts) > _MOST_WHYS:
+        more = tr("… for {more} other reasons: see the table.", more=len(counts) - _MOST_WHYS)
         console.print(_text(more, "red"))
 
 
@@ -145,10 +145,10 @@ def _text(value: str, style: str = "") -> Text:
 
 
 def page(found: Regrade, to_class: str = "") -> str:
-    """The page.
+    """Return the page.
 
     Args:
-        to_class: the way from the page to the folder of the class, for links to reports; '' for no
+        to_class: the path from the page to the folder of the class, for links to reports; '' for no
             links.
     """
     made: str = (
@@ -178,7 +178,7 @@ def _environment() -> jinja2.Environment:
 
 
 def table(found: Regrade) -> str:
-    """The table; its columns are those of `HEADER`."""
+    """Return the table; its columns are those of `HEADER`."""
     rows = [HEADER, *(row for change in found.changes for row in _rows(change))]
     for failure in found.failures:
         score = _points(failure.entry.score)

@@ -1,1 +1,1 @@
-"""Look at these together: hand-ins that behave alike, or are written alike, side by side."""
+"""Find hand-ins of a class that behave alike, or have the same sources."""

@@ -1,10 +1,12 @@
-"""What of a hand-in is compared: DIR/submissions/ID/similar.json, made once, when it is graded.
+"""The features by which hand-ins are compared: DIR/submissions/ID/similar.json.
 
-schema    which form this is
+It is made once, when the hand-in is graded.
+
+schema    the version of the format
 files     [name, sha256] of each of its Python files
-commands  [time_ns, hash] of what it asked for in its nominal run, from the first on
-path      x, y [mm] of points at equal steps along its way, from where it began
-left_out  how many files and commands were too much
+commands  [time_ns, hash] of each command of its nominal run; times from the first one
+path      x, y [mm] of points at equal steps along its path, relative to its start
+left_out  the number of files and commands beyond the limits
 """
 
 from __future__ import annotations
@@ -29,24 +31,24 @@ NAME: Final = "similar.json"
 MOST_COMMANDS: Final = 1000
 #: Points of a path.
 POINTS: Final = 64
-#: A path that is shorter is none [m].
+#: A shorter path is ignored [m].
 SHORTEST_M: Final = 0.5
 _FARTHEST_MM: Final = 10_000_000
 _MOST_BYTES: Final = 2**22
 BOUNDS: Final = strict_json.OURS._replace(number=2**53, may_lack=False)
-#: Bytes of a hash: below 2**53, so that a number in JSON holds it whoever reads it.
+#: Bytes of a hash: below 2**53, so that any reader of JSON gets the exact number.
 _HASH_BYTES: Final = 6
 
 
 class HashedFile(NamedTuple):
-    """A file: its name and hash."""
+    """The name and the hash of a file."""
 
     name: str
     sha256: str
 
 
-class Asked(NamedTuple):
-    """A command: how long after the first one [ns], and a hash of what it asks for."""
+class TimedCommand(NamedTuple):
+    """A command: its time after the first one [ns], and a hash of its values."""
 
     time_ns: int
     hash: int
@@ -59,62 +61,62 @@ def _has_points(path: tuple[int, ...]) -> tuple[int, ...]:
 
 
 @dataclass(frozen=True)
-class Behaved:
-    """What of a hand-in is compared; see the module."""
+class Features:
+    """The content of similar.json; see the module."""
 
     files: tuple[HashedFile, ...] = ()
-    commands: tuple[Asked, ...] = ()
+    commands: tuple[TimedCommand, ...] = ()
     path: Annotated[tuple[int, ...], _has_points] = ()
     left_out: int = 0
     schema: Literal["turtlesim-grader/similar/v3"] = SCHEMA
 
     @classmethod
     def read(cls, folder: Path) -> Self | None:
-        """That of a hand-in's folder; None where there is none that can be used."""
+        """Read that of a hand-in's folder; None where there is no valid one."""
         return json_file.kept(cls, folder / NAME, _MOST_BYTES, BOUNDS)
 
 
 def hash_of(words: Iterable[str]) -> int:
-    """A number below 2**48; the same for the same words, on any machine."""
+    """Return a number below 2**48; the same for the same words, on any machine."""
     data = "\0".join(words).encode("utf-8", "surrogatepass")
     return int.from_bytes(hashlib.blake2b(data, digest_size=_HASH_BYTES).digest(), "big")
 
 
-def behaved(source: Path, nominal: Recording | None, left_out: int = 0) -> bytes:
-    """What of a hand-in is compared, as it comes to lie in its folder.
+def features_file(source: Path, nominal: Recording | None, left_out: int = 0) -> bytes:
+    """Return the content of similar.json.
 
     Args:
-        source: the folder with its sources, from `sources.keep`.
-        nominal: its nominal run; None where there was none.
-        left_out: what `sources.keep` returned.
+        source: the folder with the sources, from `sources.keep`.
+        nominal: the nominal run; None where there was none.
+        left_out: the return value of `sources.keep`.
 
     Raises:
         OSError: the sources cannot be read.
     """
     commands, path, too_many = _run(nominal)
     files = (HashedFile(each.name, hashlib.sha256(each.data).hexdigest()) for each in kept(source))
-    return strict_json.line(Behaved(tuple(files), commands, path, left_out + too_many))
+    return strict_json.line(Features(tuple(files), commands, path, left_out + too_many))
 
 
-def _run(nominal: Recording | None) -> tuple[tuple[Asked, ...], tuple[int, ...], int]:
-    """Its commands, its path, and how many commands were left out."""
+def _run(nominal: Recording | None) -> tuple[tuple[TimedCommand, ...], tuple[int, ...], int]:
+    """Return the commands of a run, its path, and how many commands were left out."""
     if nominal is None:
         return (), (), 0
     done = load_subject(nominal.scene).behaviour(nominal.trace)
     begin = done.commands[0].time_ns if done.commands else 0
-    taken = islice(done.commands, MOST_COMMANDS)
-    commands = tuple(Asked(each.time_ns - begin, _hash(each)) for each in taken)
+    kept_ones = islice(done.commands, MOST_COMMANDS)
+    commands = tuple(TimedCommand(each.time_ns - begin, _hash(each)) for each in kept_ones)
     return commands, _path(done.path), len(done.commands) - len(commands)
 
 
 def _hash(command: Command) -> int:
-    # Four digits: what is computed in another order is the same all the same.
+    # four digits: another order of computation gives the same hash
     values = (f"{round(value, 6) + 0.0:.4g}" for value in command.values)
     return hash_of((command.name, *values))
 
 
 def _path(points: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[int, ...]:
-    """Points at equal steps along a path, from its start; whole numbers, so that sums are exact."""
+    """Return points at equal steps along a path; whole numbers, so that sums are exact."""
     if len(points) < 2:
         return ()
     driven = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))

@@ -1,8 +1,8 @@
-"""Which hand-ins of a class to look at together.
+"""Find pairs of similar hand-ins in a class.
 
-Two are listed where their files are the same, and are not what everybody was given; or where their
-behaviour is alike and nearly nobody else's is. Right solutions behave alike: behaviour counts in a
-class that is large enough to tell what is usual in it, and only as far as it is unusual there.
+A pair is listed if its files are the same, and are not those that everybody was given; or if both
+behave alike and nearly nobody else does. Right solutions behave alike: so behaviour counts only in
+a class that is large enough to show what is usual, and only if it is unusual there.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from grader.batch.similar.behaviour import Asked, Behaved, hash_of
+from grader.batch.similar.behaviour import Features, TimedCommand, hash_of
 
 NEAR_MM: Final = 10
-#: Behaviour counts from so many hand-ins on, where two behave so, or one in so many.
+#: Behaviour counts in a class of at least so many, if two behave so, or at most one in so many.
 LARGE_CLASS: Final = 30
 ONE_IN: Final = 100
-#: Pairs that are listed; of what is beyond, the groups tell.
+#: The longest list of pairs; the groups include the others.
 MOST_PAIRS: Final = 2000
-#: Commands that follow one another are looked at so many at once.
+#: The length of a sequence of commands that is compared (an n-gram).
 LENGTH: Final = 3
-#: So many of these two have in common, and so much of all that the longer one has.
+#: Two hand-ins are alike with so many common n-grams, and this share of the longer one's.
 FEWEST: Final = 8
 LEAST_SHARE: Final = 0.9
-#: A kind of commands: all that are sent, by the time between them.
+#: The n-grams of all commands of a hand-in, with the times between them.
 Kind = frozenset[int]
 _ROWS: Final = 256
 Floats = npt.NDArray[np.float64]
@@ -38,15 +38,15 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Compared:
-    """What is compared of a hand-in.
+    """The features of a hand-in that are compared.
 
     Attributes:
-        key: of its content; '' where there is none, or where it is what everybody was given.
-        behaved: None where nothing is known of it: it is compared by its content only.
+        key: of its content; '' where there is none, or where everybody was given it.
+        features: None where it is unknown: then only the content is compared.
     """
 
     key: str
-    behaved: Behaved | None
+    features: Features | None
 
 
 @dataclass(frozen=True)
@@ -54,14 +54,14 @@ class Pair:
     """Two hand-ins, by their numbers, the lower one first.
 
     Attributes:
-        same_content: they have handed in the same.
-        commands_hands: so many hand-ins send such commands as one of the two, both among them; 0:
-            theirs are not alike.
-        path_mm: how far apart their ways are; None where one went nowhere.
-        path_hands: so many hand-ins went as near one of the two, both among them.
-        equal_s: their commands are equal for so long from the first one on [s].
-        equal_commands: so much of their commands is equal, one by one, 0 to 1.
-        group: which group they are in, from 1.
+        same_content: whether their files are the same.
+        commands_hands: how many hand-ins send such commands as one of the two, both included; 0:
+            the commands of the two are not alike.
+        path_mm: the mean distance of their paths; None where one has none.
+        path_hands: how many paths are as near to one of the two, both included.
+        equal_s: how long their commands are equal from the first one on [s].
+        equal_commands: the share of equal commands, one by one, 0 to 1.
+        group: the number of their group, from 1.
     """
 
     first: int
@@ -76,20 +76,20 @@ class Pair:
 
     @property
     def order(self) -> tuple[float, ...]:
-        """The least likely ones come first: the same files, then what the fewest others do."""
+        """The sort key: the same files first, then what the fewest others do."""
         others = self.commands_hands or self.path_hands
         return (not self.same_content, others, -self.equal_commands, self.first, self.second)
 
 
 @dataclass(frozen=True)
-class Look:
-    """A class, looked at together.
+class Comparison:
+    """The similar hand-ins of a class.
 
     Attributes:
-        pairs: those to look at, the least likely ones first.
-        more: how many of them are not in `pairs`, which has a limit.
-        groups: numbers of hand-ins that pairs connect, the pairs' `group` minus 1.
-        is_large: whether behaviour counts.
+        pairs: sorted by `Pair.order`.
+        more: how many pairs are beyond the limit of `pairs`.
+        groups: numbers of hand-ins that pairs connect; the index is a pair's `group` minus 1.
+        is_large: whether the class is large enough for behaviour to count.
     """
 
     pairs: tuple[Pair, ...]
@@ -98,19 +98,19 @@ class Look:
     is_large: bool
 
 
-def compare(handed_in: Sequence[Compared]) -> Look:
-    """Find what to look at together."""
-    found = [each.behaved or Behaved() for each in handed_in]
-    asked = [each.commands for each in found]
-    commands, paths = Commands(asked), Paths([each.path for each in found])
-    is_large = len(handed_in) >= LARGE_CLASS
-    contents = _equal_contents(handed_in)
+def compare(hand_ins: Sequence[Compared]) -> Comparison:
+    """Find the similar hand-ins of a class."""
+    found = [each.features or Features() for each in hand_ins]
+    of_each = [each.commands for each in found]
+    commands, paths = Commands(of_each), Paths([each.path for each in found])
+    is_large = len(hand_ins) >= LARGE_CLASS
+    contents = _equal_contents(hand_ins)
 
     def numbers() -> Iterator[tuple[int, int]]:
         for members in contents:
             yield from combinations(members, 2)
         if is_large:
-            rare = max(2, len(handed_in) // ONE_IN)  # what so many do, or fewer, is unusual
+            rare = max(2, len(hand_ins) // ONE_IN)  # what at most so many do is unusual
             yield from commands.pairs(rare)
             yield from paths.rarely_near(NEAR_MM, rare)
 
@@ -119,13 +119,12 @@ def compare(handed_in: Sequence[Compared]) -> Look:
     of = {member: n for n, members in enumerate(groups, 1) for member in members}
 
     def pair(first: int, second: int) -> Pair:
-        equal_s, equal_commands = equal(asked[first], asked[second])
+        equal_s, equal_commands = equal(of_each[first], of_each[second])
         path_mm = paths.distance(first, second)
         return Pair(
             first,
             second,
-            same_content=bool(handed_in[first].key)
-            and handed_in[first].key == handed_in[second].key,
+            same_content=bool(hand_ins[first].key) and hand_ins[first].key == hand_ins[second].key,
             commands_hands=commands.hands(first, second),
             path_mm=path_mm,
             path_hands=0 if path_mm is None else paths.hands(first, second, path_mm),
@@ -136,27 +135,27 @@ def compare(handed_in: Sequence[Compared]) -> Look:
 
     listed = sorted((pair(*each) for each in islice(every, MOST_PAIRS)), key=lambda p: p.order)
     more = max(0, len(every) - MOST_PAIRS)
-    return Look(tuple(listed), more, tuple(groups), is_large)
+    return Comparison(tuple(listed), more, tuple(groups), is_large)
 
 
-def _equal_contents(handed_in: Sequence[Compared]) -> list[list[int]]:
-    """Those that handed in the same."""
+def _equal_contents(hand_ins: Sequence[Compared]) -> list[list[int]]:
+    """Return the numbers of hand-ins with equal contents, in groups."""
     found: dict[str, list[int]] = defaultdict(list)
-    for number, each in enumerate(handed_in):
+    for number, each in enumerate(hand_ins):
         if each.key:
             found[each.key].append(number)
     return [members for members in found.values() if len(members) > 1]
 
 
 class Commands:
-    """Whose commands are alike.
+    """The commands of a class, by what is alike.
 
     Args:
-        asked: of each hand-in.
+        of_each: the commands of each hand-in.
     """
 
-    def __init__(self, asked: Sequence[Sequence[Asked]]) -> None:
-        self._kinds = [grams(each) for each in asked]
+    def __init__(self, of_each: Sequence[Sequence[TimedCommand]]) -> None:
+        self._kinds = [grams(each) for each in of_each]
         members: dict[Kind, list[int]] = defaultdict(list)
         for number, kind in enumerate(self._kinds):
             if len(kind) >= FEWEST:
@@ -171,7 +170,7 @@ class Commands:
                     self._alike[other].append(one)
 
     def hands(self, first: int, second: int) -> int:
-        """How many send such commands as one of two that are alike, both among them; else 0."""
+        """Return how many send such commands as one of two, both included; 0: not alike."""
         one, other = self._kinds[first], self._kinds[second]
         if other not in self._alike.get(one, ()):
             return 0
@@ -189,11 +188,11 @@ class Commands:
         return sum(len(self._members[each]) for each in self._alike[kind])
 
 
-def grams(asked: Sequence[Asked]) -> Kind:
-    """Commands that follow one another, by the time between them: whenever they begin."""
+def grams(commands: Sequence[TimedCommand]) -> Kind:
+    """Return the n-grams of commands and the times between them: the start does not matter."""
     steps = [
         (str(each.time_ns - before.time_ns), str(each.hash))
-        for before, each in zip((Asked(0, 0), *asked), asked, strict=False)
+        for before, each in zip((TimedCommand(0, 0), *commands), commands, strict=False)
     ]
     last = len(steps) - LENGTH + 1
     return frozenset(
@@ -202,7 +201,7 @@ def grams(asked: Sequence[Asked]) -> Kind:
 
 
 def are_alike(one: Kind, other: Kind) -> bool:
-    """Whether two kinds have nearly all in common."""
+    """Whether two kinds have nearly all n-grams in common."""
     return len(one & other) >= max(FEWEST, LEAST_SHARE * max(len(one), len(other)))
 
 
@@ -210,8 +209,8 @@ def _may_be_alike(short: Kind, long: Kind) -> bool:
     return len(short) >= LEAST_SHARE * len(long)
 
 
-def equal(one: Sequence[Asked], other: Sequence[Asked]) -> tuple[float, float]:
-    """For how long commands are equal [s], and how much of them is, 0 to 1."""
+def equal(one: Sequence[TimedCommand], other: Sequence[TimedCommand]) -> tuple[float, float]:
+    """Return how long commands are equal [s], and the share of equal ones, 0 to 1."""
     if not one or not other:
         return 0.0, 0.0
     pairs = zip(one, other, strict=False)
@@ -224,35 +223,35 @@ def equal(one: Sequence[Asked], other: Sequence[Asked]) -> tuple[float, float]:
 
 
 class Paths:
-    """The ways of a class.
+    """The paths of a class.
 
     Args:
-        ways: of each hand-in x, y of its points [mm]; empty where it went nowhere.
+        ways: x, y of the points [mm] of each hand-in; empty where it has no path.
     """
 
     def __init__(self, ways: Sequence[Sequence[int]]) -> None:
         self._who = [number for number, way in enumerate(ways) if way]
         self._place = {number: row for row, number in enumerate(self._who)}
         # Whole numbers, and their products summed up are below 2**53: floats hold them exactly,
-        # so the same comes out however a machine adds them up.
+        # so the order of additions does not matter.
         longest = max(map(len, ways), default=0)
         flat = np.array([ways[number] for number in self._who], dtype=np.float64)
         self._points = flat.reshape(len(self._who), longest)
 
     def distance(self, first: int, second: int) -> int | None:
-        """How far two hand-ins are apart [mm]; None where one of them went nowhere."""
+        """Return the mean distance of two paths [mm]; None where one hand-in has none."""
         if first not in self._place or second not in self._place:
             return None
         apart = self._points[self._place[first]] - self._points[self._place[second]]
         return int(self._mm(np.array([apart @ apart]))[0])
 
     def hands(self, first: int, second: int, within_mm: int) -> int:
-        """How many hand-ins are so near one of the two, itself among them; of both the greater."""
+        """Return how many paths are so near to one of the two, itself included; the greater one."""
         rows = [self._place[first], self._place[second]]
         return int((self._distances(self._points[rows]) <= within_mm).sum(axis=1).max())
 
     def rarely_near(self, within_mm: int, most: int) -> list[tuple[int, int]]:
-        """Pairs that are so near each other, where each has so many so near it, or fewer."""
+        """Return the pairs so near to each other, where each has at most so many near it."""
         near: dict[int, list[int]] = {}
         for begin in range(0, len(self._who), _ROWS):
             close = self._distances(self._points[begin : begin + _ROWS]) <= within_mm
@@ -266,7 +265,7 @@ class Paths:
         ]
 
     def _distances(self, rows: Floats) -> Floats:
-        """Of some ways to all of them [mm]."""
+        """Return the distances of some paths to all paths [mm]."""
         squares = (self._points**2).sum(axis=1)
         apart = (rows**2).sum(axis=1)[:, None] + squares - 2 * (rows @ self._points.T)
         return self._mm(apart)
@@ -276,7 +275,7 @@ class Paths:
 
 
 def _groups(pairs: Iterable[tuple[int, int]]) -> list[tuple[int, ...]]:
-    """Those whom pairs connect, by their lowest numbers."""
+    """Return the groups that pairs connect, sorted by their lowest numbers."""
     of: dict[int, list[int]] = {}
     for one, other in pairs:
         small, large = sorted((of.setdefault(n, [n]) for n in (one, other)), key=len)

@@ -1,7 +1,7 @@
-"""A class looked at together: read from its folder, written as similar.html and similar.jsonl.
+"""Compare the hand-ins of a class, and write similar.html and similar.jsonl.
 
-Read are entry.json and similar.json of each hand-in. The same class gives the same bytes. The page
-stands alone, has no script, and looks as a report's page does.
+It reads entry.json and similar.json of each hand-in. The same class gives the same bytes. The page
+is self-contained, has no script, and the style of a report's page.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from grader import files
 from grader.batch.entry import Entry
 from grader.batch.page.students import Student, students
 from grader.batch.similar import sources
-from grader.batch.similar.behaviour import Behaved
-from grader.batch.similar.compare import LARGE_CLASS, ONE_IN, Compared, Look, Pair, compare
+from grader.batch.similar.behaviour import Features
+from grader.batch.similar.compare import LARGE_CLASS, ONE_IN, Compared, Comparison, Pair, compare
 from grader.exercise.exercise import Exercise
 from grader.message import Message, msg
 from grader.reports.page import templating
@@ -35,16 +35,16 @@ _TEMPLATES = Path(__file__).parent / "templates"
 
 @dataclass(frozen=True)
 class Class:
-    """A class, and what was found in it.
+    """A class, and its similar hand-ins.
 
     Attributes:
-        students: whoever handed in something.
-        look: what was found; its numbers are places in `students`.
-        only_given: numbers of those who handed in nothing but what everybody was given.
+        students: those who handed in something.
+        comparison: its numbers are indices of `students`.
+        only_given: numbers of those who handed in only what everybody was given.
     """
 
     students: tuple[Student, ...]
-    look: Look
+    comparison: Comparison
     only_given: tuple[int, ...]
 
 
@@ -53,50 +53,50 @@ def write(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
 
     Raises:
         UsageError: they cannot be written.
-        ExerciseError, OSError: as `look_together`.
+        ExerciseError, OSError: as `compare_class`.
     """
-    found = look_together(entries, exercise)
+    found = compare_class(entries, exercise)
     page = _environment().get_template("similar.html")
-    html = page.render(found=found, look=found.look, exercise=translate(exercise.title))
+    html = page.render(found=found, exercise=translate(exercise.title))
     files.put(out / PAGE, html.encode("utf-8"))
     files.put(out / LINES, _json_lines(found).encode("utf-8"))
 
 
-def look_together(entries: Sequence[Entry], exercise: Exercise) -> Class:
-    """Compare what a class handed in.
+def compare_class(entries: Sequence[Entry], exercise: Exercise) -> Class:
+    """Compare the hand-ins of a class.
 
     Args:
         entries: from `grader.batch.entry.entries`.
 
     Raises:
-        ExerciseError, OSError: what was given cannot be read.
+        ExerciseError, OSError: the given files cannot be read.
     """
     given = {hashlib.sha256(each.data).hexdigest() for each in sources.given_files(exercise)}
     by_id = {student.entry.id: student for student in students(entries)}
     present = [entry for entry in entries if entry.state != "nothing"]
-    found = [Behaved.read(entry.folder) for entry in present]
+    found = [Features.read(entry.folder) for entry in present]
     only_given = tuple(
         number
         for number, each in enumerate(found)
         if each and each.files and {file.sha256 for file in each.files} <= given
     )
-    handed_in = [
+    compared = [
         Compared("" if number in only_given else _content(entry, each), each)
         for number, (entry, each) in enumerate(zip(present, found, strict=True))
     ]
-    return Class(tuple(by_id[entry.id] for entry in present), compare(handed_in), only_given)
+    return Class(tuple(by_id[entry.id] for entry in present), compare(compared), only_given)
 
 
-def _content(entry: Entry, found: Behaved | None) -> str:
-    """Names what was handed in: its Python files, else all of it."""
+def _content(entry: Entry, found: Features | None) -> str:
+    """Return a key of the content: of the Python files, else of everything."""
     if found is not None and found.files:
         return "\n".join(sorted(file.sha256 for file in found.files))
     return entry.key
 
 
 def _json_lines(found: Class) -> str:
-    """One line of JSON a pair, in the order of the page."""
-    rows = (_row(found, pair) for pair in found.look.pairs)
+    """Return a line of JSON for each pair, in the order of the page."""
+    rows = (_row(found, pair) for pair in found.comparison.pairs)
     return "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows)
 
 
@@ -126,7 +126,7 @@ def _headline(pair: Pair) -> str:
 
 
 def _facts(size: int, pair: Pair) -> Iterator[tuple[str, str, str]]:
-    """In which respects two are alike: what, how, and how usual that is in the class."""
+    """Yield in which respects two are alike: what, how, and how usual that is in the class."""
     if pair.same_content:
         same = tr("The Python files are the same, byte for byte.")
         yield tr("What was handed in"), same, ""
@@ -157,7 +157,7 @@ def _hands(size: int, hands: int, what: Message) -> str:
 
 
 def _percent(share: float) -> str:
-    """A share as people write it: 100 % is all of it, and 0 % nothing."""
+    """Format a share: 100 % is exactly all, and 0 % exactly nothing."""
     value = f"{100 * share:.0f}"
     if float(value) >= 100 and share < 1:
         return tr("more than {share} %", share="99")

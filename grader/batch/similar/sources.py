@@ -1,6 +1,6 @@
-"""The sources of a class, and what JPlag and Dolos read of them, which compare sources.
+"""Keep the sources of a class, and export them for JPlag and Dolos, which compare sources.
 
-    DIR/submissions/ID/source/        the Python files of a hand-in, kept with its result
+    DIR/submissions/ID/source/        the Python files of a hand-in
     export/jplag/students/ID/...py    a folder for each hand-in
     export/jplag/base/...py           what everybody was given
     export/dolos.zip                  students/ID.py, starter.py, info.csv
@@ -8,14 +8,14 @@
     java -jar jplag.jar -l python3 export/jplag/students -bc export/jplag/base
     dolos run -l python export/dolos.zip
 
-A name that not every system takes is made one that it does; what is too much is left out, and that
-is told. What everybody was given, or may have read, says nothing about two who have it in common:
-the exercise's starter, and its right solutions as far as it names them (mutants.yaml).
+Names are made valid for every system; files beyond the limits are left out and counted. What
+everybody was given, or may have read, is no sign of copying: the exercise's starter, and its right
+solutions if it names them (mutants.yaml).
 
-JPlag takes the folders below the one that it is given for submissions, and leaves out what matches
-the base code (its wiki, How to Use JPlag). Dolos compares file with file, so that each hand-in is
-one; its info.csv has a row a file, and the one whose `ignored` is true is its template (its docs,
-Adding metadata; dataset.ts).
+JPlag reads each folder below the given one as a submission, and ignores what matches the base code
+(its wiki, How to Use JPlag). Dolos compares files, so each hand-in is one file; its info.csv has a
+row for each, and the one whose `ignored` is true is the template (its docs, Adding metadata;
+dataset.ts).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _GIVEN: Final = "starter.py"
 
 
 class File(NamedTuple):
-    """A file that was kept: its name below the folder, with '/', and what is in it."""
+    """A kept file: its name below the folder, with '/', and its content."""
 
     name: str
     data: bytes
@@ -55,38 +55,38 @@ def keep(copy: Path, into: Path) -> int:
     """Copy the sources of a submission into a folder, which is made anew.
 
     Args:
-        copy: its private copy; nothing is followed that leads out of it.
+        copy: the private copy of the submission; links out of it are not followed.
 
     Returns:
         How many were left out.
 
     Raises:
-        OSError: a folder cannot be written, or what was handed in cannot be read.
+        OSError: a folder cannot be written, or a source cannot be read.
     """
     remove(into)
     into.mkdir(parents=True)
-    taken: set[str] = set()
+    names: set[str] = set()
     size = left_out = 0
     for path in _sources(copy):
         data = read_bounded(path)
-        if data is None or len(taken) >= MOST_FILES or size + len(data) > MOST_BYTES:
+        if data is None or len(names) >= MOST_FILES or size + len(data) > MOST_BYTES:
             left_out += 1
             continue
         size += len(data)
-        target = into / _free_name(path.relative_to(copy), taken)
+        target = into / _free_name(path.relative_to(copy), names)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(data)
     return left_out
 
 
 def kept(folder: Path) -> list[File]:
-    """What `keep` has put into a folder, by name; nothing where there is none.
+    """Return the files that `keep` has written, sorted by name; empty where there is no folder.
 
     Raises:
         OSError: it cannot be read.
     """
     if folder.is_symlink():
-        return []  # none of ours
+        return []  # the grader makes no links
     paths = [path for path in folder.rglob("*.py") if path.is_file() and not path.is_symlink()]
     named = sorted((path.relative_to(folder).as_posix(), path) for path in paths)
     return [File(name, _begin(path)) for name, path in named[:MOST_FILES]]
@@ -101,7 +101,7 @@ def _sources(copy: Path) -> Iterator[Path]:
     base = os.path.realpath(copy)
     try:
         found = files_below(copy)
-    except SubmissionError:  # too many files: whoever could be graded has fewer
+    except SubmissionError:  # too many files to be graded
         return
     for path in found:
         inside = Path(os.path.realpath(path)).is_relative_to(base)
@@ -109,20 +109,20 @@ def _sources(copy: Path) -> Iterator[Path]:
             yield path
 
 
-def _free_name(path: Path, taken: set[str]) -> str:
-    """A name for a file that no other has, whatever a system does with capital letters."""
+def _free_name(path: Path, names: set[str]) -> str:
+    """Return an unused name for a file, also on systems that ignore case; add it to `names`."""
     parts = [_STRANGE.sub("_", part)[:80] for part in path.with_suffix("").parts]
     stem, number = "/".join(parts), 1
     name = f"{stem}.py"
-    while name.lower() in taken:
+    while name.lower() in names:
         number += 1
         name = f"{stem}_{number}.py"
-    taken.add(name.lower())
+    names.add(name.lower())
     return name
 
 
 def given_files(exercise: Exercise) -> list[File]:
-    """The files that are known, by where they are from.
+    """Return the files that everybody was given, named by their origin.
 
     Raises:
         ExerciseError: its mutants.yaml cannot be used.
@@ -151,10 +151,10 @@ def _below(path: Path, whose: str) -> list[File]:
 
 
 def write_exports(entries: Sequence[Entry], exercise: Exercise, out: Path) -> None:
-    """Make both exports anew in the folder of a class. No names are in them, but ids.
+    """Write both exports into the folder of a class; they contain ids, but no names.
 
     Raises:
-        UsageError: they cannot be written, or sources not read.
+        UsageError: they cannot be written, or sources cannot be read.
         ExerciseError: the exercise's solutions cannot be used.
     """
     with whole_files.writing(out / FOLDER):
@@ -166,7 +166,7 @@ def write_exports(entries: Sequence[Entry], exercise: Exercise, out: Path) -> No
 
 
 def dolos(present: Sequence[tuple[Entry, list[File]]], given: Sequence[File]) -> bytes:
-    """The zip for Dolos."""
+    """Return the zip for Dolos."""
     members = {f"students/{entry.id}.py": _joined(files) for entry, files in present}
     rows = [_row(entry) for entry, _ in present]
     if given:
@@ -188,7 +188,7 @@ def _row(entry: Entry) -> list[str]:
 
 
 def _joined(files: Sequence[File]) -> bytes:
-    """Files as one, each below its name."""
+    """Join files into one, each below its name."""
     if len(files) == 1:
         return files[0].data
     parts = (f"# {file.name}\n".encode() + file.data.rstrip(b"\n") + b"\n" for file in files)

@@ -18,7 +18,7 @@ from grader.batch import cluster
 from grader.batch.class_file import OfCluster
 from grader.batch.entry import entries
 from grader.batch.remote import Offer
-from grader.batch.store import own_versions
+from grader.batch.store import installed_versions
 from grader.errors import UsageError
 from grader.message import plain_text
 from grader.run.processes import levels
@@ -151,7 +151,7 @@ class Fake:
     status = "running"
 
     def __init__(self, *offers: dict[str, Any]) -> None:
-        made = (Offer(**{"versions": own_versions(), **offer}) for offer in offers)
+        made = (Offer(**{"versions": installed_versions(), **offer}) for offer in offers)
         self.offers = {f"tcp://10.0.0.{n}:7": offer for n, offer in enumerate(made, 1)}
 
     def run(self, call: object, level: str, on_error: str) -> dict[str, Offer]:
@@ -170,7 +170,7 @@ def session(fake: Fake, isolation: OfCluster | None = None) -> tuple[cluster._Se
 def test_a_cluster_with_other_versions_is_refused_before_anything_is_sent_to_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    fake = Fake({"versions": {**own_versions(), "ros_distro": "rolling"}})
+    fake = Fake({"versions": {**installed_versions(), "ros_distro": "rolling"}})
     monkeypatch.setattr(cluster, "_connected", lambda *_: nullcontext(fake))
     other = "the worker at tcp://10.0.0.1:7 has other versions: ros_distro rolling, and "
     with pytest.raises(UsageError, match=other):

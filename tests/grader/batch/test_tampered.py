@@ -145,7 +145,7 @@ def test_what_pages_show_of_a_run_is_left_out_where_it_is_no_file_of_ours(
     for name in (THUMB, behaviour.NAME):
         replaced(folder / name, NO_FILE[how])
     assert Thumb.read(folder) is None
-    assert behaviour.Behaved.read(folder) is None
+    assert behaviour.Features.read(folder) is None
 
 
 def test_of_sources_no_more_is_read_than_is_shown_and_no_link_followed(out: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grader.batch.entry import SUBMISSIONS, Entry, HandIn, Person, entries
 from grader.batch.similar import behaviour, sources
-from grader.batch.similar.page import Class, look_together
+from grader.batch.similar.page import Class, compare_class
 from grader.exercise.loading import load_exercise
 from grader.recording.recording import Recording
 
@@ -54,7 +54,7 @@ def hand_in(
         (copy / file).parent.mkdir(parents=True, exist_ok=True)
         (copy / file).write_bytes(data)
     left_out = sources.keep(copy, folder / sources.SOURCE)
-    made = behaviour.behaved(folder / sources.SOURCE, nominal, left_out)
+    made = behaviour.features_file(folder / sources.SOURCE, nominal, left_out)
     (folder / behaviour.NAME).write_bytes(made)
     entry = Entry(HandIn(who, (Person(who, name),)), "failed", 100.0, folder=folder)
     entry.put()
@@ -63,7 +63,7 @@ def hand_in(
 
 def looked_at(out: Path) -> Class:
     """The class in a folder, looked at together."""
-    return look_together(entries(out), CHALLENGE)
+    return compare_class(entries(out), CHALLENGE)
 
 
 def _files(path: Path) -> dict[str, bytes]:

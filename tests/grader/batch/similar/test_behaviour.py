@@ -2,15 +2,15 @@
 
 import pytest
 
-from grader.batch.similar.behaviour import POINTS, Asked, Behaved
+from grader.batch.similar.behaviour import POINTS, Features, TimedCommand
 from grader.batch.similar.compare import LARGE_CLASS, Compared, compare, equal
 
 
 def behaves(number, end_mm=4000, step=31):
     """Somebody with commands and a way of his own kind, and nothing else."""
-    commands = tuple(Asked(step * n, 100 * number + n) for n in range(20))
+    commands = tuple(TimedCommand(step * n, 100 * number + n) for n in range(20))
     path = tuple(value for n in range(POINTS) for value in (n * end_mm // POINTS, number * n))
-    return Compared("", Behaved((), commands, path))
+    return Compared("", Features((), commands, path))
 
 
 def listed(handed_in):
@@ -36,21 +36,21 @@ def test_in_a_small_class_it_lists_nobody():
 
 def test_ways_that_are_nearly_the_same_are_found_though_no_command_is():
     near = behaves(50)
-    other = Compared("", Behaved((), behaves(51).behaved.commands, near.behaved.path))
+    other = Compared("", Features((), behaves(51).features.commands, near.features.path))
     (pair,) = compare([*usual(60), near, other]).pairs
     assert (pair.first, pair.second, pair.path_mm, pair.equal_commands) == (60, 61, 0, 0.0)
 
 
 def test_who_did_nothing_is_like_nobody():
-    nothing = Compared("", Behaved())
+    nothing = Compared("", Features())
     assert listed([*usual(60), nothing, nothing, Compared("", None)]) == []
 
 
 def test_commands_of_which_nearly_all_are_the_same_are_alike():
-    one = behaves(50).behaved.commands
-    other = (*one[:19], Asked(31 * 19, 7))
-    other_way = behaves(51, 8000).behaved.path
-    changed = Compared("", Behaved((), other, other_way))
+    one = behaves(50).features.commands
+    other = (*one[:19], TimedCommand(31 * 19, 7))
+    other_way = behaves(51, 8000).features.path
+    changed = Compared("", Features((), other, other_way))
     (pair,) = compare([*usual(60), behaves(50), changed]).pairs
     assert (pair.first, pair.second, pair.commands_hands) == (60, 61, 2)
 
@@ -75,5 +75,5 @@ def test_how_many_others_behave_so_is_told():
     ],
 )
 def test_commands_are_compared_one_by_one(one, other, time_ns, share):
-    both = ([Asked(*each) for each in commands] for commands in (one, other))
+    both = ([TimedCommand(*each) for each in commands] for commands in (one, other))
     assert equal(*both) == (time_ns / 1e9, share)

@@ -44,7 +44,7 @@ def test_it_says_where_the_sources_are_and_who_compares_them(out):
 
 
 def test_who_handed_in_the_starter_is_told_as_such_and_with_nobody(out):
-    found = page.look_together(entries(out), CHALLENGE)
+    found = page.compare_class(entries(out), CHALLENGE)
     ids = [found.students[number].entry.id for number in found.only_given]
     assert ids == ["starter_1", "starter_2"]
     assert "Nothing of their own" in html(out)
@@ -91,5 +91,5 @@ def test_hand_ins_of_which_nothing_is_kept_are_compared_as_a_whole(tmp_path):
         entry = hand_in(tmp_path / "out", who, HONEST["quick"])
         replace(entry, key="abcdef").put()
         (entry.folder / "similar.json").unlink()
-    (pair,) = page.look_together(entries(tmp_path / "out"), CHALLENGE).look.pairs
+    (pair,) = page.compare_class(entries(tmp_path / "out"), CHALLENGE).comparison.pairs
     assert pair.same_content

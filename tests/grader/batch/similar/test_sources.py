@@ -11,7 +11,7 @@ import pytest
 from grader import strict_json
 from grader.batch.entry import entries
 from grader.batch.similar import behaviour, sources
-from grader.batch.similar.behaviour import Behaved
+from grader.batch.similar.behaviour import Features
 from tests.grader.batch.similar.classes import CHALLENGE, HONEST, hand_in, text
 from tests.grader.driving import Spiral, drive
 
@@ -74,7 +74,7 @@ def test_the_same_class_gives_the_same_bytes_and_nothing_older_stays(out):
 
 
 def read(entry):
-    found = Behaved.read(entry.folder)
+    found = Features.read(entry.folder)
     assert found is not None
     return found
 
@@ -119,7 +119,7 @@ def test_it_comes_back_as_it_was_and_the_same_makes_the_same_bytes(tmp_path):
     other = hand_in(tmp_path / "out", "bob", {"a.py": text("quick")}, recording)
     data = (one.folder / behaviour.NAME).read_bytes()
     assert data == (other.folder / behaviour.NAME).read_bytes()
-    found = strict_json.of_line(Behaved, data, behaviour.BOUNDS)
+    found = strict_json.of_line(Features, data, behaviour.BOUNDS)
     assert strict_json.line(found) == data
     assert found.commands[0].time_ns == 0 and len(found.path) == 2 * behaviour.POINTS
     assert found.path[:2] == (0, 0)
@@ -143,4 +143,4 @@ def test_it_comes_back_as_it_was_and_the_same_makes_the_same_bytes(tmp_path):
 )
 def test_what_is_none_of_ours_is_refused(data):
     with pytest.raises(ValueError):
-        strict_json.of_line(Behaved, data, behaviour.BOUNDS)
+        strict_json.of_line(Features, data, behaviour.BOUNDS)
