@@ -51,7 +51,7 @@ tools:
 needs: tools
 	@$(BIN)/python -m tests.needs | sh -ex
 
-# a worker for each core; one that has nothing left takes tests from the end of another's list
+# one and a half workers for a core; who has nothing left takes from the end of the other
 PYTEST = -m pytest --numprocesses=logical --dist=worksteal
 
 test: tools
