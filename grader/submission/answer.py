@@ -1,4 +1,4 @@
-"""What the copy that reads a submission answers: one line of JSON, and nothing else is taken."""
+"""The answer of the process that reads a submission: one line of JSON, strictly decoded."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from grader.text import clip
 
 #: No line is longer.
 MAX_BYTES: Final = 1_000_000
-#: So many modules are told, of those that are imported surely and of the others.
+#: So many modules are in an answer, of those that are imported surely and of the others.
 _MAX_MODULES: Final = 500
 _MAX_NAME: Final = 200
-#: So many notes are told, and so much of each [characters].
+#: So many notes are in an answer, and so much of each [characters].
 _MAX_NOTES: Final = 20
 _MAX_NOTE: Final = 1000
 
@@ -28,14 +28,14 @@ _REFUSALS: Final = {each.whose: each for each in (SubmissionError, UsageError)}
 
 @dataclass(frozen=True)
 class Answer:
-    """What came of a submission; one of these.
+    """The outcome of reading a submission; one of these.
 
     Attributes:
         found: what to start.
-        asks: for what only an inspection can tell.
+        asks: for an inspection.
         refused: why the submission cannot be used, and `whose` turn it is.
-        unable: why the machine cannot read it, and the system's number `errno` of that.
-        failed: our own mistake, in words.
+        unable: why the machine cannot read it, and the system's `errno` of that.
+        failed: the grader's own mistake, in words.
     """
 
     found: Submission | None = None
@@ -48,7 +48,7 @@ class Answer:
 
     @classmethod
     def of_found(cls, submission: Submission) -> Self:
-        """The answer of one who has found what to start: no more of it than anybody reads."""
+        """Answer with a submission, its lists and texts cut to their limits."""
         imports = Imports(_some(submission.imports.surely), _some(submission.imports.perhaps))
         notes = submission.notes[:_MAX_NOTES]
         short = tuple(note.map_texts(partial(clip, limit=_MAX_NOTE)) for note in notes)
@@ -56,11 +56,11 @@ class Answer:
 
     @classmethod
     def of_refusal(cls, error: GraderError) -> Self:
-        """The answer of one who cannot use the submission."""
+        """Answer with the error that refuses a submission."""
         return cls(refused=error.message, whose=error.whose)
 
     def submission(self) -> Submission:
-        """What was found.
+        """Return the submission that was found.
 
         Raises:
             SubmissionError, UsageError, OSError, NotInspected: that was the answer.
@@ -79,7 +79,7 @@ class Answer:
 
 
 def decoded(line: bytes) -> Answer:
-    """What a copy has answered; where that makes no sense, that it has failed."""
+    """Decode an answer; one that makes no sense becomes that of a failure."""
     try:
         if len(line) > MAX_BYTES:
             raise ValueError(f"an answer of {len(line)} bytes")

@@ -1,8 +1,8 @@
-"""Reads what was handed in, in a copy of this process with limits of time and memory.
+"""Reads a submission in a copy of this process with limits of time and memory.
 
-A file can be made so that its parser takes all memory, or falls over. So nothing that was handed in
-is read in this process: each submission is read by a copy (`grader.limited`), which gives one
-answer (`answer.py`) and reaches nothing else.
+A file can be made so that its parser uses all memory, or crashes. So no submission is read in this
+process: each is read by a copy (`grader.limited`), which gives one answer (`answer.py`) and reaches
+nothing else.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from grader.submission.start import Submission, Whole
 if TYPE_CHECKING:  # what only a package needs takes time to import
     from grader.scenes.package.inspection import Inspection
 
-#: What the reading of one submission may take. A file of MAX_SOURCE_BYTES of ordinary Python takes
+#: The limits of reading one submission. A file of MAX_SOURCE_BYTES of ordinary Python takes
 #: some 150 MB; an ordinary submission takes 0.1 s of a processor, a zip of MAX_BYTES two.
 LIMITS: Final = limited.WorkLimits(
     cpu_s=10.0, wall_s=120.0, memory_bytes=512_000_000, answer_bytes=MAX_BYTES
@@ -52,10 +52,10 @@ def read(
     """Read a submission; see `finding.find`, or `whole.find` for one that is not started.
 
     Args:
-        again: what the first reading asked for, and what the inspection has answered.
+        again: the first reading's request for an inspection, and that inspection.
 
     Raises:
-        NotInspected: it is a package; read it again, with what an inspection says.
+        NotInspected: it is a package; read it again, with its inspection.
         SubmissionError: as there, or it takes more than the limits.
         UsageError, OSError: as there.
         GraderFailure: the copy has failed.
@@ -78,7 +78,7 @@ def read(
 
 
 def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> Answer:
-    """The answer for a copy that has given none."""
+    """Make the answer for a copy that reached a limit and gave none."""
     too_much = _too_much(hit)
     if not too_much:
         return Answer(failed=f"the process for it {hit.why!s}")
@@ -95,7 +95,7 @@ def _of_hit(hit: limited.LimitHit, name: str, place: mmap.mmap) -> Answer:
 
 
 def _too_much(hit: limited.LimitHit) -> Message:
-    """What was too much; nothing where the reading ended for a reason of ours."""
+    """Say which limit was exceeded; NOTHING where the reading failed by our own fault."""
     if isinstance(hit, limited.Slow):
         return msg("that takes more than {wall_s} s", wall_s=int(LIMITS.wall_s))
     if isinstance(hit, limited.NoEnd):
@@ -131,7 +131,7 @@ def _answered(
 
 
 def _answer(found: Callable[[], Submission], path: Path) -> Answer:
-    """What there is to start, or why there is nothing."""
+    """Find what to start, and answer with it or with the error."""
     try:
         return Answer.of_found(found())
     except NotInspected as asks:
@@ -153,7 +153,7 @@ def _answer(found: Callable[[], Submission], path: Path) -> Answer:
 
 
 def _with_its_source(found: Submission, path: Path) -> Submission:
-    """The same with what its source shows: imports, faults and lint findings."""
+    """Add to a submission what its source shows: imports, faults and lint findings."""
     only = None if path.is_dir() or path.suffix != ".py" else found.root / path.name
     assert not isinstance(found.start, Whole)
     imports = read_imports(found.root, found.start, only)
@@ -163,7 +163,7 @@ def _with_its_source(found: Submission, path: Path) -> Submission:
 
 
 def _note_what_is_read(place: mmap.mmap, *folders: Path) -> None:
-    """Write down which file of these folders is opened, before it is: it may be the last."""
+    """Record which file of these folders is opened, before it is: it may be the last."""
     bases = [str(folder.resolve()) + os.sep for folder in folders]
 
     def note(event: str, arguments: tuple[Any, ...]) -> None:
