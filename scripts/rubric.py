@@ -10,7 +10,7 @@ sys.path.insert(0, str(ROOT))
 
 from grader.exercise.exercise import Exercise  # noqa: E402
 from grader.exercise.loading import load_exercise  # noqa: E402
-from grader.exercise.sheet import rubric, told  # noqa: E402
+from grader.exercise.sheet import check_rubric, rubric  # noqa: E402
 from grader.text import points  # noqa: E402
 
 PAGE = ROOT / "docs" / "rubric.md"
@@ -23,19 +23,19 @@ FIRST, LAST = "<!-- from the checks: python scripts/rubric.py -->", "<!-- so far
 
 
 def page(old: str) -> str:
-    """The page with the rubrics as they are now; what two exercises share is told once."""
+    """The page with the rubrics as they are now; what two exercises share stands there once."""
     before, _, rest = old.partition(FIRST)
     _, _, after = rest.partition(LAST)
     parts = []
-    told_by: dict[str, str] = {}  # what a check measures -> the exercise that told it first
+    first_in: dict[str, str] = {}  # what a check measures -> the first exercise with it
     for name in EXERCISES:
         exercise = load_exercise(name)
-        texts = {check.name: told(check, exercise.tolerances) for check in exercise.checks}
+        texts = {check.name: check_rubric(check, exercise.tolerances) for check in exercise.checks}
         above = {
-            check: told_by[texts[check]] for check in exercise.points if texts[check] in told_by
+            check: first_in[texts[check]] for check in exercise.points if texts[check] in first_in
         }
         first = (texts[check] for check in exercise.points if check not in above)
-        told_by |= {text: name for text in first if text}
+        first_in |= {text: name for text in first if text}
         parts.append(f"## {exercise.title!s}\n\n`{name}`\n")
         if above:
             parts.append("\n".join(_as_in(exercise, *each) for each in above.items()) + "\n")

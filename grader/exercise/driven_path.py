@@ -1,4 +1,4 @@
-"""The path that something drove, as arrays, and what exercises ask of it: where, how far, when.
+"""The path that something drove, as arrays, and measures of it: where, how far, when.
 
 Made for checks: an exercise derives a class of its own that adds the words of its task, or uses
 this one as it is. Nothing here raises for what a submission can do: a path may be empty, may have
@@ -27,9 +27,9 @@ Mask = npt.NDArray[np.bool_]
 
 #: A step that is longer by this than its speed explains is a jump [m].
 JUMP_M = 0.001
-#: How often corners are looked at again; a polygon needs two or three looks.
-MOST_LOOKS = 10
-#: A path with more corners is no polygon that anybody meant, and is not looked at any closer.
+#: How often corners are improved; a polygon needs two or three passes.
+MOST_PASSES = 10
+#: A path with more corners was not meant as a polygon, and is not simplified any further.
 MOST_CORNERS = 300
 
 
@@ -90,7 +90,7 @@ class DrivenPath:
         return DrivenPath(self.recording, self.way[rows], self.number)
 
     def begun_at(self, start: Start) -> DrivenPath:
-        """The same with one reading more in front: at tick 0 it stood at rest at its start.
+        """Return the path with one reading more in front: at tick 0 it stood at rest at its start.
 
         The first reading of a recording lies after the first tick, which may have moved it.
         """
@@ -222,13 +222,13 @@ class DrivenPath:
         return msg("({x:.2f}, {y:.2f})", x=self.x[row], y=self.y[row])
 
     def evidence(self, row: int, note: Message) -> Evidence:
-        """What a finding can point at: its place and time at a row. -1 is the last."""
+        """Make evidence of the place and time at a row; -1 is the last."""
         tick = int(self.ticks[row])
         x, y = round(float(self.x[row]), 3), round(float(self.y[row]), 3)
         return self._evidence(tick, note, x, y)
 
     def at(self, tick: int, note: Message) -> Evidence:
-        """The same for the first reading at or after a tick, or the last one.
+        """Make evidence of the first reading at or after a tick, or the last one.
 
         Where there is no reading at all, it has no place.
         """
@@ -257,11 +257,11 @@ def _last(mask: Mask) -> int:
 
 
 def simplify(points: Floats, error_m: float) -> list[int]:
-    """Which points to keep so that all lie within `error_m` of the lines between them.
+    """Return the points to keep so that all lie within `error_m` of the lines between them.
 
     The algorithm of Ramer, Douglas and Peucker finds as many as are needed or a few more, and not
     quite in the corners: a side that is parallel to its line of sight is farthest everywhere. So
-    each is then looked at again between its neighbours.
+    each is then improved between its neighbours.
     """
     keep = {0, len(points) - 1}
     pending = [(0, len(points) - 1)]
@@ -272,7 +272,7 @@ def simplify(points: Floats, error_m: float) -> list[int]:
             keep.add(middle)
             pending += [(first, middle), (middle, last)]
     marks = sorted(keep)
-    for _ in range(MOST_LOOKS):
+    for _ in range(MOST_PASSES):
         before = list(marks)
         for mark in before[1:-1]:
             at = marks.index(mark)
