@@ -23,9 +23,9 @@ from turtlesim_py.world.events import CmdVel
 from turtlesim_py.world.trajectory import Floats
 from turtlesim_py.world.turtle import SIZE_M
 
-#: Where a run starts unless it is said otherwise: the middle of the window, heading right.
+#: Where a run starts by default: the middle of the window, heading right.
 USUAL_START = Start(SIZE_M / 2, SIZE_M / 2, 0.0)
-#: A shorter step is no motion: where it was put and what it publishes differ by rounding [m].
+#: A shorter step is no motion: the pose that was set and the published one differ by rounding [m].
 STILL_M = 1e-5
 #: Two sides that meet at the start with less of a turn are one side, begun in its middle [deg].
 SAME_SIDE_DEG = 30.0
@@ -121,7 +121,7 @@ class Way(DrivenPath):
         return len(found) > 2 and bool(gap < self.tolerances["side_m"] / 2)
 
     def stop_command(self) -> int | None:
-        """The tick of the command that stopped turtle1, if one did."""
+        """Return the tick of the command that stopped turtle1, if one did."""
         found = None
         for command in reversed(self.commands):
             if not stands_still(command):
@@ -131,7 +131,7 @@ class Way(DrivenPath):
         return found if found is not None and found <= last_motion + STOP_SHOWS else None
 
     def stopped_and_drove_on(self) -> tuple[CmdVel, CmdVel] | None:
-        """The first command to stand after the return, near the start, and which one ended it."""
+        """Find the first command to stop after the return, near the start, and the one after it."""
         if self.lap_end is None:
             return None
         since = int(self.ticks[self.lap_end])
