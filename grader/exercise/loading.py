@@ -81,7 +81,7 @@ def _from_place(place: Place) -> Exercise:
         try:
             return build(_described(file, place), place)
         except Mistake as mistake:
-            raise ExerciseError(file.text(mistake)) from mistake
+            raise ExerciseError(file.describe(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(
             "cannot read {description}: {strerror}",
@@ -104,7 +104,7 @@ def _from_file(path: Path) -> Exercise:
             place, original = _original(edited.data.get("exercise"), path.parent)
             return build(_merged(original, edited.data), place)
         except Mistake as mistake:
-            raise ExerciseError(edited.text(mistake)) from mistake
+            raise ExerciseError(edited.describe(mistake)) from mistake
     except OSError as error:
         raise ExerciseError(
             "cannot read the exercise {path}: {strerror}", path=str(path), strerror=error.strerror
@@ -123,7 +123,7 @@ def _original(name: object, folder: Path) -> tuple[Place, dict[str, Any]]:
         try:
             described = _described(file, beside)
         except Mistake as mistake:  # of another file than the one that is being read
-            raise ExerciseError(file.text(mistake)) from mistake
+            raise ExerciseError(file.describe(mistake)) from mistake
         if described["exercise"] == name:
             return beside, described
     if not isinstance(name, str) or name not in names():
