@@ -22,7 +22,6 @@ _PLACE = re.compile(r" \([^()]*, line \d+\)$")
 #: So much of an exception's text is in the cause, which is to be one short sentence [characters].
 _LONGEST_ERROR = 120
 _NOT_READ = ("SyntaxError", "IndentationError", "TabError")
-_NONE = "'NoneType'"
 #: For people who do not know the kernel's words.
 _SIGNALS = {
     "SIGABRT": msg("a library gave up on a value that it cannot take"),
@@ -195,8 +194,8 @@ def crashed(case: Case) -> Diagnosis | None:
         return None
     when = _when(case, raised)
     hint = lint_findings.explain(case, raised) or usual.explain(raised)
-    place = hint.place if hint is not None and hint.place is not None else raised.place
-    at_line = place if hint is not None and hint.text else raised.place
+    place = hint.place or raised.place
+    at_line = place if hint.text else raised.place
     cause = msg(
         "Your node crashed{at}{error}{where}.",
         at=at(when),
@@ -225,27 +224,25 @@ def misses_message(case: Case) -> bool:
     """Whether the program crashed because it had no value yet, as one that a message brings."""
     raised = case.raised
     return raised is not None and (
-        _NONE in raised.text
-        or "NoneType" in raised.text
+        "NoneType" in raised.text
         or (raised.type == "AttributeError" and "has no attribute" in raised.text)
     )
 
 
-def _error(raised: Raised, hint: usual.Hint | None) -> Message:
+def _error(raised: Raised, hint: usual.Hint) -> Message:
     """Return ': TypeError: its text', or ' (TypeError): ' and the hint's text."""
     name, text = excerpt(raised.type).rpartition(".")[2], excerpt(raised.text).rstrip(".")
-    if hint is not None and hint.text:
+    if hint.text:
         return msg(" ({name}): {error}", name=name, error=hint.text)
     text = clip(text, _LONGEST_ERROR)
     return msg(": {error}", error=f"{name}: {text}" if text else name)
 
 
-def _help(raised: Raised, hint: usual.Hint | None) -> Message:
-    whole = msg("The whole traceback is in output.txt.")
-    help_ = hint.help if hint is not None else usual.meaning(raised)
+def _help(raised: Raised, hint: usual.Hint) -> Message:
+    help_ = hint.help
     if not help_ and raised.place is None:
         help_ = msg("None of its lines is in your own files.")
-    return sentences(help_, whole)
+    return sentences(help_, msg("The whole traceback is in output.txt."))
 
 
 def killed(case: Case) -> Diagnosis | None:

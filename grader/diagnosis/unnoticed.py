@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from grader.diagnosis.case import Case, after, excerpt, function, is_library, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.usual import explain, meaning
+from grader.diagnosis.usual import explain
 from grader.message import NOTHING, Message, joined, msg, plain_text
 from grader.recording.observations import Caught, SourceLine
 
@@ -139,16 +139,9 @@ def _is_mistake(caught: Caught) -> bool:
 
 
 def _error(caught: Caught) -> Message:
-    hint = explain(caught)
-    text = (
-        hint.text
-        if hint is not None and hint.text
-        else plain_text(excerpt(caught.text).rstrip("."))
-    )
+    text = explain(caught).text or plain_text(excerpt(caught.text).rstrip("."))
     return joined([excerpt(caught.type), text] if text else [excerpt(caught.type)], ": ")
 
 
 def _help(caught: Caught) -> Message:
-    hint = explain(caught)
-    help_ = hint.help if hint is not None else meaning(caught)
-    return sentences(help_, NOT_CAUGHT)
+    return sentences(explain(caught).help, NOT_CAUGHT)

@@ -65,7 +65,7 @@ class Hint:
     """An exception in plain words.
 
     Attributes:
-        help: what to do.
+        help: what to do; '' where that is not known.
         text: instead of the exception's own text; '' where that is good as it is.
         place: where to fix it; None where that is where it was raised.
     """
@@ -75,15 +75,11 @@ class Hint:
     place: SourceLine | None = None
 
 
-def explain(raised: Raised | Caught) -> Hint | None:
-    """Explain an exception by the first rule that fits; None where none does."""
+def explain(raised: Raised | Caught) -> Hint:
+    """Explain an exception by the first rule that fits, or else by its name alone."""
     name, text = raised.type.rpartition(".")[2], raised.text[:_LONGEST]
-    return next((hint for rule in _RULES if (hint := rule(name, text, raised.place))), None)
-
-
-def meaning(raised: Raised | Caught) -> Message:
-    """Return what an exception of this name means; '' where no more than its name is known."""
-    return _MEANING.get(raised.type.rpartition(".")[2], NOTHING)
+    hints = (hint for rule in _RULES if (hint := rule(name, text, raised.place)))
+    return next(hints, Hint(_MEANING.get(name, NOTHING)))
 
 
 def _without_init(name: str, text: str, _: SourceLine | None) -> Hint | None:

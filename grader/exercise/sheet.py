@@ -11,7 +11,6 @@ import re
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from datetime import datetime
 from typing import Any
 
 import yaml
@@ -125,7 +124,7 @@ def _late(policy: LatePolicy) -> Iterator[str]:
             "It is due on {date} at {time} (UTC{zone}).",
             date=f"{policy.due:%Y-%m-%d}",
             time=f"{policy.due:%H:%M:%S}",
-            zone=_zone(policy.due),
+            zone=policy.due.isoformat()[-6:],  # '+01:00'
         )
     ]
     if policy.grace_min:
@@ -142,11 +141,6 @@ def _late(policy: LatePolicy) -> Iterator[str]:
     else:
         sentences.append(msg("To hand it in later costs no points."))
     yield _wrapped(translate(joined(sentences, " ")))
-
-
-def _zone(due: datetime) -> str:
-    """'+01:00'."""
-    return due.isoformat()[-6:]
 
 
 def _waits(checks: Iterable[Check]) -> Iterator[str]:

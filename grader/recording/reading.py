@@ -261,6 +261,7 @@ def _loaded(found: Sequence[_Header]) -> list[Recording]:
 
 def _recording(header: _Header, trace: Trace) -> Recording:
     facts = header.facts
+    origin = facts[PROVENANCE]
     _must_agree(header.folder, "ticks", header.run.ticks, trace.ticks)
     _must_agree(header.folder, "trace_sha256", header.run.trace_sha256, trace.sha256())
     return Recording(
@@ -270,14 +271,10 @@ def _recording(header: _Header, trace: Trace) -> Recording:
         output=header.output,
         start=Start(**facts["start"]) if facts["start"] else None,
         scene=header.subject.name,
-        provenance=_provenance(facts[PROVENANCE]),
+        provenance=strict_json.from_json(Provenance, origin, strict_json.OURS) if origin else None,
         observations=_observations(header.folder / OBSERVATIONS),
         package=_package(header.folder / PACKAGE),
     )
-
-
-def _provenance(data: object) -> Provenance | None:
-    return strict_json.from_json(Provenance, data, strict_json.OURS) if data else None
 
 
 def _package(path: Path) -> Trace | None:
