@@ -6,7 +6,7 @@ import re
 from contextlib import suppress
 from signal import Signals
 
-from grader.diagnosis import lint_findings, usual
+from grader.diagnosis import known_exceptions, lint_findings
 from grader.diagnosis.case import Case, at, excerpt, line, sentences, thread_exception
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.message import NOTHING, Message, msg, plain_text
@@ -193,7 +193,7 @@ def crashed(case: Case) -> Diagnosis | None:
     if case.run.outcome != "crashed" or raised is None:
         return None
     when = _when(case, raised)
-    hint = lint_findings.explain(case, raised) or usual.explain(raised)
+    hint = lint_findings.explain(case, raised) or known_exceptions.explain(raised)
     place = hint.place or raised.place
     at_line = place if hint.text else raised.place
     cause = msg(
@@ -211,7 +211,7 @@ def thread_crashed(case: Case) -> Diagnosis | None:
     raised = case.raised or thread_exception(case.tail)
     if raised is None or case.raised is not None or raised.place is None:
         return None  # without a place: libraries' threads when the program ends
-    hint = usual.explain(raised)
+    hint = known_exceptions.explain(raised)
     cause = msg(
         "A thread of your program crashed{error}{where}.",
         error=_error(raised, hint),
@@ -229,7 +229,7 @@ def misses_message(case: Case) -> bool:
     )
 
 
-def _error(raised: Raised, hint: usual.Hint) -> Message:
+def _error(raised: Raised, hint: known_exceptions.Hint) -> Message:
     """Return ': TypeError: its text', or ' (TypeError): ' and the hint's text."""
     name, text = excerpt(raised.type).rpartition(".")[2], excerpt(raised.text).rstrip(".")
     if hint.text:
@@ -238,7 +238,7 @@ def _error(raised: Raised, hint: usual.Hint) -> Message:
     return msg(": {error}", error=f"{name}: {text}" if text else name)
 
 
-def _help(raised: Raised, hint: usual.Hint) -> Message:
+def _help(raised: Raised, hint: known_exceptions.Hint) -> Message:
     help_ = hint.help
     if not help_ and raised.place is None:
         help_ = msg("None of its lines is in your own files.")

@@ -11,9 +11,9 @@ from dataclasses import replace
 
 from grader.diagnosis.case import Case, excerpt, function, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
+from grader.diagnosis.known_exceptions import Hint
 from grader.diagnosis.standstill import never_spins
 from grader.diagnosis.unnoticed import NOT_CAUGHT
-from grader.diagnosis.usual import Hint
 from grader.message import Message, as_message, msg
 from grader.recording.observations import LintFinding, LintKind, Raised, SourceLine
 

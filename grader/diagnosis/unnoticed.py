@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from grader.diagnosis.case import Case, after, excerpt, function, is_library, line, sentences
 from grader.diagnosis.diagnosis import Diagnosis
-from grader.diagnosis.usual import explain
+from grader.diagnosis.known_exceptions import explain
 from grader.message import NOTHING, Message, joined, msg, plain_text
 from grader.recording.observations import Caught, SourceLine
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from grader import content, extensions
 from grader.errors import ExerciseError
-from grader.exercise import handing_in, places, translated
+from grader.exercise import places, policies, translated
 from grader.exercise.check import Checks
 from grader.exercise.exercise import CPU, INSPECTS, PER_STUDENT, Exercise, VariedRuns
 from grader.exercise.places import DESCRIPTION, Place
@@ -76,10 +76,10 @@ def build(data: dict[str, Any], place: Place) -> Exercise:
         starter=_starter(data.get("starter"), place),
         sha256=_sha256(data, setting, place.folder),
         task=authored(data.get("task", ""), words.task),
-        visible=handing_in.visible(data.get("visible"), checks, points),
+        visible=policies.visible(data.get("visible"), checks, points),
         explained=words.tolerances,
     )
-    return replace(exercise, late=handing_in.late(data.get("late"), exercise.max_score))
+    return replace(exercise, late=policies.late(data.get("late"), exercise.max_score))
 
 
 def _subject(name: object) -> tuple[str, Subject]:

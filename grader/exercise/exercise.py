@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from grader.exercise.check import Checks
-from grader.exercise.handing_in import LatePolicy
+from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Visible
 from grader.message import NOTHING, Message
 from grader.recording.subject import Start, Subject, load_subject

@@ -17,8 +17,8 @@ import yaml
 
 from grader.exercise.check import Check
 from grader.exercise.exercise import Exercise
-from grader.exercise.handing_in import LatePolicy
 from grader.exercise.places import DESCRIPTION
+from grader.exercise.policies import LatePolicy
 from grader.message import chained, joined, msg
 from grader.recording.subject import Subject
 from grader.text import points

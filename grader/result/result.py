@@ -15,7 +15,7 @@ from typing import Any, Self
 from grader import files, versions
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.exercise.exercise import Exercise
-from grader.exercise.handing_in import Late, LatePolicy
+from grader.exercise.policies import Late, LatePolicy
 from grader.exercise.sentences import not_followed, remarks
 from grader.exercise.verdict import Verdict
 from grader.recording.recording import Provenance, Recording, Recordings, Run, now
@@ -63,7 +63,7 @@ class SubmissionInfo:
         id, name: of the student, or the group.
         attempt: counts from 1.
         at: when, with its zone; None where it is not known.
-        late_s, days, deducted: see `grader.exercise.handing_in.Late`; `deducted` are its points.
+        late_s, days, deducted: see `grader.exercise.policies.Late`; `deducted` are its points.
     """
 
     id: str

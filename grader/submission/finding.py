@@ -38,7 +38,6 @@ from grader.submission.entry_points import (
 )
 from grader.submission.folder import (
     HAND_IN,
-    MAX_ENTRIES,
     USUAL_NAME,
     SubmissionFolder,
     entries_of,
@@ -142,7 +141,7 @@ def _in_folder(
     inspection: Inspection | None = None,
 ) -> Submission:
     top = top_of(submitted.base)
-    if all(is_junk(entry.name) for entry in entries_of(top, MAX_ENTRIES)):
+    if all(is_junk(entry.name) for entry in entries_of(top)):
         raise SubmissionError(
             "{name} is an empty folder. {hand_in}", name=submitted.name, hand_in=HAND_IN
         )

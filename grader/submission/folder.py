@@ -122,9 +122,9 @@ def top_of(folder: Path) -> Path:
     return folder
 
 
-def entries_of(folder: Path, limit: int) -> list[Path]:
-    """List a folder, sorted; not more than one entry above the limit."""
-    return sorted(islice(folder.iterdir(), limit + 1))
+def entries_of(folder: Path) -> list[Path]:
+    """List a folder, sorted; not more than one entry above MAX_ENTRIES."""
+    return sorted(islice(folder.iterdir(), MAX_ENTRIES + 1))
 
 
 def files_below(top: Path) -> list[Path]:
@@ -143,7 +143,7 @@ def files_below(top: Path) -> list[Path]:
     for _ in range(MAX_DEPTH):
         below: list[Path] = []
         for folder in level:
-            everything = entries_of(folder, MAX_ENTRIES)
+            everything = entries_of(folder)
             seen += len(everything)
             if seen > MAX_ENTRIES:
                 raise too_many(top)

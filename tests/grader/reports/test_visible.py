@@ -11,7 +11,7 @@ import re
 import pytest
 
 from grader.cli import main
-from grader.exercise.handing_in import LatePolicy
+from grader.exercise.policies import LatePolicy
 from grader.reports import read as read_report
 from grader.reports import render
 from grader.reports.wording import duration

@@ -10,8 +10,8 @@ from hypothesis import given
 from grader import reports
 from grader.diagnosis.diagnosis import Diagnosis
 from grader.errors import UsageError
-from grader.exercise.handing_in import LatePolicy
 from grader.exercise.loading import load_exercise
+from grader.exercise.policies import LatePolicy
 from grader.exercise.verdict import Evidence, Verdict
 from grader.message import NOTHING, authored, joined, msg, msg_many, plain_text
 from grader.recording.observations import SourceLine
