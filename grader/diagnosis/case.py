@@ -55,12 +55,12 @@ class Case:
 
     @property
     def run(self) -> Run:
-        """How it went."""
+        """Its outcome and circumstances."""
         return self.recording.run
 
     @property
     def observed(self) -> Observations:
-        """What its process has reported about itself."""
+        """The observations that its process has reported."""
         return self.recording.observations
 
     @property
@@ -85,7 +85,7 @@ class Case:
 
     @property
     def stop(self) -> Standstill | None:
-        """Where it got stuck."""
+        """The place where it got stuck; None for none."""
         return self.observed.stop if self.observed.is_known else None
 
     @property
@@ -109,7 +109,7 @@ class Case:
 
     @cached_property
     def scene_has(self) -> Sequence[Endpoint]:
-        """What the scene publishes, listens to and serves."""
+        """The endpoints of the scene: its topics, services and actions."""
         scene = load_subject(self.recording.scene)
         return scene.endpoints(self.recording.trace, self.run.interfaces)
 

@@ -262,7 +262,7 @@ def _failure(check: Check, error: NoFinding) -> Message:
 def judge_nominal(
     nominal: Recording, checks: Checks, points: Mapping[str, float], tolerances: Tolerances
 ) -> list[Verdict]:
-    """Run the checks that need the nominal run alone, and depend on no other.
+    """Run the checks for which the nominal run is enough, and for those that they depend on.
 
     All others are left out. So is one that raises an exception: `judge` reports it.
     """

@@ -86,7 +86,7 @@ class DrivenPath:
     # Parts of it ------------------------------------------------------------------------------
 
     def part(self, rows: slice | Mask) -> DrivenPath:
-        """Some of its readings."""
+        """Return a part of the path: the readings at some rows."""
         return DrivenPath(self.recording, self.way[rows], self.number)
 
     def begun_at(self, start: Start) -> DrivenPath:
@@ -100,16 +100,16 @@ class DrivenPath:
         return DrivenPath(self.recording, way, self.number)
 
     def until_lost(self) -> DrivenPath:
-        """Up to the first pose that is not a number."""
+        """Return the path up to the first pose that is not a number."""
         return self.part(slice(self.lost))
 
     def stretches(self, ticks: Iterable[int]) -> list[DrivenPath]:
-        """The parts before, between and from these ticks on; some may be empty."""
+        """Split the path at these ticks; some of the parts may be empty."""
         cuts = [0, *np.searchsorted(self.ticks, sorted(set(ticks))).tolist(), len(self)]
         return [self.part(slice(first, last)) for first, last in pairwise(cuts)]
 
     def longest_stretch(self, ticks: Iterable[int]) -> DrivenPath:
-        """That of its `stretches` in which it moved in the most ticks."""
+        """Return that of its `stretches` which moved in the most ticks."""
         return max(self.stretches(ticks), key=lambda part: int(part.moving.sum()))
 
     # Motion -----------------------------------------------------------------------------------
@@ -122,7 +122,7 @@ class DrivenPath:
 
     @cached_property
     def steps_m(self) -> Floats:
-        """How far it is from the reading before [m], 0 for the first; float64 (n,)."""
+        """The distance to the reading before [m], 0 for the first; float64 (n,)."""
         steps = np.zeros(len(self))
         with np.errstate(invalid="ignore"):  # a path that is not cut may hold infinities
             steps[1:] = np.hypot(np.diff(self.x), np.diff(self.y))
@@ -130,12 +130,12 @@ class DrivenPath:
 
     @cached_property
     def moving(self) -> Mask:
-        """Whether the position differs from the reading before."""
+        """Whether the position differs from the reading before; bool (n,)."""
         return _changes(self.x) | _changes(self.y)
 
     @cached_property
     def jumping(self) -> Mask:
-        """Whether the way from the reading before is longer than its speed explains."""
+        """Whether the step from the reading before is longer than its speed explains; bool (n,)."""
         return self.steps_m > self.linear * self.tick_s + JUMP_M
 
     @property
@@ -165,20 +165,20 @@ class DrivenPath:
 
     @cached_property
     def driven_m(self) -> Floats:
-        """How long the way to each reading is [m], float64 (n,)."""
+        """The length of the path up to each reading [m], float64 (n,)."""
         return np.cumsum(self.steps_m)
 
     @property
     def length_m(self) -> float:
-        """How long all of it is [m]."""
+        """The length of the whole path [m]."""
         return float(self.driven_m[-1]) if len(self) else 0.0
 
     def length_from(self, row: int) -> float:
-        """How long the way is from there to the end [m]."""
+        """Return the length of the path from a row to the end [m]."""
         return float(self.driven_m[-1] - self.driven_m[row])
 
     def straight_pieces(self, error_m: float) -> list[Side]:
-        """The path as drawn with a ruler: it lies `error_m` at most beside straight lines."""
+        """Approximate the path by straight lines that lie `error_m` at most beside it."""
         marks = simplify(self.points, error_m)
         return [
             Side(self.points[b] - self.points[a], b, beside_m, at)
@@ -190,21 +190,21 @@ class DrivenPath:
 
     @cached_property
     def points(self) -> Floats:
-        """Where it was [m], float64 (n, 2)."""
+        """The positions [m], float64 (n, 2)."""
         return np.column_stack((self.x, self.y))
 
     def distance_from(self, x: float, y: float) -> Floats:
-        """How far each reading is from a place [m], float64 (n,)."""
+        """Return the distance of each reading from a place [m], float64 (n,)."""
         return np.hypot(self.x - x, self.y - y)
 
     @cached_property
     def to_walls(self) -> Floats:
-        """To the left, bottom, right and top wall [m], float64 (n, 4)."""
+        """The distances to the left, bottom, right and top wall [m], float64 (n, 4)."""
         return np.column_stack((self.x, self.y, self.size_m - self.x, self.size_m - self.y))
 
     @cached_property
     def wall_distance(self) -> Floats:
-        """To the nearest wall [m], float64 (n,)."""
+        """The distance to the nearest wall [m], float64 (n,)."""
         return np.asarray(self.to_walls.min(axis=1))
 
     @cached_property
@@ -214,11 +214,11 @@ class DrivenPath:
         return int(np.argmax(clamped)) if clamped.any() else None
 
     def row_at(self, tick: int) -> int:
-        """The row of the first reading at or after a tick, or of the last one."""
+        """Return the row of the first reading at or after a tick, or of the last one."""
         return int(np.clip(np.searchsorted(self.ticks, tick), 0, len(self) - 1))
 
     def place(self, row: int) -> Message:
-        """Where it was, in words."""
+        """Return the position at a row, in words."""
         return msg("({x:.2f}, {y:.2f})", x=self.x[row], y=self.y[row])
 
     def evidence(self, row: int, note: Message) -> Evidence:
@@ -245,7 +245,7 @@ class DrivenPath:
 
 
 def _changes(values: Floats) -> Mask:
-    """Where a value differs from the one before."""
+    """Mask the values that differ from the one before."""
     changed = np.zeros(len(values), dtype=bool)
     changed[1:] = values[1:] != values[:-1]
     return changed
@@ -284,7 +284,7 @@ def simplify(points: Floats, error_m: float) -> list[int]:
 
 
 def farthest(points: Floats, first: int, last: int) -> tuple[int, float]:
-    """The index of the point that is farthest from the line between two, and how far it is [m]."""
+    """Return the index of the point farthest from the line between two, and its distance [m]."""
     from_first, along = points[first : last + 1] - points[first], points[last] - points[first]
     square = float(along @ along) or 1.0
     share = np.clip(from_first @ along / square, 0.0, 1.0)

@@ -42,11 +42,11 @@ class Trace(Protocol):
 
     @property
     def duration_ns(self) -> int:
-        """How long was recorded [simulated ns]."""
+        """The length of the recording [simulated ns]."""
 
     @property
     def ticks(self) -> int:
-        """How many ticks that was; 0 for a subject without ticks."""
+        """The number of ticks; 0 for a subject without ticks."""
 
     def sha256(self) -> str:
         """A hash of all motion and all inputs; equal hashes mean equal runs."""

@@ -100,7 +100,7 @@ class Rest:
 
 
 class Placing(NamedTuple):
-    """Where a frame of a solid is in its parent: x, y, z [m] and a quaternion x, y, z, w."""
+    """The pose of a solid's frame in its parent: x, y, z [m] and a quaternion x, y, z, w."""
 
     at: tuple[float, float, float] = (0.0, 0.0, 0.0)
     turned: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
@@ -177,9 +177,9 @@ class TreeNode:
     """A node of a tree.
 
     Attributes:
-        depth: 0 for what hangs on nothing.
+        depth: 0 for a root.
         name, text: what it is, and more about it, in a line each.
-        mark: `lost` - it should hang on something and does not; `wrong` - something is at odds.
+        mark: `lost` - it should have a parent and has none; `wrong` - something is at odds.
     """
 
     depth: int
@@ -190,7 +190,7 @@ class TreeNode:
 
 @dataclass(frozen=True)
 class Tree:
-    """What hangs on what: each node after the one that it hangs on, and all of that's below it."""
+    """A tree, as a list: each node comes after its parent, with all of its own below it."""
 
     title: Message
     nodes: tuple[TreeNode, ...]
@@ -264,7 +264,7 @@ class Plane(NamedTuple):
 
     @property
     def end_m(self) -> float:
-        """Where its upper right corner is, x and y."""
+        """The x and y of its upper right corner [m]."""
         return self.origin_m + self.size_m
 
     def to_px(self, x: float, y: float) -> tuple[float, float]:

@@ -36,14 +36,14 @@ STOP_SHOWS = 1
 
 @dataclass(frozen=True)
 class Corner:
-    """Where a side ends and another begins."""
+    """A corner between two sides."""
 
     index: int
     turn_deg: float
 
 
 class Way(DrivenPath):
-    """Where turtle1 drove, from where it drove off until the end of the recording.
+    """The path of turtle1, from where it drove off until the end of the recording.
 
     Attributes:
         tolerances: of the exercise.
@@ -78,12 +78,12 @@ class Way(DrivenPath):
 
     @cached_property
     def gap_m(self) -> Floats:
-        """How far it is from the start [m], float64 (n,)."""
+        """The distance from the start [m], float64 (n,)."""
         return self.distance_from(self.x[0], self.y[0])
 
     @cached_property
     def lap_end(self) -> int | None:
-        """Where it first was back, after it had been half a side away; None if it never was."""
+        """The row of its first return, after it had been half a side away; None for none."""
         gaps = self.gap_m
         away = np.flatnonzero(gaps > self.tolerances["side_m"] / 2)
         if not away.size:
@@ -110,7 +110,7 @@ class Way(DrivenPath):
 
     @property
     def corners(self) -> list[Corner]:
-        """Where its sides meet; the start is one of them if the way leads back to it."""
+        """The corners of its sides; the start is one of them if the way leads back to it."""
         pairs = list(pairwise(self.sides))
         if self._leads_back(self.sides):
             pairs.append((self.sides[-1], self.sides[0]))

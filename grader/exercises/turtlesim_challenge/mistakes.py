@@ -238,7 +238,7 @@ def _quadrant_before(path: Path, found: Coloring, tolerances: Tolerances) -> Cau
 
 
 def _late(found: Coloring, tolerances: Tolerances) -> Cause | None:
-    """How late the colours are that come too late, and whether that varies."""
+    """The colours come too late, by a fixed delay or by a varying one."""
     near = tolerances["color_distance"]
     delays = {entry: came_after(entry, found, near) for entry in found.judged}
     late = [d for e in found.bad if (d := delays[e]) is not None and d > found.waits[e]]

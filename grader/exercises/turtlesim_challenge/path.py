@@ -63,7 +63,7 @@ class Visit:
 
 
 class Path(DrivenPath):
-    """Where turtle1 was in the longest stretch of a run that it drove by itself.
+    """The path of turtle1 in the longest stretch of a run that it drove by itself.
 
     A teleport, or a turtle1 that is killed, spawned or reset, ends a stretch: what is drawn that
     way is nobody's driving.
@@ -104,14 +104,14 @@ class Path(DrivenPath):
         return self.distance_from(CENTRE_M, CENTRE_M)
 
     def calls(self, kind: type[SomeEvent]) -> list[SomeEvent]:
-        """The inputs of one kind to turtle1 within the stretch."""
+        """Return the inputs of one kind to turtle1 within the stretch."""
         if not len(self):
             return []
         first, last = self.ticks[0], self.ticks[-1]
         return [call for call in self.trace.of_kind(kind) if first <= call.tick <= last]
 
     def entries(self, band_m: float, centre_m: float = CENTRE_M) -> list[Visit]:
-        """Every entry into a quadrant on the turtle's way, the first one included.
+        """Return every entry into a quadrant on the turtle's way, the first one included.
 
         Within `band_m` of a dividing line the turtle still counts for where it was before.
         """

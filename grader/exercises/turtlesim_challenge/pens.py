@@ -27,7 +27,7 @@ MOST_OF_A_STAY = 0.9
 
 @dataclass(frozen=True)
 class Coloring:
-    """How the entries of one run were coloured.
+    """The colours of the entries of one run.
 
     Attributes:
         judged: the entries that left time for an answer.
@@ -63,7 +63,7 @@ class Coloring:
 
     @property
     def different(self) -> int:
-        """How many colours the quadrants have."""
+        """The number of different colours of the quadrants."""
         return len(self.alike)
 
 
@@ -115,7 +115,7 @@ def coloring(
 
 
 def demanded(tolerances: Tolerances) -> dict[int, Color]:
-    """The colours that the exercise asks for, by quadrant; as a rule none."""
+    """Return the colours that the exercise asks for, by quadrant; as a rule none."""
     asked = tolerances.get("colours") or {}
     return {int(quadrant): (c[0], c[1], c[2]) for quadrant, c in asked.items()}
 
@@ -159,7 +159,7 @@ def check_demanded(asked: Any) -> None:
 
 
 def came_after(entry: Visit, coloring: Coloring, distance: float) -> int | None:
-    """How many ticks after an entry the pen took the quadrant's colour; None: never."""
+    """Return how many ticks after an entry the pen had the quadrant's colour; None: never."""
     color = coloring.by_quadrant[entry.quadrant]
     if color is None:
         return None
@@ -170,7 +170,7 @@ def came_after(entry: Visit, coloring: Coloring, distance: float) -> int | None:
 
 
 def pens_by_tick(recording: Recording) -> list[Pen | None]:
-    """The pen in each tick, None where it is up; index 0 is before the first tick."""
+    """Return the pen in each tick, None where it is up; index 0 is before the first tick."""
     pen, is_down = Pen(), True
     changes: dict[int, Pen | None] = {}
     for event in TurtleTrace.of(recording.trace).events:

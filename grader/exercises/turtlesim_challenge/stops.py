@@ -65,7 +65,7 @@ class Stop:
 
     @property
     def gap_m(self) -> float:
-        """How far from the nearest wall it drove no more [m]."""
+        """The distance from the nearest wall at its last motion [m]."""
         return float(self.path.wall_distance[self.path.last])
 
 

@@ -386,10 +386,10 @@ def test_a_check_that_found_an_end_unused_says_which():
     assert (str(found.help), found.place) == ("Call /turtle1/set_pen.", LINE)
 
 
-def of_check(rationale, help_="", **told):
+def of_check(rationale, help_="", **observed):
     texts = map(plain_text, (rationale, help_))
     verdict = Verdict("check", plain_text("Check"), "failed", 0, 20, *texts)
-    found = diagnose(Recordings(run_of(said(**told))), [verdict])
+    found = diagnose(Recordings(run_of(said(**observed))), [verdict])
     assert found is not None
     return found
 
